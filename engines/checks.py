@@ -152,7 +152,7 @@ def check_energy(scene: Scene, trace: Trace) -> Failure | None:
     if gain <= GAIN_LIMIT:
         return None
     return Failure(
-        "the run gained energy", f"{gain:.3g} of its energy scale; errors of the steps are at most {GAIN_LIMIT}"
+        "the run gained energy", f"{gain:.3g} of its energy scale, at most {GAIN_LIMIT} can be error of the steps"
     )
 
 

@@ -81,13 +81,13 @@ class Reference:
         try:
             model = model or simulate(scene, history=False)
         except SceneError as error:
-            return cls(comparable=f"the analytic model does not reach an end: {error}")
+            return cls(comparable=f"the analytic model reaches no end: {error}")
         if why := _outside(scene, model):
             return cls(model, comparable=why)
         try:
             copies = tuple(simulate(copy, history=False) for copy in near_copies(scene))
         except SceneError as error:
-            return cls(model, comparable=f"the analytic model of a near copy does not reach an end: {error}")
+            return cls(model, comparable=f"the analytic model of a scene next to it reaches no end: {error}")
         near = frozenset(one.quantity for copy in copies for one in _numbers(scene, (model,), copy))
         until = min((parting(scene, model, copy) for copy in copies), default=math.inf)
         return cls(model, copies, EDGE if near else COMPARED, near, until)

@@ -177,7 +177,7 @@ def check_impacts(scene: Scene, trace: Trace, impacts: Sequence[Impact], missed:
     if len(stepped):
         return Failure(
             "the steps are longer than whole swings",
-            f"the step after {stepped[0]:.9g} s skips an impact and the swing that follows"
+            f"the step after {stepped[0]:.9g} s leaps over an impact and the swing that follows"
             f"{f'; {len(stepped)} such steps' if len(stepped) > 1 else ''}",
         )
     return None

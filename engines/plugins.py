@@ -52,7 +52,7 @@ def _resolve(entry: EntryPoint, origin: str, taken: Collection[str]) -> Engine:
     if engine.name != entry.name:
         raise EngineBroken(origin, f"it calls itself {engine.name!r}: entry and engine need one name")
     if engine.name in taken:
-        raise EngineBroken(origin, "that name is already in use")
+        raise EngineBroken(origin, "that name is taken")
     return replace(engine, origin=origin)
 
 

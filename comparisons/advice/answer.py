@@ -1,4 +1,4 @@
-"""What `choose` answers, as typed values that become JSON; ``Choice.model_json_schema()`` is its schema."""
+"""The answer of `choose` as typed values for JSON; ``Choice.model_json_schema()`` is its schema."""
 
 from __future__ import annotations
 
@@ -8,10 +8,9 @@ from ..schemas.form import Form, Part
 
 
 class Level(Part):
-    """One value of a variant's accuracy parameter. error: the worst over the scene and its neighbours, of outcomes the
-    share that differs; None if unknown. untried: it passes the scene, but was not run on the neighbours,
-    as a cheaper one passes there. why: in words, why it does not pass. cpu_per_second: CPU seconds for a simulated
-    second."""
+    """One value of a variant's accuracy parameter. error: the worst over the scene and its neighbours, for outcomes the
+    share that differs; None if unknown. untried: it passes the scene, but was not run on the neighbours, as a cheaper
+    one passes there. why: the reason why it does not pass. cpu_per_second: CPU seconds per simulated second."""
 
     engine: str
     variant: str
@@ -27,8 +26,9 @@ class Level(Part):
 
 
 class VariantLevels(Part):
-    """A variant's levels from coarse to fine. order: the error goes as the parameter to this power, where that shows.
-    applies_impact: the adapter, not the engine, applies eqs (7) and (8)."""
+    """A variant's levels from coarse to fine. tier: the kind of the variant. order: the error is proportional to the
+    parameter to this power, if it can be determined. applies_impact: the adapter, not the engine, applies eqs (7) and
+    (8)."""
 
     engine: str
     variant: str
@@ -38,7 +38,7 @@ class VariantLevels(Part):
     levels: list[Level]
 
     def cheapest(self) -> Level:
-        """The cheapest level that passes; else of those untried; else the finest."""
+        """The cheapest level that passes; else the cheapest untried one; else the finest."""
         for kind in ("passes", "untried"):
             if own := [one for one in self.levels if getattr(one, kind)]:
                 return min(own, key=lambda one: one.cpu_per_second or 0.0)
@@ -46,8 +46,8 @@ class VariantLevels(Part):
 
 
 class ModelPart(Part):
-    """A part of a model. needed: whether this scene asks for it; cost: times the CPU time that modelling it all the
-    same takes, as measured on this scene; None where that was not measured."""
+    """A part of a model. needed: whether this scene needs it. cost: factor on the CPU time if it is modelled
+    nevertheless, measured on this scene; None if not measured."""
 
     part: str
     needed: bool
@@ -56,8 +56,8 @@ class ModelPart(Part):
 
 
 class Choice(Form):
-    """The answer. chosen: the cheapest level at which it and all finer ones pass; None where none does, and `best` is
-    then the one of least error of all. safety_factor: of the error asked for over the largest that passes. neighbours:
+    """The answer. chosen: the cheapest level that passes with all finer ones; None if there is none, and `best` is then
+    the level with the least error. safety_factor: the error asked for over the largest one that passes. neighbours:
     factors of start and motion. until: time [s] up to which histories were compared, or were run for their impacts.
     cpu_seconds: of the chosen level on the whole scene; of the analytic model."""
 

@@ -1,8 +1,8 @@
-"""Which setting of which engine meets an error on this very scene, and on its neighbours, at the least cost?
+"""Search for the cheapest variant and level that meet an error on a scene and on its neighbours.
 
-Each variant's accuracy parameter is run at its levels, from coarse to fine, on the scene; where that passes from some
-level on to the finest, those levels are run on the neighbours, the cheapest first, until one passes. A level passes if
-it and all finer ones do, everywhere, with `criteria.safety` to spare: none passes by luck.
+Each variant is run at its levels, from coarse to fine, on the scene. The levels that pass there with all finer ones are
+run on the neighbours, the cheapest first, until one passes. A level passes if it and all finer ones do in all scenes,
+with a margin of `criteria.safety`, so that none passes by chance.
 """
 
 from __future__ import annotations
@@ -46,29 +46,29 @@ def choose(
 ) -> Choice:
     """The `Choice` for a scene.
 
-    Its runs are made in processes of their own: a script calls it under ``if __name__ == "__main__":``.
+    The runs are made in processes of their own, so that a script must call it under ``if __name__ == "__main__":``.
 
     Parameters
     ----------
     scene : Scene
     error : float
-        Largest error asked for: of restitution (rms) [-]; of the tilt over the slenderness, or of the displacement over
-        its peak, at any time up to the sensitivity horizon; of outcomes the share of neighbours that differ.
+        Largest error: of restitution (rms) [-]; of the tilt over the slenderness, or of the displacement over its peak,
+        at any time up to the sensitivity horizon; or the share of neighbours whose outcomes differ.
     criterion : str or None
-        One of `criteria.CRITERIA`; None: what the scene shows, see `criteria.fitting`.
+        One of `criteria.CRITERIA`; None: one that suits the scene, see `criteria.fitting`.
     engines : iterable of str or None
-        Those to try; None: all that are installed; none of them is run where, without a criterion, the block never
-        lifts: then the analytic model is the answer.
+        Engines to try; None: all that are installed. Without a criterion, none is run if the block never lifts; the
+        analytic model is then the answer.
     time_limit : float
-        Of one run [s].
+        Limit of one run [s].
     progress : bool
     source : str
-        Name of the scene's file, for the command and the snippet.
+        Name of the scene file, for the command and the snippet.
 
     Raises
     ------
     SettingError
-        The error or the criterion is out of range, or the scene does not show what is asked for.
+        The error or the criterion is out of range, or the criterion does not apply to the scene.
     EngineNotInstalled
 
     Examples
@@ -127,14 +127,14 @@ def _shown(progress, words):
 
 
 def _family(scene, criterion):
-    """(scene and neighbours by their factor, as long as they are looked at; that time of the scene itself [s])."""
+    """({factor: scene or neighbour, with the duration that is compared}; that duration of the scene itself [s])."""
     family = neighbours(scene, criterion)
     span = until(family[1.0], criterion)
 
     def cut(factor, one):
         try:
             return one.with_(duration=span if factor == 1.0 else until(one, criterion))
-        except SettingError:  # a neighbour that does not lift: as long as the scene itself
+        except SettingError:  # a neighbour without uplift gets the duration of the scene
             return one.with_(duration=span)
 
     if criterion != "outcome":
@@ -143,12 +143,12 @@ def _family(scene, criterion):
 
 
 def _stands(scene):
-    """Whether the block never leaves full contact, however long the run."""
+    """Whether the block never leaves full contact."""
     return simulate(scene.with_(duration=None), history=False).outcome == "stands"
 
 
 def _analytic(family: Mapping[float, Scene]) -> Level:
-    """The analytic model as a level that is without error."""
+    """The analytic model as a level without error."""
     return Level(
         engine=ANALYTIC,
         variant="kernel",
@@ -165,7 +165,7 @@ def _analytic(family: Mapping[float, Scene]) -> Level:
 
 
 def _searched(scene, family, names, error, criterion, **options):
-    """(key of the level chosen or None, CPU seconds of the whole scene, all variants); options: of the sweeps."""
+    """(key of the level chosen or None, CPU seconds of the whole scene, all variants); options: for the sweeps."""
     kinds = _kinds(names, scene)
     levels = [(name, variant, value) for name, variant, kind in kinds for value in kind.levels]
     with TemporaryFolder("choose-") as folder, Processes(None, ("analytic", *names)) as executor:
@@ -178,7 +178,7 @@ def _searched(scene, family, names, error, criterion, **options):
 
 
 def _kinds(names: Iterable[str], scene: Scene) -> list[tuple[str, str, Variant]]:
-    """(engine, variant, its record) of those that may be chosen: not default settings, and able to run the scene."""
+    """(engine, name, `Variant`) of those that may be chosen: not of the kind "defaults", able to run the scene."""
     return [
         (name, variant, spec)
         for name in names
@@ -188,7 +188,7 @@ def _kinds(names: Iterable[str], scene: Scene) -> list[tuple[str, str, Variant]]
 
 
 def _variant(name, variant, spec, search):
-    """The `VariantLevels` of a variant from what was run."""
+    """The `VariantLevels` of a variant from its runs."""
     levels: list[Level] = []
     finer = True
     for value in reversed(spec.levels):
@@ -227,7 +227,7 @@ def _variant(name, variant, spec, search):
 
 
 def _order(levels):
-    """Slope of log error over log parameter; None where fewer than three levels show one."""
+    """Slope of log error over log parameter; None for fewer than three levels with an error."""
     shown = [(one.value, one.error) for one in levels if one.error]
     if len(shown) < 3:
         return None

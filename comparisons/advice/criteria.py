@@ -1,4 +1,4 @@
-"""What a setting is chosen for: up to when a scene is run, and how far off a run is."""
+"""Criteria of a choice: the duration of the runs, and the error of a run."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ if TYPE_CHECKING:
     from ..running.cases import Case
 
 CRITERIA = ("restitution", "tilt", "displacement", "outcome")
-IMPACTS = 8  # strong ones of the model up to which a scene is run for its restitution
-AFTER = 0.25  # of a rocking period that a run goes on after them
-PERIODS = 1.0  # rocking periods beyond its peak up to which tilt or displacement is compared
+IMPACTS = 8  # strong impacts of the model up to which a scene is run for its restitution
+AFTER = 0.25  # of a rocking period, by which a run is longer
+PERIODS = 1.0  # rocking periods after its peak up to which tilt or displacement is compared
 FACTORS = (0.95, 0.975, 1.025, 1.05)  # of start and motion together: the neighbours
-MORE_FACTORS = (0.9625, 0.9875, 1.0125, 1.0375)  # beside them where outcomes are counted
-SAFETY = 2.0  # error asked for over the worst that a level may show: neighbours not looked at pass, too
+MORE_FACTORS = (0.9625, 0.9875, 1.0125, 1.0375)  # further ones where outcomes are counted
+SAFETY = 2.0  # error asked for over the worst one of a level, so that other neighbours pass, too
 
 
 def safety(criterion: str) -> float:
@@ -36,12 +36,12 @@ def safety(criterion: str) -> float:
 def neighbours(scene: Scene, criterion: str) -> dict[float, Scene]:
     """{factor: the scene with its start and its motion times that}, the scene itself with 1 first.
 
-    Where outcomes count they have no duration: a run that is cut before its outcome is decided shows none.
+    For outcomes they have no duration, as a run that ends before its outcome is decided has none.
 
     Raises
     ------
     SettingError
-        Nothing moves: there is neither a start nor a motion.
+        Neither a start nor a motion is given.
     """
     if scene.motion is None and not any(scene.start.model_dump().values()):
         raise SettingError(f"{scene.name}: nothing moves; give the scene a [start] or a [motion]")
@@ -57,7 +57,7 @@ def neighbours(scene: Scene, criterion: str) -> dict[float, Scene]:
 
 
 def fitting(scene: Scene) -> str:
-    """Where none is named: restitution where the block hits, else its base's displacement, else the outcome."""
+    """The default: restitution if there are impacts, else displacement if there is a base, else outcome."""
     if strong_impacts(simulate(scene, history=False)):
         return "restitution"
     return "displacement" if scene.base else "outcome"
@@ -69,7 +69,7 @@ def until(scene: Scene, criterion: str) -> float:
     Raises
     ------
     SettingError
-        The scene does not show what is asked for.
+        The criterion does not apply to the scene.
     """
     reference = simulate(scene, history=False)
     if criterion == "displacement" and scene.base is None:
@@ -109,7 +109,7 @@ class Measure:
 
 
 def error(criterion: str, scene: Scene, response: Response, reference: Response) -> float | None:
-    """How far off a run is; None where it does not show what is asked for."""
+    """The error of a run; None if the criterion does not apply to it."""
     if criterion == "outcome":
         return float(response.outcome != reference.outcome)
     if criterion == "restitution":
@@ -131,10 +131,10 @@ def _restitution(scene, response, reference):
     if not response.impacts or np.isnan(impact_time_errors(response, reference)[0]):
         return None
     errors = [rms(impact_errors(scene, response)["state"])]
-    if scene.motion is None and scene.bearings is None:  # what a swing loses counts, too
+    if scene.motion is None and scene.bearings is None:  # the loss between impacts counts, too
         rates = np.array([impact.rate_before for impact in strong_impacts(response)])
         if (rates[:-1] * rates[1:] >= 0).any():
-            return None  # sides alternate: an impact was lost
+            return None  # sides do not alternate: an impact was missed
         swings = rate_restitution(response)
         errors += [rms(swings - restitution(scene))] if len(swings) else []
     return max(errors)

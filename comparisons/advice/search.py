@@ -1,4 +1,4 @@
-"""The runs of a choice, and the search among them: neighbours are run of hopeful settings only, the cheapest first."""
+"""The runs of a choice and their search: neighbours are run only at levels that can still pass, the cheapest first."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def problem(rows: Mapping[float, Row], limit: float, criterion: str) -> tuple[fl
     """(error over these runs, why they do not pass or None)."""
     for factor, row in rows.items():
         if row.failed:
-            return None, f"failed at {factor:g} of the scene: {row.failure['reason']}"  # type: ignore[index]  # it has one
+            return None, f"failed at {factor:g} of the scene: {row.failure['reason']}"  # type: ignore[index]  # a failed run has one
         if row.values["error"] is None or not math.isfinite(row.values["error"]):
             return None, f"shows no {criterion} at {factor:g} of the scene"
     errors = [row.values["error"] for row in rows.values()]
@@ -38,11 +38,10 @@ def problem(rows: Mapping[float, Row], limit: float, criterion: str) -> tuple[fl
 
 
 class Search:
-    """Runs levels on a scene and its neighbours, files the rows, and looks for the cheapest level that passes.
+    """Runs levels on a scene and its neighbours, stores the rows, and finds the cheapest level that passes.
 
-    family: the scene and its neighbours by their factor, as long as they are looked at. error: asked for, in the sense
-    of `criterion`. options: of the sweeps, whose stores are in `folder`. rows: {level: {factor: `Row`}}, of all that
-    was run.
+    family: {factor: scene or neighbour}, with the duration that is compared. error: the one asked for, in the sense of
+    `criterion`. options: for the sweeps, whose stores are in `folder`. rows: {level: {factor: `Row`}} of all runs.
     """
 
     def __init__(
@@ -53,14 +52,14 @@ class Search:
         self.rows: dict[LevelKey, dict[float, Row]] = {}
 
     def run(self, levels: Sequence[LevelKey], factors: Sequence[float], label: str) -> None:
-        """Run levels on the scene and neighbours of these factors."""
+        """Run levels on the scene or neighbours of these factors."""
         wanted = [(level, factor) for factor in factors for level in levels]
         found = self._sweep([(level, self.family[factor]) for level, factor in wanted], self.criterion, label)
         for (level, factor), row in zip(wanted, found, strict=True):
             self.rows.setdefault(level, {})[factor] = row
 
     def whole(self, level: LevelKey) -> float | None:
-        """CPU seconds of the whole scene, None where it fails."""
+        """CPU seconds of the whole scene, None if the run fails."""
         (row,) = self._sweep([(level, self.scene)], "outcome", "the whole scene")
         return None if row.failed else row.cost["cpu_seconds"]
 
@@ -75,12 +74,14 @@ class Search:
         return run_sweep(cases, store=store, measure=Measure(criterion), label=label, **self.options)
 
     def cheapest(self, levels: Sequence[LevelKey]) -> tuple[LevelKey | None, float | None]:
-        """(the level, CPU seconds of the whole scene with it), None where none passes; of levels run on the scene,
-        neighbours are run of hopeful ones only, the cheapest first."""
+        """(the cheapest level that passes, its CPU seconds for the whole scene), None if none passes.
+
+        Neighbours are run only at levels that can still pass, the cheapest first.
+        """
         for level in sorted(filter(self._hopeful, levels), key=self._cost):
             suffix = self._suffix(level)
             missing = [factor for factor in self.family if any(factor not in self.rows[one] for one in suffix)]
-            if self._hopeful(level):  # what was run meanwhile may tell
+            if self._hopeful(level):  # may have changed by runs made meanwhile
                 self.run(suffix, missing, f"{level[0]}, {level[1]}: neighbours")
             if self._pass(suffix):
                 spent = self.whole(level)
@@ -98,9 +99,9 @@ class Search:
         return all(problem(self.rows[one], self.error, self.criterion)[1] is None for one in levels)
 
     def _hopeful(self, level):
-        """Whether a level and all finer ones of its variant pass on what they have run."""
+        """Whether a level and all finer ones of its variant pass in all scenes run so far."""
         suffix = self._suffix(level)
-        if self.criterion == "outcome":  # one run that differs does not tell a share
+        if self.criterion == "outcome":  # one run with another outcome does not determine a share
             return not any(row.failed for one in suffix for row in self.rows[one].values())
         return self._pass(suffix)
 

@@ -1,4 +1,4 @@
-"""What need not be modelled in a scene, and what modelling it would cost."""
+"""Parts of a model that a scene does not need, and the cost of modelling them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .answer import Level, ModelPart
 if TYPE_CHECKING:
     from analytic import Scene
 
-REPEATS = 7  # of a timing, of which the least counts
+REPEATS = 7  # of a timing; the least counts
 
 
 def cpu_seconds(scene: Scene) -> float:
@@ -27,8 +27,8 @@ def cpu_seconds(scene: Scene) -> float:
 def model_parts(
     scene: Scene, family: Mapping[float, Scene], error: float, found: Level | None, engines: Iterable[str], own: float
 ) -> list[ModelPart]:
-    """Which parts of a model the scene needs; family: its neighbours; found: the level chosen, or the best; own:
-    `cpu_seconds` of the scene."""
+    """The parts of a model, and whether the scene needs them. family: its neighbours; found: the level chosen, or the
+    best; own: `cpu_seconds` of the scene."""
     runs = [simulate(one, history=False) for one in family.values()]
     engine = None if found is None or found.cpu_per_second is None else found.cpu_per_second * runs[0].end.time / own
     parts = {
@@ -46,8 +46,8 @@ def model_parts(
 def _rocking(runs, engine):
     lifted = sum(run.outcome != "stands" for run in runs)
     if lifted:
-        return True, f"the block lifts in {lifted} of {len(runs)} scenes looked at", None
-    why = "the block never lifts, nor in any neighbour: block and base are one mass on the bearings"
+        return True, f"the block lifts in {lifted} of {len(runs)} scenes", None
+    why = "the block lifts neither here nor in any neighbour: block and base are one mass on the bearings"
     return False, f"{why}; an engine's contact model is not needed", engine
 
 
@@ -75,7 +75,7 @@ def _vertical(scene, reference, own, error):
 
 
 def _space(scene, engines):
-    """A free block of six degrees of freedom against the planar one, at one step."""
+    """A free block of six degrees of freedom compared with the planar one, at one step."""
     why = "nothing acts out of the plane"
     able = [] if scene.bearings is not None else [get_engine(name) for name in engines]
     scene = scene.with_(duration=simulate(scene, history=False).end.time)

@@ -1,4 +1,4 @@
-"""What several lessons compute."""
+"""Computations that several lessons share."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ HALVINGS = 50
 
 
 def edge(differs: Callable[[float], bool], low: float, high: float) -> float:
-    """Where `differs` changes between low and high, by halving; the value on the side of high.
+    """The value at which `differs` changes between low and high, by bisection; on the side of high.
 
     Raises
     ------
     ValueError
-        It is the same at both ends.
+        `differs` is the same at both ends.
     """
     there = differs(high)
     if differs(low) == there:

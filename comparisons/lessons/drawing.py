@@ -1,4 +1,4 @@
-"""Figures of the lessons: drawn once with stand-ins for colours, which a page replaces by its own, light or dark."""
+"""Figures of the lessons, drawn with placeholders for colours that a page replaces by its own, light or dark."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 INK, SOFT, GRID, PANEL = "#1c1b19", "#5f5b54", "#e4e0d8", "#fffffe"
-MODEL, OTHER, THIRD = "#0072b2", "#d55e00", "#00795c"  # told apart by colour-blind readers, and by their dashes
+MODEL, OTHER, THIRD = "#0072b2", "#d55e00", "#00795c"  # distinguishable for colour-blind readers, and by their dashes
 STONE = "#e9e0cb"
 # Outcomes in maps: stands, rocks, overturns after impacts, overturns without one.
 OUTCOMES = ("#d9d5cc", "#56b4e9", "#f0a500", "#c23b00")
@@ -22,7 +22,7 @@ VARIABLES = {
     INK: "ink", SOFT: "soft", GRID: "grid", PANEL: "panel", MODEL: "model", OTHER: "ghost", THIRD: "third",
     STONE: "stone", OUTCOMES[0]: "stands",
 }  # fmt: skip
-STYLE: Any = {  # keys of matplotlib, a type of its own
+STYLE: Any = {  # keys of matplotlib's rcParams
     "font.family": "sans-serif",
     "font.size": 11,
     "axes.edgecolor": SOFT,
@@ -46,13 +46,13 @@ STYLE: Any = {  # keys of matplotlib, a type of its own
     "svg.fonttype": "none",
     "path.simplify_threshold": 0.3,
 }
-WIDTH, HEIGHT = 5.4, 4.4  # inch: lettering stays readable on a phone
+WIDTH, HEIGHT = 5.4, 4.4  # inch; text is readable on a phone
 WIDE = (9.6, 5.4)  # inch, 16:9, of the figures for slides
 LICENCE = "rocking lessons, MIT licence"
 
 
 def canvas(rows: int = 1, heights: tuple[float, ...] = (1,), **more: Any) -> tuple[Figure, Any]:
-    """(figure, its axes as of `Figure.subplots`) in the lessons' style."""
+    """(figure, its axes from `Figure.subplots`) in the lessons' style."""
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(WIDTH, HEIGHT))
         axes = figure.subplots(rows, height_ratios=heights, **more)
@@ -75,7 +75,7 @@ def legend(axes: Axes, **more: Any) -> None:
 
 
 def svg(figure: Figure, name: str) -> str:
-    """The figure as an inline SVG element in the colours of its page; `name` keeps its parts' names apart."""
+    """The figure as an inline SVG element in the colours of its page; `name` makes the names of its parts unique."""
     file = io.BytesIO()
     with matplotlib.rc_context({**STYLE, "svg.hashsalt": name}):
         figure.savefig(file, format="svg", transparent=True, metadata={"Date": None, "Creator": None})

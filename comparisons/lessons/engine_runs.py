@@ -1,6 +1,6 @@
 """Every installed engine, in every variant, on one small scene: a block released on rigid ground, to its second impact.
 
-Which engines there are is asked of `engines`; without any the lessons run on the model's own fixed-step integrator.
+The engines are those of `engines`; without any, the lessons use the model's own fixed-step integrator.
 """
 
 from __future__ import annotations
@@ -17,16 +17,18 @@ from engines import get_engine, installed_engines
 
 SLENDERNESS, START = 0.28, 0.6  # rad, tilt over slenderness
 SCENE = Scene(block=caryatid_block(SLENDERNESS), start=Start(tilt=START * SLENDERNESS), duration=1.5)
-FIRST = 1.0  # s: the first impact is over, and the second far
+FIRST = 1.0  # s: between the first and the second impact
 OWN = "fixed steps"  # the model's own integrator
 OWN_STEPS = (0.02, 0.01, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4)  # s
-ROUNDS = 3  # the least CPU time of so many
+ROUNDS = 3  # runs of a timing; the least CPU time counts
 
 
 @dataclass(frozen=True)
 class EngineRun:
-    """One run: who, by name and variant, at which value of its accuracy parameter; error: of the tilt rate after the
-    first impact, nan without one; cpu [s]."""
+    """One run: solver, name with variant, kind, accuracy parameter and its value.
+
+    error: of the tilt rate after the first impact, nan without one. cpu: CPU time [s].
+    """
 
     solver: str
     name: str
@@ -52,7 +54,7 @@ def error_of(response: Response) -> float:
 def timed(
     solver: str, parameter: str, values: Iterable[float], simulated: Callable[..., Response]
 ) -> tuple[EngineRun, ...]:
-    """Runs of one of our own solvers, a setting each."""
+    """Runs of one of our own solvers, one for each level."""
     found = []
     for value in values:
         runs = [simulated(SCENE, history=False, **{parameter: value}) for _ in range(ROUNDS)]
@@ -63,13 +65,13 @@ def timed(
 
 @functools.cache
 def own_runs() -> tuple[EngineRun, ...]:
-    """Of the model's fixed-step integrator."""
+    """Runs of the model's fixed-step integrator."""
     return timed(OWN, "step", OWN_STEPS, simulate_time_stepping)
 
 
 @functools.cache
 def engine_runs() -> tuple[EngineRun, ...]:
-    """Of every installed engine: each variant through the levels of its accuracy parameter."""
+    """Runs of every installed engine: each variant at all its levels."""
     found = []
     for name in installed_engines():
         engine = get_engine(name)

@@ -1,4 +1,4 @@
-"""The pages that one can open without a network: `export_pages`."""
+"""Pages that open without a network: `export_pages`."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def export_pages(
 ) -> list[Path]:
     """Write playground, lessons, derivation and teacher's page into `folder`; returns their paths.
 
-    progress : is called with how many lessons are done, of how many.
+    progress : called with the number of lessons done and of all lessons.
     """
     environment, chosen = _environment(), lessons()
     drawings = {name: Markup(getattr(diagrams, name)()) for name in ("rocking", "impact", "isolated")}
@@ -80,7 +80,7 @@ def _lesson_page(environment: Environment, one: Lesson, chosen: Sequence[Lesson]
 
 
 def _view_parts(view: View, name: str) -> dict:
-    """What the template shows of a view: picture, numbers as (label, value in full, text), and the sentence."""
+    """Parts of a view for the template: picture, numbers as (label, value in full, text), and the sentence."""
     numbers = [
         (label, value if isinstance(value, str) else repr(float(value)), written(value, unit))
         for label, (value, unit) in view.numbers.items()

@@ -1,6 +1,6 @@
-"""What a lesson is: a question, symbols and equations, a guess, a picture with controls, common errors, exercises.
+"""The type of a lesson: a question, symbols and equations, a guess, a picture with controls, common errors, exercises.
 
-Texts are paragraphs with ``$formulas$`` in TeX: a notebook shows them as they are, a page as MathML (`mathml.prose`).
+Texts are paragraphs with ``$formulas$`` in TeX: a notebook shows the TeX, a page MathML (`mathml.prose`).
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ SYMBOLS = {
     r"\dot{\phi}^{\pm}": "tilt rate just before ($-$) and just after ($+$) an impact [rad/s]",
     r"\phi_0": "a peak of the tilt [rad]",
     r"\phi_1": "the next peak [rad]",
-    "s": "$+1$ for a tilt to the right, $-1$ to the left",
+    "s": "$+1$ for a tilt to the right, $-1$ for one to the left",
     "g": "gravity, 9.81 m/s²",
     "a_g": "acceleration of the ground [m/s²]",
     r"e_{\phi}": "restitution: tilt rate after an impact over that before it",
@@ -62,7 +62,7 @@ SYMBOLS = {
 
 @dataclass(frozen=True)
 class Equation:
-    """tex: the formula. number: its place in the paper, "" without one. says: what it means, one sentence."""
+    """tex: the formula. number: its number in the paper, "" without one. says: its meaning, one sentence."""
 
     tex: str
     number: str
@@ -71,7 +71,7 @@ class Equation:
 
 @dataclass(frozen=True)
 class Control:
-    """What a reader moves: label; values, numbers in order or words; the value at the start; unit and digits."""
+    """A control for the reader: label; values, numbers in order or words; the initial value; unit and digits."""
 
     label: str
     values: tuple[float, ...] | tuple[str, ...]
@@ -88,7 +88,7 @@ class Control:
         return isinstance(self.start, str)
 
     def text(self, value: float | str) -> str:
-        """A value as a reader sees it."""
+        """A value as it is shown."""
         if isinstance(value, str):
             return value
         return f"{value:.{self.digits}f}".replace("-", "−") + (f" {self.unit}" if self.unit else "")
@@ -96,10 +96,10 @@ class Control:
 
 @dataclass(frozen=True)
 class View:
-    """What a lesson shows at one place of its controls.
+    """The view of a lesson at one combination of its controls.
 
     figure : matplotlib Figure. numbers : {label: (value, unit)}, the value a number or a word. says : the picture in a
-    sentence, for those who cannot see it.
+    sentence, for readers who cannot see it.
     """
 
     figure: Figure
@@ -109,7 +109,7 @@ class View:
 
 @dataclass(frozen=True)
 class Exercise:
-    """A question whose answer is computed: `compute()` is a number in `unit`; `because` says how one finds it."""
+    """A question whose answer is computed: `compute()` is a number in `unit`; `because` explains the solution."""
 
     question: str
     compute: Callable[[], float]
@@ -122,11 +122,11 @@ class Exercise:
 class Lesson:
     """One lesson; `view` takes the values of the controls in their order.
 
-    minutes : in a lecture. aims : what one can do afterwards. needs : what one should know before. symbols : keys of
-    `SYMBOLS`. guess : a question to answer before the controls are moved, which the picture then answers. code : the
-    few lines that compute a number of it, `found`; their text is a cell of the notebook. playground : where the
-    playground's sliders stand, as its address after #. drawing : at the head of the lesson. table : rows below the
-    picture. example : a second picture, without controls, and its caption `says`.
+    minutes : in a lecture. aims : learning outcomes. needs : prerequisites. symbols : keys of `SYMBOLS`. guess : a
+    question to answer before the controls are used, which the picture then answers. code : a few lines that compute a
+    number of the lesson, `found`; their text is a cell of the notebook. playground : positions of the playground's
+    sliders, as its address after #. drawing : at the head of the lesson. table : rows below the picture. example : a
+    second picture, without controls, and its caption `says`.
     """
 
     number: int
@@ -155,9 +155,9 @@ class Lesson:
         return [(symbol, SYMBOLS[symbol]) for symbol in self.symbols]
 
     def first(self) -> View:
-        """The view that stands there before anything is moved."""
+        """The view at the initial values of the controls."""
         return self.view(*(control.start for control in self.controls))
 
     def places(self) -> list[tuple[float | str, ...]]:
-        """Every place of the controls, the last one changing fastest."""
+        """All combinations of the controls, the last one changing fastest."""
         return list(product(*(control.values for control in self.controls)))
