@@ -14,7 +14,7 @@ Examples
 >>> from analytic import load_scene, simulate
 >>> scene = load_scene("free-rocking-rigid")
 >>> engine = get_engine("exudyn")
->>> response = engine.simulate(scene)  # in its first variant; engine.variants lists all
+>>> response = engine.simulate(scene)  # in its main variant; engine.variants lists all
 >>> abs(response.impacts[0].rate_after / simulate(scene).impacts[0].rate_after - 1) < 1e-5
 True
 """

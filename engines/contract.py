@@ -2,7 +2,7 @@
 
 A package that offers an engine holds one `Engine`. The adapter, a module of its own, holds
 
-- ``VARIANTS``: {name: `Variant`}; the first is taken where none is named;
+- ``VARIANTS``: {name: `Variant`}; the first is the main variant, taken where none is named;
 - ``versions()``: {package: version} of what computes;
 - ``run(scene, variant, settings)``: a `Run` of a scene with a duration; `variant` is a name, `settings` an instance of
   that variant's dataclass, both checked. Where the motion has a `vertical` one, the block's weight is m (g + a_v).
@@ -239,7 +239,7 @@ class Engine:
 
     @property
     def default_variant(self) -> str:
-        """Name of the first variant, which is taken where none is named."""
+        """Name of the main variant, the first, which is taken where none is named."""
         return next(iter(self.variants))
 
     def versions(self) -> dict[str, str]:

@@ -22,7 +22,7 @@ def choose(engine: Engine, variant: str | None, changes: Mapping[str, Any]) -> t
     ----------
     engine : Engine
     variant : str or None
-        None: the first one.
+        None: the main one.
     changes : dict
         {field: number}
 

@@ -68,7 +68,7 @@ class Simulator(Engine):
         scene : Scene
             A scene without a duration runs until its outcome is decided.
         variant : str or None
-            One of `variants`; None: the first one.
+            One of `variants`; None: the main one.
         history : bool
             Keep the history in the response.
         compare : bool

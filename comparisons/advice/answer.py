@@ -26,7 +26,7 @@ class Level(Part):
 
 
 class VariantLevels(Part):
-    """A variant's levels from coarse to fine. tier: the kind of the variant. order: the error is proportional to the
+    """A variant's levels from coarse to fine. `tier`: the kind of the variant. order: the error is proportional to the
     parameter to this power, if it can be determined. applies_impact: the adapter, not the engine, applies eqs (7) and
     (8)."""
 

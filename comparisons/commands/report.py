@@ -42,7 +42,7 @@ def command(
         list[str] | None, typer.Option(help="An engine to compare; may be repeated. Default: all that are installed.")
     ] = None,
     variant: Annotated[
-        str | None, typer.Option(help="Variant of the one engine, for the scenes given. Default: that of the engine.")
+        str | None, typer.Option(help="Variant of the one engine, for the scenes given. Default: its main one.")
     ] = None,
     records: Records = None,
     both_signs: BothSigns = False,

@@ -95,7 +95,7 @@ def command_of(study: Study) -> Callable[..., None]:
         if check is not None:
             if quick or engine or scheduler or replot:
                 raise SettingError(
-                    "--check: repeats runs of a stored result; leave --quick, --engine, --scheduler, --replot out"
+                    "--check: takes a result as it is; leave --quick, --engine, --scheduler, --replot out"
                 )
             return _check(study.name, output, check, seed, write, workers)
         if write:

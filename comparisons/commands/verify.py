@@ -15,7 +15,7 @@ def command(
     engine: Annotated[
         list[str] | None, typer.Option(help="An engine to verify; may be repeated. Default: all that are installed.")
     ] = None,
-    variant: Annotated[str | None, typer.Option(help="Variant of the one engine. Default: that of the engine.")] = None,
+    variant: Annotated[str | None, typer.Option(help="Variant of the one engine. Default: its main one.")] = None,
     json_file: Annotated[
         str | None, typer.Option("--json", metavar="FILE", help="Write the rows; - prints them.")
     ] = None,

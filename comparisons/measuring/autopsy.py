@@ -1,4 +1,4 @@
-"""One impact as the contact's own story, read from where an engine's steps had the block.
+"""Analysis of one impact from the positions of the block in an engine's steps.
 
 Newton's laws give the impulses that an engine must have used between two steps, whatever its solver calls them: of both
 corners upward and of both together along the ground. Momentum then splits the error of e into parts that add up to it.
@@ -10,9 +10,9 @@ and w the rate before the impact:
               - m (h (1 - mt) s + b r), of the pivot after, and + of the pivot before          parts `slip`, `rebound`
 
 `pull` is what is negative of the old corner's impulses. What is left over is the bearings' and gravity's while the
-contact lasts, of second order. Two more stand beside the parts in the same unit. `flight`: the energy that the second
-half of the swing before gained, as a share of w. `shape`: what the strike does to e if it acts where the weight did
-just before, when the landing corner is in the air and should bear nothing.
+contact lasts, of second order. Two more quantities are given in the same unit. `flight`: the energy gained in the
+second half of the swing before, as a share of w. `shape`: the change of e by a strike that acts where the weight acted
+just before, when the landing corner is in the air and should be unloaded.
 """
 
 from __future__ import annotations
@@ -46,11 +46,11 @@ class Contact:
     Parameters
     ----------
     placed : bool
-        The trace holds where the block was; else it is taken to pivot about its corners, and nothing is known of these.
+        The trace has the position of the block; else it is taken to pivot about its corners, whose motion is unknown.
     landing : float
         When the flight before reaches tilt = 0 [s].
     before, after : float
-        Tilt rates carried to tilt = 0 [rad/s].
+        Tilt rates extrapolated to tilt = 0 [rad/s].
     error : float
         after/before less the scene's restitution.
     parts : dict
@@ -105,7 +105,7 @@ class Contact:
 
     @property
     def deepest(self) -> float:
-        """How far a corner is below the ground at most [m]."""
+        """Largest penetration of a corner [m]."""
         return float(max(-self.height.min(), 0.0))
 
     @property

@@ -1,4 +1,4 @@
-"""Why an engine's restitution is off, from the story of one contact alone: no setting is looked at."""
+"""The cause of an engine's error of restitution, from the steps of one contact only, without its settings."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ CAUSES = {
     "unseen": "the contact itself, and more than a step explains; the engine does not report where the block was",
     "step": "no part is larger than what the block gains in one step: the step straddles the impact",
 }
-# Steps in which a strike is seen. Solvers of velocities strike at once, which is seen in two, as velocities are those
-# of the steps' ends; not converged they take up to eight (one iteration, begun with the step before). A
-# compliant contact that is resolved takes a dozen and more.
+# Steps over which a sudden strike extends. Velocity-level solvers strike within one step, which appears in two, as
+# velocities are those of the steps' ends; without convergence they take up to eight (one iteration, started from the
+# step before). A resolved compliant contact takes a dozen or more.
 AT_ONCE, MANY = 2, 10
 SATURATED = 5.0  # largest friction over normal impulse of a sliding contact, over the strike's, in which it may turn
 STRADDLING = 2.0  # parts over what gravity gains in a step, up to which the step explains them: a strike is seen in two
@@ -78,13 +78,13 @@ def _saturated(contact):
 
 
 def diagnosis(engine: str, variant: str, scene: Scene, which: int = 0, **settings: Any) -> dict[str, object]:
-    """What the impact number `which` of a run tells, ready for JSON.
+    """The analysis of impact number `which` of a run, ready for JSON.
 
     Returns
     -------
     dict
-        engine, variant, tier, best (the default variant); if it can be analysed: placed, error, cause and words
-        (None below `LEAST`), parts, steps, energy_lost (over the kinetic one before), frames, and where
+        engine, variant, "tier" (its kind), best (the engine's main variant); if it can be analysed: placed, error,
+        cause and words (None below `LEAST`), parts, steps, energy_lost (over the kinetic one before), frames, and where
         the block is placed deepest [m]; else why_not.
     """
     record = get_engine(engine)

@@ -1,4 +1,4 @@
-"""The class of a run beside the analytic model's, one word, the same in every study."""
+"""The class of a run compared with the analytic model's, one word, the same in every study."""
 
 from __future__ import annotations
 

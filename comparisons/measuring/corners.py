@@ -1,4 +1,4 @@
-"""Both bottom corners of a block in a trace: where they are, how they move, what impulses they were given.
+"""Position, velocity and impulses of both bottom corners of a block in a trace.
 
 Pairs are (landing corner, old corner): the one that comes down in an impact, and the pivot before it.
 """
@@ -42,7 +42,7 @@ def _levers(scene: Scene, tilt: np.ndarray, side: float) -> tuple[np.ndarray, np
 
 
 def corner_impulses(scene: Scene, trace: Trace, side: float) -> dict[str, np.ndarray]:
-    """What the corners were given between the n steps of a trace with a centre: what its momentum gained.
+    """Impulses on the corners between the n steps of a trace with a centre, from the change of its momentum.
 
     Returns
     -------
@@ -69,7 +69,7 @@ def _gained(motion: Motion | None, time: np.ndarray) -> np.ndarray | float:
 def pivot_forces(
     scene: Scene, trace: Trace, side: float, landing: float, rates: tuple[float, float]
 ) -> tuple[float, float]:
-    """What bears a block that pivots at tilt 0 [N], before and after the landing [s], by eqs (3)-(6).
+    """Normal force on a block that pivots at tilt 0 [N], before and after the landing [s], by eqs (3)-(6).
 
     rates: tilt rates before and after it [rad/s].
     """

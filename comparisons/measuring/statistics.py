@@ -1,4 +1,4 @@
-"""Are two solvers' overturning outcomes different? Intervals and paired tests."""
+"""Intervals and paired tests for differences between the outcomes of two solvers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The runs on one clock: what the page's script moves, and the frame shown without one."""
+"""Animation of the runs at common times: data for the page's script, and the frame shown without a script."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def _track(result, key, times, who, base):
 
 
 def _still(scenes, step):
-    """A time with something to see: the first block that tips, well off its base and not yet down, else the peak."""
+    """Time of the still frame: during the first overturning, before the block lies down, else at the peak."""
     for scene in scenes:
         tilt = np.abs(scene["tracks"][0]["tilt"])
         if tilt.max(initial=0.0) > 1.0:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ..showing.rows import Row
 
 ANALYTIC = "analytic"
-TILT = 0.01, 1.6  # least and greatest limit of a tilt's axis, over slenderness: contact noise is no tilt to look at
+TILT = 0.01, 1.6  # least and largest limit of a tilt axis, over slenderness, so that contact noise is not shown
 SHOWN = 700  # samples of a line
 LEAST = 1e-9  # of a difference drawn
 

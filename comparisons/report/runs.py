@@ -179,7 +179,7 @@ def _restitution_row(engine, variant, members, models):
 
 
 def described_variants(engines: Sequence[str]) -> dict[str, dict[str, dict[str, Any]]]:
-    """{engine: {variant: its tier, what the engine computes and the adapter imposes, whether that is the impact}}."""
+    """{engine: {variant: its kind, what the engine computes and the adapter imposes, whether that is the impact}}."""
     return {
         name: {
             variant: {

@@ -1,4 +1,4 @@
-"""The answer in plain words, put together from the numbers of the result files."""
+"""The answer in words, from the numbers of the result files."""
 
 from __future__ import annotations
 

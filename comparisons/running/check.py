@@ -1,4 +1,4 @@
-"""Stored runs of a result repeated with the code of today: how many still give the same?"""
+"""Repetition of stored runs with the present code, and the number that give the same result."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from .run_sample import case_of, outcome_of
 from .sweep import run_sweep
 
 RELATIVE, ABSOLUTE = 1e-9, 1e-12  # numbers this near are equal: another processor rounds otherwise
-NOT_COMPARED = ("cpu_seconds", "traced_bytes", "resident_bytes", "versions")  # costs, and what they were paid with
+NOT_COMPARED = ("cpu_seconds", "traced_bytes", "resident_bytes", "versions")  # costs and versions
 SHOWN = 3  # differences named of a run
 
 

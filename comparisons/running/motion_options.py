@@ -1,4 +1,4 @@
-"""The many motions a scene is tried under, the same options in every command."""
+"""Options for many motions of a scene, the same in every command."""
 
 from __future__ import annotations
 

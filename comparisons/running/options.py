@@ -1,4 +1,4 @@
-"""Messages that name what a command offers: its options, not the parameters or the keys behind them."""
+"""Messages that name a command's options instead of the parameters or keys behind them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a user says of a record that the file itself does not, the same in every command."""
+"""Options for what a record file does not state, the same in every command."""
 
 from typing import Annotated
 

@@ -1,4 +1,4 @@
-"""Results as they arrive: one line of JSON per run, appended; what a killed sweep leaves is found again."""
+"""Store of results: one line of JSON is appended per run, so that the runs of a killed sweep are kept."""
 
 import contextlib
 import io
@@ -16,7 +16,7 @@ try:
 except ImportError:  # Windows has none: no lock there
     fcntl = None  # type: ignore[assignment]  # Windows has none
 
-SYNC_SECONDS = 1.0  # a killed process loses nothing written; only a power cut can cost this much
+SYNC_SECONDS = 1.0  # a killed process loses nothing written, a power cut at most this much
 
 
 class StoreError(Mendable):

@@ -1,4 +1,4 @@
-"""A file of answers, read; and what the exact ones may be off by."""
+"""Reading of a file of answers, and the error of the exact answers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Mistakes that are known to happen, and what each would answer: computed, by the model or a variant of it."""
+"""Known mistakes, and the answers that each would give, computed by the model or a modified version of it."""
 
 from __future__ import annotations
 
@@ -124,7 +124,7 @@ def _reported(problem, answers, factors):
 
 
 MISTAKES = (
-    Mistake("impact lost", "an impact is lost: the block passes to its other corner without losing speed", _lost),
+    Mistake("impact lost", "an impact is missed: the block passes to its other corner without a loss of rate", _lost),
     Mistake(
         "restitution off by the step",
         "impacts are applied at the end of the step in which φ changes its sign: locate them within it",

@@ -1,4 +1,4 @@
-"""What a run shows of what the sheet asks for, whoever made the run."""
+"""The quantities of the sheet from a run of any solver."""
 
 from __future__ import annotations
 

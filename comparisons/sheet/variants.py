@@ -1,4 +1,4 @@
-"""The second implementation with a fault built in: small variants, one for each mistake that changes an equation."""
+"""The second implementation with a built-in fault, one for each mistake that changes an equation."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Printed12(BearingLaw):
 class Fault:
     """What is wrong in a run.
 
-    lost: number of an impact that does nothing, from 1 on. seen: whether it is noticed all the same. printed_8,
+    lost: number of an impact without effect, from 1 on. seen: whether it is detected nevertheless. printed_8,
     printed_12: these equations as printed. inertia: factor on J_O in the equation of motion, and with `restitution` in
     eq. (7). step [s]: impacts happen at its next multiple, and with `smeared` the step that holds one is a Runge-Kutta
     step of fourth order across it, each stage on its own side.

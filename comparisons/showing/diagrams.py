@@ -176,7 +176,7 @@ def rocking() -> Markup:
 
 
 def impact() -> Markup:
-    """The instant of impact: the old corner leaves, the impulse acts at the new one."""
+    """The impact: the old corner lifts, the impulse acts at the new one."""
     drawing = Drawing(400, 330, 275, "The block upright at the impact: the impulse acts at the new corner on the left")
     b, h = R * math.sin(GAMMA), R * math.cos(GAMMA)
     corner = (200 + b, 0.0)

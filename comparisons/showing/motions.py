@@ -1,4 +1,4 @@
-"""What a scene does under many motions: a table for the terminal, and the odds."""
+"""Results of a scene under many motions: a table for the terminal, and shares of records."""
 
 from __future__ import annotations
 

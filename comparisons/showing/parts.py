@@ -1,4 +1,4 @@
-"""What a section of the report is made of, and how numbers are written in it."""
+"""Parts of a section of the report, and the format of its numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where pages come from: templates of a folder, in which a name that is missing is an error.
+"""Templates of pages from a folder; a missing name is an error.
 
 Values are escaped, but in those of plain text, whose names end in .jinja.
 """

@@ -106,5 +106,5 @@ def echo(*parts: Grid | Text | str, wrap: bool = False) -> None:
 
 
 def digits(value: float | None, form: str = ".4g") -> str:
-    """A number so written; a hyphen where there is none."""
+    """A number in this format; a hyphen for None."""
     return "-" if value is None or math.isnan(value) else f"{value:{form}}"

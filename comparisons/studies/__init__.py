@@ -5,8 +5,8 @@ A study is two files in a folder of its name, as `restitution`; another file onl
 ``study.py`` computes and imports nothing that shows: a ``plan(request)`` that yields a `Batch` of cases with their
 ``measure`` and returns `Computed`, plain rows and settings (`comparisons.running.plan`). All rows of all studies say
 ``engine``, ``variant`` and ``part`` (what the row is), ``level`` for a value of the accuracy parameter, ``lost`` for
-impacts that a run has not; settings list ``variants``, each with engine, variant, tier, parameter, default and levels.
-`comparisons.studies.vocabulary` explains every column, `comparisons.studies.rows` says which of them a row has.
+missed impacts; settings list ``variants``, each with engine, variant, ``tier`` (its kind), parameter, default and
+levels. `comparisons.studies.vocabulary` explains every column, `comparisons.studies.rows` says which of them a row has.
 
 ``page.py`` shows: one function from a `Result` to a `comparisons.showing.parts.Page`. The report's first page takes
 title, lead and first, the study's own page all of it; nothing is told or drawn twice.

@@ -1,7 +1,7 @@
-"""The kernel and scipy's `solve_ivp` on a problem, each set up by someone who wants it fast.
+"""The kernel and scipy's `solve_ivp` on a problem, both written for speed.
 
-No classes, floats instead of arrays in the right-hand side, the smallest set of events, a first step taken from the
-length of the coming hop. The readable set-up, the one to learn from, is `analytic.twin`.
+There are no classes, the right-hand side uses floats instead of arrays, the set of events is the smallest possible, and
+the first step follows from the length of the next swing. The simple form to learn from is `analytic.twin`.
 """
 
 from __future__ import annotations

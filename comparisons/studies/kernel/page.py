@@ -55,8 +55,8 @@ def page(result: Result) -> Page:
         how=(
             "All integrate the same two equations, set up for speed: scipy without classes and with a first step of "
             "the length of the hop. scipy restarts at each impact; heyoka's impacts are a callback in its own loop. "
-            "Cheapest: the cheapest setting at which it and all finer ones keep the error and find every impact.",
-            f"{result.settings['rounds']} fresh processes one after the other; in each, every setting has its turn "
+            "Cheapest: the cheapest level at which it and all finer ones keep the error and find every impact.",
+            f"{result.settings['rounds']} fresh processes one after the other; in each, every level has its turn "
             "after a first run that compiles; runs are repeated until they take 4 ms. Medians over processes.",
             "Scenes on bearings and under a record, the growth of cost, and engines are in the study speed-error.",
         ),
@@ -105,7 +105,7 @@ def _found(rows, scene):
     found = passing(rows, scene, TOLD)
     kernel = found.pop(KERNEL, None)
     if kernel is None:
-        return f"{scene}: no setting keeps {number(TOLD, 1)}"
+        return f"{scene}: no level keeps {number(TOLD, 1)}"
     first = f"{scene} to {number(TOLD, 1)} in {number(1e6 * CPU.of(kernel), 3)} µs"
     other = next(iter(found), None)
     return first + (f", {other} in {number(CPU.of(found[other]) / CPU.of(kernel), 3)} times as much" if other else "")

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ...running.plan import Plan, Request
     from ...running.sweep import Row
 
-SCENES, QUICK_SCENES = 500, 20  # of the engines' default variants
+SCENES, QUICK_SCENES = 500, 20  # of the engines' main variants
 FEWER = 5  # other variants run one scene in so many, and at least so many
 
 SEED = "Of the scenes, without it of the commit; with --check of the draw of runs."
@@ -71,7 +71,7 @@ def _failed(row: Row) -> dict[str, Any]:
 def compared(case: Case, response: Response) -> dict[str, Any]:
     """Measure: the class of a run, and in what it differs, or why it is left out.
 
-    A scene on an edge is left out of all engines alike; in what a run of it differs all the same is kept.
+    A scene near an outcome boundary is left out for all engines alike; the differences of its runs are kept.
     """
     quantities = [one.quantity for one in response.differences]
     return {

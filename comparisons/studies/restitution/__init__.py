@@ -5,7 +5,7 @@ from .study import plan
 
 STUDY = Study(
     "restitution",
-    "Error of restitution and base velocity jump over slenderness, base mass and accuracy setting, with its cost.",
+    "Error of restitution and base velocity jump over slenderness, base mass and level, with its cost.",
     plan,
     f"{__name__}.page",
 )

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def plan(request: Request) -> Plan:
-    """The plan of the study: each scene in each variant at its default setting; quick: in default variants only."""
+    """The plan of the study: each scene in each variant at its default level; quick: in main variants only."""
     cases = [
         Case(problem.scene, engine, variant, tag={"scene": problem.name})
         for engine in request.engines

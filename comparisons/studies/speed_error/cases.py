@@ -162,7 +162,7 @@ def refined(levels: Sequence[float]) -> list[float]:
 
 
 def levels_of(spec: Variant, quick: bool) -> list[float]:
-    """Levels of a variant's accuracy parameter that are run: of default settings, whose error hardly moves, few."""
+    """Levels of a variant that are run; few of the kind "defaults", whose error hardly changes."""
     few = (spec.levels[0], spec.default) if quick else spec.levels
     return list(dict.fromkeys(few)) if quick or spec.kind == "defaults" else refined(spec.levels)
 
