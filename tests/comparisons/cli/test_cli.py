@@ -115,7 +115,7 @@ def test_engines_lists_what_is_there_and_what_is_not(rocking, monkeypatch):
 @pytest.mark.parametrize("name", installed_engines())
 def test_engines_with_a_name_tells_all_of_it(rocking, name):
     engine, (status, out, _) = get_engine(name), rocking("engines", name)
-    assert status == 0 and f"{name} (" in out and f"--variant {engine.default_variant} (default, " in out
+    assert status == 0 and f"{name} (" in out and f"--variant {engine.default_variant} (main, " in out
     for variant, one in engine.variants.items():
         assert f"--variant {variant} (" in out and one.kind in out
         assert f"the engine computes: {one.computes}" in out and f"the adapter imposes: {one.imposes}" in out

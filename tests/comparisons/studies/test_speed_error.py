@@ -211,7 +211,7 @@ def test_a_level_that_failed_or_lost_impacts_has_no_error():
     )
     assert [one["error"] for one in rows] == [1e-5, None, None] and passing(rows, 1e-3) == {}
     (counted,) = cells(result_of(*rows), "failed [-]")
-    assert (counted["levels [-]"], counted["failed [-]"], counted["impacts lost [-]"]) == ("3", "1", "1")
+    assert (counted["levels [-]"], counted["failed [-]"], counted["impacts missed [-]"]) == ("3", "1", "1")
 
 
 @pytest.mark.parametrize(
@@ -280,7 +280,7 @@ def test_the_first_table_gets_costs_at_the_defaults_with_their_errors_and_shares
     assert (judgement.key, judgement.rates, mark.words, mark.value) == (COST, False, "76 ×", 76)
     assert mark.note == "error of restitution 1.0·10⁻⁴; engine's own share 40 %"
     (shown,) = cells(result, "engine's own share")
-    assert (shown["engine's own share"], shown["impacts lost [-]"]) == ("40 %", "0")
+    assert (shown["engine's own share"], shown["impacts missed [-]"]) == ("40 %", "0")
     captions = [part.caption for part in STUDY.page(result).opening().tables]
     assert [caption.split(" to keep the ")[-1] for caption in captions[:2]] == [
         "error of restitution, rms [-]",
