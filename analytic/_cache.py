@@ -1,6 +1,6 @@
-"""Where numba keeps the compiled kernel: one folder per state of the compiled source.
+"""The folder of numba's cache for the compiled kernel: one per state of the compiled source.
 
-Numba's own cache looks at the file of a function alone, so a change in taylor.py would leave a stale kernel in use.
+Numba checks only the file of the function itself, so that after a change in taylor.py a stale kernel would be used.
 """
 
 import hashlib
@@ -18,7 +18,7 @@ def _folder() -> str:
     digest = hashlib.sha256()
     for file in sorted(source.rglob("*.py")):
         text = file.read_bytes()
-        if b"compiled" in text or b"numba" in text:  # more than what is compiled, never less
+        if b"compiled" in text or b"numba" in text:  # at least all files with compiled functions
             digest.update(str(file.relative_to(source)).encode() + text)
     name = f"numba-{digest.hexdigest()[:16]}"
     for parent in (source / "__pycache__", Path.home() / ".cache" / "rocking", Path(tempfile.gettempdir())):

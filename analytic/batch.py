@@ -1,4 +1,4 @@
-"""Many runs at once, on all cores, with only the outcomes kept: `simulate_many` and `overturning_map`."""
+"""Many runs on all cores, of which only the outcomes are kept: `simulate_many` and `overturning_map`."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from .layout import Ground, Options
     from .motion import Motion
 
-# Chunks per worker: enough that a slow chunk does not leave the other cores idle.
+# Chunks per worker, so that a slow chunk does not leave the other cores idle.
 CHUNKS_PER_WORKER = 8
 
 
@@ -34,9 +34,9 @@ CHUNKS_PER_WORKER = 8
 class Outcomes:
     """Outcomes of many runs, arrays of one common shape.
 
-    overturns, lifted : bool. failed : bool, the kernel could not go on, or not within its budget. peak_tilt [rad];
+    overturns, lifted : bool. failed : bool, the kernel failed or exceeded its budget. peak_tilt [rad];
     peak_base_displacement [m], up to the last passage of |tilt| = slenderness where it overturns.
-    impacts : int, until the outcome was certain. decided : bool, False where a duration cut it before it was certain.
+    impacts : int, until the outcome was certain. decided : bool, False where the duration ended before it was certain.
     friction_demand [-], min_normal_ratio [-]: as in `Response`, if they were asked for, else NaN.
     """
 
@@ -120,8 +120,8 @@ def simulate_many(
     """Outcomes of a sequence of scenes, in its order, shape (n,).
 
     Scenes are grouped by their ground motion (the same object or equal content), so ensembles of many scenes under
-    few records are cheapest. scales : (n,) factors on the scenes' motions, 1 without it. contact : also find what the
-    contact has to bear, which costs some more.
+    few records are fastest. scales : (n,) factors on the scenes' motions, 1 without it. contact : also determine
+    friction demand and normal force, which takes some more time.
 
     Examples
     --------

@@ -35,7 +35,7 @@ def _path(z: float, x: np.ndarray, law: int, c: Constants, forces: np.ndarray) -
         forces[i] = z
 
 
-# Engines call these at every step: numbers by themselves are handed over in half the time of a record.
+# Engines call these at every step: passing numbers takes half the time of passing a record.
 @entry
 def _hysteretic(z: float, dx: float, law: int, *constants: float) -> float:
     return hysteretic_force(z, dx, float(law), Constants(*constants))
@@ -56,7 +56,7 @@ class BearingLaw:
     Attributes
     ----------
     law : int
-        Place of the law in `LAWS`.
+        Index of the law in `LAWS`.
     count : int
         Number of bearings n_d.
     damping : float
@@ -64,8 +64,8 @@ class BearingLaw:
     kb : float
         Elastic stiffness [N/m]; for a linear law it is the stiffness.
     constants : Constants
-        dk = ka - kb [N/m], f0 the limit of the hysteretic part [N], both 0 for a linear law; and the law's own:
-        of the algebraic one alpha, its exponent, x0 [m] of eq. (13), d0 = (1 + 2 x0)^(1 - alpha).
+        dk = ka - kb [N/m] and f0, the limit of the hysteretic part [N], both 0 for a linear law; and the law's own
+        constants: for the algebraic law its exponent alpha, x0 [m] of eq. (13) and d0 = (1 + 2 x0)^(1 - alpha).
     """
 
     law: int
@@ -75,9 +75,9 @@ class BearingLaw:
     constants: Constants
 
     @classmethod
-    @functools.lru_cache(maxsize=64)  # asked for some forty times in a run of an engine
+    @functools.lru_cache(maxsize=64)  # needed some forty times in a run of an engine
     def of(cls, bearings: Bearings | None) -> Self:
-        """The law of a `Bearings` part; of None, no force at all."""
+        """The law of a `Bearings` part; None gives no force."""
         if bearings is None:
             return cls(NUMBERS["linear"], 0, 0.0, 0.0, Constants(dk=0.0, f0=0.0))
         number = NUMBERS[bearings.law]
@@ -104,7 +104,7 @@ class BearingLaw:
         return _hysteretic(z, dx, self.law, *self.constants)
 
     def moved(self, z: float, dx: float) -> tuple[float, float, float]:
-        """(z after dx, the two numbers that `Law.expression` continues from there)."""
+        """(z after dx, the two numbers from which `Law.expression` continues)."""
         return _moved(z, dx, self.law, *self.constants)
 
     def path(self, x: np.ndarray) -> np.ndarray:

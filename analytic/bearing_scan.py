@@ -1,8 +1,8 @@
-"""Which bearings does a scene need? Period and damping are scanned under all its motions.
+"""Scan of period and damping of the bearings of a scene under all its motions.
 
-Bearings hold where the block does not lift (or its tilt stays below a limit) and the base stays within the stroke.
-Their demand is 1 at the limit: the larger of friction demand/tan(gamma), the acceleration at the block's foot over
-that of uplift (or of peak tilt over its limit), and of peak base displacement over the stroke.
+Bearings are suitable if the block does not lift (or its tilt stays below a limit) and the base stays within the stroke.
+Their demand is 1 at the limit. It is the larger of two ratios: friction demand/tan(gamma), that is, base acceleration
+over uplift acceleration (or peak tilt over its limit), and peak base displacement over the stroke.
 """
 
 from __future__ import annotations
@@ -24,22 +24,22 @@ from .scene import Bearings, Scene
 if TYPE_CHECKING:
     from .motion import Motion
 
-PERIODS = (0.3, 5.0)  # s, secant at the stroke: those of a statue's bearings
-DAMPINGS = (0.02, 0.5)  # share of critical, equivalent, at the stroke: rubber alone to more than lead gives
-PERIOD_STEP, DAMPING_STEP = 0.01, 0.005  # relative, absolute: what bearings are never known better than
-CHUNK = 200  # runs between two words on how far it is
-LINEAR_DAMPING = 0.15  # of the bearings that `first_stroke` takes, as those of `rocking new`
-ROOM = 1.5  # times their displacement: bearings that yield need .9 to 1.2 of it (20 scenes), and more does no harm
-COARSE = 4  # of these steps, of the first scan; cells that the limit may cross are run at every step
+PERIODS = (0.3, 5.0)  # s, secant at the stroke: the range for statues
+DAMPINGS = (0.02, 0.5)  # equivalent damping at the stroke, over critical: rubber only, to more than lead provides
+PERIOD_STEP, DAMPING_STEP = 0.01, 0.005  # relative, absolute: properties of bearings are not known better
+CHUNK = 200  # runs between two reports of progress
+LINEAR_DAMPING = 0.15  # of the bearings in `first_stroke`, as in `rocking new`
+ROOM = 1.5  # factor on their displacement: yielding bearings need .9 to 1.2 of it (20 scenes)
+COARSE = 4  # step of the first scan, in these steps; cells that the limit may cross are run at every step
 
 
 @dataclass(frozen=True, eq=False)
 class BearingScan:
-    """What bearings of each damping (rows) and period (columns) do under the worst of the motions.
+    """Results for bearings of each damping (rows) and period (columns) under the worst motion.
 
-    periods [s], dampings [-] : shapes (p,), (d,). demand : (d, p), 1 at the limit, see above; interpolated where the
-    limit is far. stroke [m] : (d, p), peak base displacement; NaN where nothing was run. designs : of each damping, for
-    a period of 1 s.
+    periods [s], dampings [-] : shapes (p,), (d,). demand : (d, p), 1 at the limit, see the module; interpolated far
+    from the limit. stroke [m] : (d, p), peak base displacement; NaN where nothing was run. designs : the bearings of
+    each damping, for a period of 1 s.
     """
 
     periods: np.ndarray
@@ -49,30 +49,30 @@ class BearingScan:
     designs: list[Bearings]
 
     def holds(self, period: float, damping: float) -> bool:
-        """Whether bearings of this period [s] and damping [-] hold; False outside the range scanned."""
+        """Whether bearings of this period [s] and damping [-] are suitable; False outside the range scanned."""
         axes = self.dampings, np.log(self.periods)
         found = RegularGridInterpolator(axes, self.demand, bounds_error=False, fill_value=math.inf)
         return bool(found((damping, math.log(period))) <= 1)
 
     def bearings(self, period: float, damping: float) -> Bearings:
-        """Those of a period [s] and of one of the dampings scanned [-]."""
+        """The bearings of a period [s] and one of the dampings scanned [-]."""
         return softened(self.designs[int(np.abs(self.dampings - damping).argmin())], period)
 
     @property
     def least_stroke(self) -> tuple[float, float] | None:
-        """(period, damping) of those run that hold with the least stroke; None where none holds."""
+        """(period, damping) of the suitable bearings with the least stroke; None without any."""
         return self._least(np.where(self.demand <= 1, self.stroke, np.nan))
 
     @property
     def softest(self) -> tuple[float, float] | None:
-        """(period, damping) of the longest period that holds, there of the least stroke; None where none holds."""
+        """(period, damping) of the suitable bearings with the longest period, then least stroke; None without any."""
         held = np.where(self.demand <= 1, self.stroke, np.nan)
         longest = self.periods[~np.isnan(held).all(axis=0)].max(initial=0.0)
         return self._least(np.where(self.periods == longest, held, np.nan))
 
     @property
     def nearest(self) -> tuple[float, float]:
-        """(period, damping) of those run with the least demand, whether they hold or not."""
+        """(period, damping) of the bearings with the least demand, suitable or not."""
         point = self._least(np.where(np.isnan(self.stroke), np.nan, self.demand))
         assert point is not None  # the first scan ran some
         return point
@@ -85,7 +85,7 @@ class BearingScan:
 
 
 def first_stroke(scene: Scene, motions: Sequence[Motion]) -> float | None:
-    """A stroke [m] to begin a search with, to two digits; None where bearings are not likely to be found at any.
+    """First stroke [m] of a search, to two digits; None if suitable bearings are unlikely at any stroke.
 
     It is `ROOM` times the least displacement of linear bearings on which the block does not lift under any motion.
     """
@@ -96,7 +96,7 @@ def first_stroke(scene: Scene, motions: Sequence[Motion]) -> float | None:
 
 
 def softened(design: Bearings, period: float) -> Bearings:
-    """Bearings designed for 1 s at another period [s]: at one displacement all forces go with the stiffness."""
+    """Bearings designed for 1 s, scaled to another period [s]: at a given displacement forces scale with stiffness."""
     return design.model_copy(update={"ka": design.ka / period**2, "kb": design.given("kb") / period**2})
 
 
@@ -126,9 +126,9 @@ def scan_bearings(
     periods : (float, float)
         Range scanned [s].
     progress : callable or None
-        Is told (runs done, all runs) in each of two scans.
+        Called with (runs done, all runs) in each of two scans.
     design : count, stiffness_ratio, definition
-        Of the bearings, see `design_bearings`.
+        See `design_bearings`.
 
     Raises
     ------
@@ -157,7 +157,7 @@ def scan_bearings(
 
 
 def _worst(scenes, motions, tilt, workers, progress):
-    """(demand, largest displacement of the base [m]) of each scene, of the motion that is worst for it."""
+    """(demand, peak base displacement [m]) of each scene under its worst motion."""
     demand, moved, done = np.zeros(len(scenes)), np.zeros(len(scenes)), 0
     for motion in motions:
         for part in np.array_split(np.arange(len(scenes)), 1 + len(scenes) // CHUNK):
@@ -171,7 +171,7 @@ def _worst(scenes, motions, tilt, workers, progress):
 
 
 def _lift(found: Outcomes, slenderness: float, tilt: float) -> np.ndarray:
-    """Acceleration over that of uplift, above 1 where the block lifts; or peak tilt over its limit."""
+    """Base acceleration over uplift acceleration, above 1 where the block lifts; or peak tilt over its limit."""
     if tilt == 0:
         lifting = np.where(found.lifted, np.nextafter(1.0, 2.0), 0.0)
         return np.where(found.failed, math.inf, np.maximum(found.friction_demand / math.tan(slenderness), lifting))
@@ -179,10 +179,10 @@ def _lift(found: Outcomes, slenderness: float, tilt: float) -> np.ndarray:
 
 
 def _crossed(coarse: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
-    """The nodes of cells in which the demand may be 1: it is within the corners' values, widened by their spread."""
+    """The nodes of cells in which the demand may be 1, within the range of the corners widened by its width."""
     corners = np.stack([coarse[:-1, :-1], coarse[1:, :-1], coarse[:-1, 1:], coarse[1:, 1:]])
     low, high = corners.min(axis=0), corners.max(axis=0)
-    with np.errstate(invalid="ignore"):  # infinite at all corners: the limit is not there
+    with np.errstate(invalid="ignore"):  # infinite at all corners: no limit in the cell
         spread = high - low
         crossed = (low - spread <= 1) & (high + spread >= 1)
     wanted = np.zeros(shape, dtype=bool)
@@ -192,7 +192,7 @@ def _crossed(coarse: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
 
 
 def _between(demand: np.ndarray) -> np.ndarray:
-    """The demand at every node, from those of the first scan; an infinite one counts as the largest that is not."""
+    """The demand interpolated to every node from the first scan; an infinite one counts as the largest finite one."""
     coarse = demand[::COARSE, ::COARSE]
     finite = np.where(np.isinf(coarse), np.max(coarse, where=np.isfinite(coarse), initial=2.0), coarse)
     axes = tuple(np.arange(0, length, COARSE) for length in demand.shape)
@@ -200,7 +200,7 @@ def _between(demand: np.ndarray) -> np.ndarray:
 
 
 def _designs(mass: float, stroke: float, design: Mapping[str, Any]) -> tuple[np.ndarray, list[Bearings]]:
-    """(dampings of which there are bearings, evenly between the least and the most, their designs for 1 s)."""
+    """(evenly spaced dampings for which bearings exist, their designs for 1 s)."""
 
     def made(damping):
         return design_bearings(mass, 1.0, float(damping), stroke, **design)
@@ -221,7 +221,7 @@ def _designs(mass: float, stroke: float, design: Mapping[str, Any]) -> tuple[np.
 
 def _check(scene, motions, stroke, tilt, periods):
     if scene.base is None:
-        raise SceneError("base", None, "missing; bearings carry a base", "add a table [base] with its mass")
+        raise SceneError("base", None, "missing; bearings need a base", "add a table [base] with its mass")
     if not motions:
         raise SettingError("no motion: give the scene one, or a folder of records")
     if not (stroke > 0 and math.isfinite(stroke)):

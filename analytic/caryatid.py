@@ -1,4 +1,4 @@
-"""The Caryatid, its base and its bearings (text and Table 1 of the paper): most studies build their scenes of them."""
+"""The Caryatid, its base and its bearings (text and Table 1 of the paper), used in most studies."""
 
 from .scene import Base, Bearings, Block
 

@@ -1,6 +1,6 @@
-"""What is known in closed form about a rocking block on rigid ground: the oracles of the numerical models.
+"""Closed-form solutions of a rocking block on rigid ground, for verification of the numerical models.
 
-Exact for its equation: free rocking as a pendulum, phi'' = -omega_r^2 sin(s gamma - phi).
+Exact solutions of free rocking, phi'' = -omega_r^2 sin(s gamma - phi).
 Source: the pendulum's elliptic integral in the form of B. C. Carlson (1995), Numer. Algorithms 10, 13-26.
 """
 
@@ -93,9 +93,9 @@ def impacts_to_rest(omega_r: float, slenderness: float, restitution: float, tilt
 
 
 def remaining_time(rate_after: float, restitution: float, deceleration: float) -> float:
-    """Time [s] in which the further impacts end, after one with small rate_after = |phi'+| [rad/s].
+    """Time [s] from an impact with small rate_after = |phi'+| [rad/s] to the accumulation of all further impacts.
 
-    Each flight lasts 2 |phi'+|/deceleration and leaves e times the rate: a geometric sum. `deceleration` is
+    Each swing lasts 2 |phi'+|/deceleration and is followed by e times the rate: a geometric series. `deceleration` is
     |phi''| at phi = 0 [rad/s2]; corrections are of the order of rate_after^2.
     """
     return 2 * abs(rate_after) / (deceleration * (1 - restitution))

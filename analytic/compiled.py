@@ -1,10 +1,10 @@
-"""How the model is compiled: by numba, into machine code that runs without the interpreter and its lock.
+"""Compilation of the model by numba, into machine code that runs without the interpreter and its lock.
 
-A function that compiled code alone calls is `inner`: without wrappers for Python and C, which take longer to compile
-than most functions themselves, and without counts of references to arrays, an atomic operation wherever one is passed
-on. So it may not make an array. Nor is it optimised and made machine code on its own, as numba does with every function
-at every level of calls: its intermediate code is linked into the `entry` above it, which is optimised once, as a whole.
-An entry is a function that Python calls: kept on disk, see `_cache`.
+A function that is called only by compiled code is `inner`: without wrappers for Python and C, which take longer to
+compile than most functions themselves, and without reference counts of arrays, an atomic operation at each call. It
+must therefore not allocate an array. It is not optimised and compiled to machine code on its own, as numba does with
+every function at every level of calls: its intermediate code is linked into the calling `entry`, which is optimised as
+a whole. An entry is a function that Python calls; it is cached on disk, see `_cache`.
 """
 
 import gc
@@ -20,7 +20,7 @@ from numba.core.typed_passes import NativeLowering
 
 
 class _Linked(JITCodeLibrary):
-    """Code of one function and what it calls, to be linked into its callers; never machine code."""
+    """Intermediate code of one function and those it calls, to be linked into its callers; not machine code."""
 
     def finalize(self):
         for library in dict.fromkeys(self._linking_libraries):
@@ -31,7 +31,7 @@ class _Linked(JITCodeLibrary):
 
 @register_pass(mutates_CFG=True, analysis_only=False)
 class _Lowering(NativeLowering):
-    """The last pass of numba's pipeline, without its call for machine code."""
+    """The last pass of numba's pipeline, without generation of machine code."""
 
     _name = "inner_lowering"
 
@@ -57,30 +57,30 @@ class _Inner(CompilerBase):
         return [manager]
 
 
-# Without counts of references; no public option of numba, so a test sees to it that it is obeyed.
+# Without reference counts; not a public option of numba, so that a test checks its effect.
 _UNCOUNTED: dict[str, Any] = {"_nrt": False}
 _BARE: dict[str, Any] = {**_UNCOUNTED, "no_cpython_wrapper": True, "no_cfunc_wrapper": True, "pipeline_class": _Inner}
 
 
 def inner(function: Callable[..., Any]) -> Any:
-    """Compiled for compiled code alone."""
+    """Compiled for calls from compiled code only."""
     return njit(**_BARE)(function)
 
 
 def inlined(function: Callable[..., Any]) -> Any:
-    """As `inner`, and made part of each caller: by LLVM, in a fraction of the time that numba's inlining takes."""
+    """As `inner`, and inlined into each caller by LLVM, which takes a fraction of the time of numba's inlining."""
     return njit(**_BARE, forceinline=True)(function)
 
 
 def entry(function: Callable[..., Any]) -> Any:
-    """Compiled for Python and for compiled code. It holds no lock, so that threads run and Ctrl-C is heard."""
+    """Compiled for calls from Python and compiled code; it releases the lock, so that threads run and Ctrl-C works."""
     return njit(**_UNCOUNTED, nogil=True, cache=True)(function)
 
 
 def chosen(functions: Sequence[Callable[..., Any]]) -> Any:
     """Compiled function of (number, *arguments): the function of that number.
 
-    Functions as arguments would compile whoever takes them once for each.
+    With functions as arguments, each caller would be compiled once for each of them.
     """
     *before, last = functions
 
@@ -105,7 +105,7 @@ def _either(place: int, own: Callable[..., Any], others: Callable[..., Any]) -> 
 
 @contextmanager
 def compiling() -> Iterator[None]:
-    """Without the garbage collector: the compiler's millions of objects live until its end."""
+    """Without the garbage collector, as the compiler's millions of objects live until its end."""
     enabled = gc.isenabled()
     gc.disable()
     try:

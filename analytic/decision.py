@@ -1,22 +1,22 @@
-"""When is the outcome of a run decided, and when can its peaks no longer grow?
+"""Rules by which the outcome of a run is decided, and by which its peaks are final.
 
-After the ground motion nothing brings energy in. What can still reach the block is
+After the ground motion no energy is added. The energy that can still reach the block is
 
     E = kinetic + m g R (cos(s gamma - phi) - cos(gamma)) + n_d (kb x^2/2 + S(z)),
 
-less P^2/(2 M) on a base without bearings, whose momentum P stays. S(z) is what a bearing's hysteresis can give back
-(`recoverable_energy`). E never rises: impacts and viscous forces lose energy, and S is a storage function of the
-bearing, z dx >= dS, as unloading is never softer than loading. To overturn, the block must pass |phi| = gamma, where
-gravity alone holds B = m g R (1 - cos gamma). So the outcome is decided where
+less P^2/(2 M) on a base without bearings, whose momentum P is conserved. S(z) is the recoverable energy of the
+hysteresis of a bearing (`recoverable_energy`). E never rises: impacts and viscous forces dissipate energy, and S is a
+storage function of the bearing, z dx >= dS, as unloading is never softer than loading. To overturn, the block must pass
+|phi| = gamma, where its potential energy is B = m g R (1 - cos gamma). The outcome is therefore decided if
 
 (a) the block has lifted before and E < B: it rocks and will not overturn; or
-(b) it is in full contact and the largest force E allows gives less than the uplift acceleration g tan(gamma): it will
-    never lift again. An undamped base keeps E > B for ever and is decided by this; or
-(c) on rigid ground, by the energy integral of free rocking (`events.settle`): beyond the barrier and moving outward
-    it overturns.
+(b) the block is in full contact and the largest force that E allows gives less than the uplift acceleration
+    g tan(gamma): it will not lift again. This rule decides for an undamped base, on which E > B for ever; or
+(c) on rigid ground, by the energy integral of free rocking (`events.settle`): a block beyond the barrier that moves
+    outward overturns.
 
-Decided is not finished: a run without a duration also waits until neither peak can grow by more than
-`PEAK_TOLERANCE`, and for some periods of the block and of the base, as one wants to see the swings.
+A decided run is not yet finished: a run without a duration continues until neither peak can grow by more than
+`PEAK_TOLERANCE`, and for some periods of the block and of the base, so that the history shows the swings.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ if TYPE_CHECKING:
     from .layout import Base, Body, Parameters
     from .scene import Scene
 
-# Share by which a reported peak could still grow when a run without a duration ends.
+# Relative growth of a reported peak that is still possible when a run without a duration ends.
 PEAK_TOLERANCE = 1e-4
-# Periods after the motion (the longer of block and base): at least shown, and at most waited for a decision.
+# Periods after the motion (the longer of block and base): shown at least, and waited for a decision at most.
 TAIL_PERIODS, CAP_PERIODS = 3.0, 100.0
-# A base softer than this many rocking periods does not stretch the tail any further.
+# Largest isolation period, in rocking periods, that lengthens the time after the motion.
 SLOWEST_BASE = 10.0
 
 RIGID_BEARINGS = (
@@ -51,7 +51,7 @@ _recoverable = law_function("recoverable")
 
 @inner
 def recoverable_energy(law: float, c: Constants, z: float) -> float:
-    """S(z) [J] of one bearing: the integral of |z| dx on the way back to z = 0; at least z^2/(2 (ka - kb))."""
+    """S(z) [J] of one bearing: the integral of |z| dx while unloading to z = 0; at least z^2/(2 (ka - kb))."""
     z = abs(z)
     if z == 0:
         return 0.0
@@ -84,8 +84,8 @@ def remaining_energy(par: Parameters, body: Body, base: Base) -> float:
 def largest_force(par: Parameters, energy: float) -> float:
     """Largest force of all bearings [N] that `energy` allows in full contact.
 
-    By Cauchy and Schwarz over kinetic, elastic and recoverable energy, the last at least z^2/(2 (ka - kb)); or with
-    the hysteretic part at its limit f0.
+    By the Cauchy-Schwarz inequality for kinetic, elastic and recoverable energy, the last at least z^2/(2 (ka - kb));
+    or with the hysteretic part at its limit f0.
     """
     n, c = par.count, par.constants
     viscous = n * n * par.damping * par.damping / par.M
@@ -97,7 +97,7 @@ def largest_force(par: Parameters, energy: float) -> float:
 
 @entry
 def will_not_overturn(par: Parameters, body: Body, base: Base, lifted: bool) -> bool:
-    """After the motion: is the outcome "stands" or "rocks" certain? Rules (a) and (b). lifted : before, or now."""
+    """Whether, after the motion, "stands" or "rocks" is certain, by rules (a) and (b). lifted : before, or now."""
     rocking = body.s != 0
     if not (rocking or par.on_base):
         return True
@@ -109,10 +109,10 @@ def will_not_overturn(par: Parameters, body: Body, base: Base, lifted: bool) -> 
 
 @entry
 def peaks_are_final(par: Parameters, body: Body, base: Base, peaks: tuple[float, float, float]) -> bool:
-    """After a decision: can no reported peak grow by more than `PEAK_TOLERANCE`?
+    """Whether, after a decision, no reported peak can grow by more than `PEAK_TOLERANCE`.
 
-    peaks : of tilt, base displacement and absolute base acceleration; a negative one is not asked for. A base without
-    bearings slides on for ever: its displacement has no peak.
+    peaks : of tilt, base displacement and absolute base acceleration; a negative one is ignored. A base without
+    bearings slides for ever, so that its displacement has no peak.
     """
     (peak_tilt, peak_x, peak_acceleration), (x, v, z), rocking = peaks, base, body.s != 0
     energy, slack = remaining_energy(par, body, base), 1 + PEAK_TOLERANCE
@@ -126,9 +126,9 @@ def peaks_are_final(par: Parameters, body: Body, base: Base, peaks: tuple[float,
     stiffness, force = par.count * par.kb, par.count * (par.kb * x + z)
     if peak_acceleration >= 0 and largest_force(par, energy) > peak_acceleration * par.M * slack:
         return False
-    if stiffness == 0:  # the rest of the energy spent against the limit force
+    if stiffness == 0:  # the remaining energy is dissipated by the limit force
         return energy <= PEAK_TOLERANCE * par.count * par.constants.f0 * peak_x
-    # from the origin; or about the resting place, as no branch of a law is softer than kb
+    # from the origin; or about the position of rest, as no branch of a law is softer than kb
     near = abs(x) + abs(force) / stiffness + math.sqrt(par.M / stiffness * v * v + (force / stiffness) ** 2)
     return min(math.sqrt(2 * energy / stiffness), near) <= peak_x * slack
 
@@ -149,18 +149,18 @@ def motion_end(scene: Scene) -> float:
 
 
 def shortest_duration(scene: Scene) -> float:
-    """What a run without a duration covers at least [s]: the motion and `TAIL_PERIODS` after it."""
+    """Shortest run without a duration [s]: the motion and `TAIL_PERIODS` after it."""
     return motion_end(scene) + TAIL_PERIODS * period(scene)
 
 
 def longest_duration(scene: Scene) -> float:
-    """Where a run without a duration ends, decided or not [s]: `CAP_PERIODS` after the motion."""
+    """Longest run without a duration, decided or not [s]: `CAP_PERIODS` after the motion."""
     return motion_end(scene) + CAP_PERIODS * period(scene)
 
 
 def model_warnings(scene: Scene, friction_demand: float, min_normal_ratio: float) -> tuple[Caution, ...]:
-    """What the model assumes and this run does not keep: contact that only presses, no sliding; and bearings that carry
-    a vertical motion, which are not rigid."""
+    """Warnings where a run violates the model's assumptions: compressive contact, no sliding, and bearings that are
+    rigid under a vertical motion."""
     found = []
     if scene.bearings is not None and scene.motion is not None and scene.motion.vertical is not None:
         found.append(Caution("model", RIGID_BEARINGS))

@@ -1,4 +1,4 @@
-"""Design of the bearings: from target period, damping and displacement, Table 1(a), to ka, kb and alpha, Table 1(b)."""
+"""Design of bearings: ka, kb and alpha, Table 1(b), from target period, damping and displacement, Table 1(a)."""
 
 import math
 from dataclasses import dataclass
@@ -9,18 +9,18 @@ from .bearing import BearingLaw
 from .errors import SettingError
 from .scene import LEAST, MOST, Bearings
 
-# The usual equivalent damping is the loss W_D over 4 pi E_s; the paper's 30 % divides by 2 pi E_s and reads twice that.
+# The usual equivalent damping is W_D/(4 pi E_s). The paper's 30 % is W_D/(2 pi E_s), twice the usual value.
 DEFINITIONS = {"equivalent": 4 * math.pi, "paper": 2 * math.pi}
 # Exponents searched; Table 1(b) has 44.69.
 STEEPEST = 1e4
-# The design equations take the loop on its limit curves; the law's own loop may differ from them by this much.
+# The design equations assume a loop on the limit curves; tolerated difference of the law's own loop.
 LOOP_AGREEMENT = 1e-3
 SETTLING_CYCLES = 50
 
 
 @dataclass(frozen=True)
 class BearingProperties:
-    """What a set of bearings gives at the displacement x_max.
+    """Properties of a set of bearings at the displacement x_max.
 
     period : float
         Secant period at x_max [s], 2 pi sqrt(M x_max/F(x_max)); with kb alone it would be `period_kb`.
@@ -72,7 +72,7 @@ def properties(bearings: Bearings, mass: float, x_max: float) -> BearingProperti
 
 
 def _mismatch(alpha: float, loss: float, secant: float, x_max: float, ratio: float) -> tuple[float, float]:
-    """(ka - kb) that f0 and alpha give less that kb and the ratio give; f0 from the loss on the limit curves."""
+    """ka - kb from f0 and alpha minus ka - kb from kb and the ratio; f0 from the loss on the limit curves."""
     f0 = loss / (4 * (x_max - 1 / (alpha - 2)))
     return 2 * f0 * (alpha - 1) - (ratio - 1) * (secant - f0 / x_max), f0
 
@@ -109,7 +109,7 @@ def design_bearings(
     period : float
         Secant period at x_max [s].
     damping : float
-        Share of critical damping at x_max, in the sense of `definition`.
+        Equivalent damping at x_max, over critical damping; see `definition`.
     x_max : float
         Design displacement [m].
     count : int
@@ -127,9 +127,9 @@ def design_bearings(
     Raises
     ------
     SettingError
-        A target is out of range or cannot be met; the message says how far it can go.
+        A target is out of range or cannot be met; the message states the limit.
     SceneError
-        The targets are met by no bearings that a scene can hold.
+        The bearings that meet the targets are outside the range of a scene.
     """
     targets = {"mass": mass, "period": period, "damping": damping, "x_max": x_max, "delta_k": delta_k}
     _check(targets, count, stiffness_ratio, definition)
@@ -137,7 +137,7 @@ def design_bearings(
     try:
         secant = mass * (2 * math.pi / period) ** 2 / count
         alpha, f0 = _exponent(damping, definition, divisor, secant, x_max, stiffness_ratio)
-    except (ArithmeticError, ValueError) as error:  # scipy's, where numbers leave what a double holds
+    except (ArithmeticError, ValueError) as error:  # scipy's, where numbers overflow
         if isinstance(error, SettingError):
             raise
         asked = ", ".join(f"{name} = {value:.4g}" for name, value in targets.items() if name != "delta_k")
@@ -161,7 +161,7 @@ def _check(targets, count, stiffness_ratio, definition):
     for name, number in targets.items():
         if not (math.isfinite(number) and number > 0):
             raise SettingError(f"{name} = {number!r}: give a finite number above 0")
-        if name != "delta_k" and not LEAST <= number <= MOST:  # products stay within the doubles
+        if name != "delta_k" and not LEAST <= number <= MOST:  # so that products do not overflow
             raise SettingError(f"{name} = {number!r}: give a number from {LEAST:g} to {MOST:g}")
     if not 1 < stiffness_ratio <= MOST:
         raise SettingError(f"stiffness_ratio = {stiffness_ratio!r}: ka/kb must be above 1, and at most {MOST:g}")
@@ -172,11 +172,11 @@ def _check(targets, count, stiffness_ratio, definition):
 
 
 def _exponent(damping, definition, divisor, secant, x_max, ratio):
-    """(alpha, f0 [N]) that give the damping at x_max with the ratio of stiffnesses, or a refusal that says how far."""
+    """(alpha, f0 [N]) that give the damping at x_max with the stiffness ratio; `SettingError` states the limit."""
     turn, least = _feasible(damping, divisor, secant, x_max, ratio)
     if least >= 0:
-        # damping -> 0 can always be met: f0 -> 0 leaves the ratio term alone
-        widest = 8 / divisor  # damping of a rectangular loop, W_D = 4 F x: met by none
+        # damping -> 0 is always possible: with f0 -> 0 only the ratio term remains
+        widest = 8 / divisor  # damping of a rectangular loop, W_D = 4 F x, an upper bound
         most = brentq(lambda d: _feasible(d, divisor, secant, x_max, ratio)[1], 1e-9, min(damping, widest))
         raise SettingError(
             f"damping = {damping:.4g} ({definition} definition) cannot be met at x_max = {x_max:.4g} m "

@@ -1,15 +1,15 @@
-"""Errors a user can mend: each names where, what and the remedy."""
+"""Errors that a user can correct; each message names place, value and remedy."""
 
 from __future__ import annotations
 
 from os import PathLike
 
-KEY_LENGTH, VALUE_LENGTH, TEXT_LENGTH, FILE_LENGTH = 100, 120, 500, 400  # characters of a message's parts
-MOST_LINES = 20  # mistakes in one message, which leave its first lines on a screen; further ones are counted
+KEY_LENGTH, VALUE_LENGTH, TEXT_LENGTH, FILE_LENGTH = 100, 120, 500, 400  # characters of the parts of a message
+MOST_LINES = 20  # mistakes listed in one message, so that it fits on a screen; further ones are counted
 
 
 def cut(text: object, length: int) -> str:
-    """The text on one line, printable, its middle left out where it is longer than `length` characters."""
+    """The text on one line, printable; the middle of a text longer than `length` characters is left out."""
     text = str(text)
     if len(text) > length:
         text = f"{text[: length * 2 // 3]} ... {text[-(length // 6) :]} ({len(text)} characters)"
@@ -75,22 +75,22 @@ class SceneError(ValueError):
         return f"{where}{cut(self.key, KEY_LENGTH)}{found}: {problem}; {remedy}"
 
     def with_others(self, *mistakes: SceneError) -> SceneError:
-        """The same error, telling further mistakes and their others too."""
+        """The same error with further mistakes, and those that they carry, added."""
         others = (*self.others, *(one for mistake in mistakes for one in (mistake, *mistake.others)))
         return SceneError(self.key, self.value, self.problem, self.remedy, self.file, others)
 
     def in_file(self, file: str | PathLike[str]) -> SceneError:
-        """The same error, naming the file it was found in."""
+        """The same error with the name of the file."""
         others = tuple(other.in_file(file) for other in self.others)
         return SceneError(self.key, self.value, self.problem, self.remedy, str(file), others)
 
 
 class EngineNotInstalled(ImportError):
-    """An engine was asked for that is not installed; the message says how to install it."""
+    """The engine asked for is not installed; the message says how to install it."""
 
 
 class EngineBroken(EngineNotInstalled):
-    """An engine is declared by another package and cannot be used; the message names who declares it.
+    """An engine of another package cannot be used; the message names the package that declares it.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
-"""Events of the block and the base inside one Taylor step, and the rules of rest (compiled).
+"""Event location for block and base inside one Taylor step, and the rules of rest (compiled).
 
-Each finder returns the first time in the step, or -1. A cheap bound on the polynomial comes first: most steps hold
-no event.
+Each finder returns the first time in the step, or -1. It first evaluates a cheap bound on the polynomial, as most steps
+have no event.
 """
 
 import math
@@ -10,14 +10,14 @@ from . import layout as L
 from .compiled import inner
 from .polynomial import first_root
 
-# An impact slower than rest_rate omega_r ends in rest if the next hop is short too [1/omega_r]: while the ground
-# acceleration is close to uplift a slow impact can still start a long hop.
+# An impact slower than rest_rate omega_r ends in rest if the next swing is short, too [1/omega_r]: while the ground
+# acceleration is close to uplift, a slow impact can still begin a long swing.
 LONGEST_LAST_HOP = 1e-3
-# Above this restitution the series of hops is so long that it is ended at the impact itself.
+# Above this restitution the series of impacts is so long that rest begins at the impact itself.
 NEARLY_ELASTIC = 0.999
 # Tilt rate after an impact [omega_r] that no longer counts as motion while the acceleration is on the threshold.
 NO_RATE = 1e-15
-# Relative distance to the threshold below which an onset counts as the touch just refused.
+# Relative distance to the threshold below which an onset counts as the graze that was just refused.
 TOUCH = 1e-9
 
 
@@ -54,7 +54,7 @@ def find_uplift(shape, vertical, refused, step, P, work):
                 for k in range(max(highest, 0) + 1):
                     event[k] += slope * G[k]
             if refused and abs(event[0]) <= TOUCH * threshold:
-                event[0] = 0.0  # the touch just refused; a later crossing still counts
+                event[0] = 0.0  # the graze just refused; a later crossing counts
                 if event[1] < 0:
                     continue
             root = first_root(event, order, h, work)
@@ -65,7 +65,7 @@ def find_uplift(shape, vertical, refused, step, P, work):
 
 @inner
 def find_fall(f, side, limit, order, h, event, work):
-    """limit + side f falls below 0; a root at the start of the step is the event just left."""
+    """First time at which limit + side f falls below 0; a root at the start of the step is the previous event."""
     lowest, power = limit + side * f[0], 1.0
     for k in range(1, order + 1):
         power *= h
@@ -90,7 +90,7 @@ def upper_bound(phi, s, order, h):
 
 @inner
 def direction_from_rest(par, body, gravity, highest, A, force):
-    """Sign of the motion a base at standstill starts into: that of its first derivative that is not zero.
+    """Sign of the motion that a base at rest begins: that of its first derivative that is not zero.
 
     gravity : g + a_v [m/s2]; A : series of a_g; force : of all bearings [N].
     """
@@ -110,7 +110,7 @@ def direction_from_rest(par, body, gravity, highest, A, force):
 
 @inner
 def hop_deceleration(par, s, gravity, ground, force):
-    """-s phi'' at phi = 0 on side s [rad/s2]; positive where gravity brings the block back. From eqs (3)-(6).
+    """-s phi'' at phi = 0 on side s [rad/s2], positive toward contact, from eqs (3)-(6).
 
     gravity, ground : g + a_v and a_g [m/s2].
     """
@@ -123,15 +123,16 @@ def hop_deceleration(par, s, gravity, ground, force):
 
 @inner
 def remaining_hops(par, rate, gravity, ground, force):
-    """Time that the impacts after one that leaves tilt rate `rate` still take [s]; -1 if they do not end in rest.
+    """Time [s] from an impact with tilt rate `rate` after it to the limit of all further ones; -1 without rest.
 
-    A hop lasts 2 w/q on its side and w falls by e at each impact: a geometric series, exact for small hops.
+    A swing lasts 2 w/q on its side, and w is multiplied by e at each impact: a geometric series, exact for small
+    swings.
     """
     s = 1.0 if rate > 0 else -1.0
     here, there = hop_deceleration(par, s, gravity, ground, force), hop_deceleration(par, -s, gravity, ground, force)
     w = abs(rate)
     if here <= 0 or there <= 0:
-        # exactly on the threshold rounding decides the sign: hops shrink for ever
+        # exactly on the threshold rounding determines the sign, and swings decrease for ever
         touching = min(here, there) >= -TOUCH * par.p2
         return 0.0 if touching and w < NO_RATE * math.sqrt(par.p2) else -1.0
     if 2 * w > LONGEST_LAST_HOP / math.sqrt(par.p2) * min(here, there):
@@ -154,7 +155,7 @@ def impact_loss(par, v, before, after, jump):
 
 @inner
 def land(par, rate, base, gravity, ground, rest_rate, t, arrays):
-    """Across an impact, eqs (7), (8): (rate, base velocity, whether the block now stays down). Keeps its row.
+    """State after an impact, eqs (7), (8): (rate, base velocity, whether the block rests). Stores the impact.
 
     base : before it; gravity, ground : g + a_v and a_g [m/s2]; rest_rate [rad/s].
     """
@@ -174,9 +175,9 @@ def land(par, rate, base, gravity, ground, rest_rate, t, arrays):
         remaining = remaining_hops(par, rate, gravity, ground, force)
     if not (landed or remaining >= 0):
         return rate, v, False
-    left = par.arm * rate  # the hops left out: their momentum stays with the base
+    left = par.arm * rate  # the momentum of the swings left out goes to the base
     totals[L.IMPACT_LOSS] += impact_loss(par, v, rate, 0.0, left)
-    if remaining >= 0:  # else it lands flat and lifts again at once
+    if remaining >= 0:  # otherwise it lands flat and lifts again at once
         number = int(totals[L.RESTS])
         if number < rests.shape[0]:
             rests[number] = t + remaining
@@ -188,8 +189,8 @@ def land(par, rate, base, gravity, ground, rest_rate, t, arrays):
 def settle(par, body):
     """(certain, overturns, peak tilt, impacts) of free rocking on rigid ground, from its energy integral.
 
-    phi'^2/2 + p^2 cos(s gamma - phi) is constant in flight and has its barrier p^2 at |phi| = gamma; an impact leaves
-    e^2 of phi'^2. Never uncertain but for a block beyond the barrier that is coming back.
+    phi'^2/2 + p^2 cos(s gamma - phi) is constant between impacts and has its barrier p^2 at |phi| = gamma; an impact
+    multiplies phi'^2 by e^2. Uncertain only for a block beyond the barrier that is coming back.
     """
     s, tilt, rate = body.s, body.tilt, body.rate
     here = math.cos(s * par.gamma - tilt)
@@ -198,7 +199,7 @@ def settle(par, body):
         certain = s * rate >= 0 or excess < 0
         return certain, certain, 0.5 * math.pi, 0
     impacts = 0
-    if s * rate < 0:  # first back through an impact
+    if s * rate < 0:  # first back to an impact
         flat = math.cos(par.gamma)
         excess = par.e * par.e * (0.5 * rate * rate / par.p2 + here - flat) + flat - 1.0
         impacts = 1

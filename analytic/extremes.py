@@ -1,4 +1,4 @@
-"""What the second implementation keeps of its steps: extremes and, where asked for, the history."""
+"""Extremes and, if asked for, the history of a run of the second implementation."""
 
 import math
 from collections.abc import Sequence
@@ -13,8 +13,8 @@ ROUNDING = 1e-12  # of a passage of the slenderness that was found as a root
 class Extremes:
     """Largest tilt [rad], base displacement [m], absolute acceleration [m/s2] and friction demand, least N/(m g).
 
-    All but the tilt leave out the last fall: `held` is what they were when |tilt| was last up to the slenderness, and
-    that time [s].
+    All except the tilt leave out the last fall. `held`: their values, and the time [s], when |tilt| last was at most
+    the slenderness.
     """
 
     def __init__(self, tilt: float, x: float, history: bool) -> None:
@@ -23,7 +23,7 @@ class Extremes:
         self.rows: list[Sequence[float]] | None = [] if history else None
 
     def step(self, row: Sequence[float], absolute: float, horizontal: float, normal: float, slenderness: float) -> None:
-        """One state: a row of the history, the base's acceleration [m/s2], forces at the contact over m g."""
+        """Include one state: a row of the history, the base's acceleration [m/s2], contact forces over m g."""
         t, tilt, _, x, *_ = row
         self.tilt, self.x = max(self.tilt, abs(tilt)), max(self.x, abs(x))
         self.acceleration = max(self.acceleration, abs(absolute))
@@ -35,7 +35,7 @@ class Extremes:
             self.rows.append(row)
 
     def exclude_overturning(self) -> float:
-        """The block has overturned; returns when its last fall began [s]."""
+        """Remove the last fall of a block that has overturned; returns the time [s] at which it began."""
         self.x, self.acceleration, self.friction, self.normal, began = self.held
         return began
 

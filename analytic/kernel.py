@@ -1,8 +1,8 @@
 """The compiled event-driven integrator: full contact, uplift, rocking, impact, rest, re-uplift, overturning.
 
-Taylor steps stop at every corner of the ground motion; inside a step all events are roots of the step's own
-polynomials, so their times are as exact as the step. The parts of a step stand in steps.py, the equations in taylor.py,
-the bearings' laws in laws, the events in events.py.
+A Taylor series integrator: steps end at every corner of the ground motion, and events inside a step are located as
+roots of the step's polynomials (dense output), so that their times are as accurate as the step. The parts of a step are
+in steps.py, the equations in taylor.py, the bearing laws in laws, the events in events.py.
 """
 
 import math
@@ -34,12 +34,12 @@ from .taylor import QUIET
 
 # Guard against an endless loop of events at one time; never seen.
 PATIENCE = 1000
-# Impacts of a nearly elastic block lose next to nothing: followed further down than this fraction of omega_r they are
-# millions per second, each hop some 1e-9 rad high.
+# Impacts of a nearly elastic block lose almost no energy: below this fraction of omega_r there are millions per second,
+# with swings of some 1e-9 rad.
 ELASTIC_REST_RATE = 1e-4
 # Steps shorter than this fraction of the time are below its rounding.
 ROUNDING = 4e-16
-# Acceleration this close to the threshold at uplift, over g tan(gamma): the onset is of third order, phi'' = 0.
+# Acceleration this close to the threshold, over g tan(gamma), counts as uplift: the onset is of third order, phi'' = 0.
 ONSET = 1e-9
 
 
@@ -55,7 +55,7 @@ def row_of(par: L.Parameters) -> tuple[float, ...]:
 
 
 def arrays(totals: np.ndarray, capacity: int = 0, outputs: int = 0) -> L.Arrays:
-    """What runs write to, with room for `capacity` events of a kind and `outputs` rows of history.
+    """Workspace of runs, with room for `capacity` events of a kind and `outputs` rows of history.
 
     totals : (n, TOTALS), a row of each run.
     """
@@ -100,7 +100,7 @@ def _run_rows(rows, pulses, ground, upright, options, into):
         _integrate(par, own, upright, options, L.Arrays(P, work, impacts, uplifts, rests, history, totals[i]))
 
 
-# Longer than other functions: two loops share some twenty variables of state.
+# One long function, as two loops share some twenty state variables.
 @inner
 def _integrate(par, ground, upright, options, arrays):
     """One run. upright : an argument of its own, see steps.py."""
@@ -111,8 +111,8 @@ def _integrate(par, ground, upright, options, arrays):
     status, mode, s, t = L.COMPLETE, L.CONTACT, 0.0, 0.0
     if tilt != 0 or rate != 0:
         mode, s = L.ROCKING, math.copysign(1.0, tilt if tilt != 0 else rate)
-    no, none = math.isnan(0.0), math.floor(0.0)  # a literal would compile each function it is passed to once more
-    fresh, refused = no, no  # onset just found: phi'' = 0 exactly; onset refused: only touched the threshold
+    no, none = math.isnan(0.0), math.floor(0.0)  # a literal argument would compile a function once more
+    fresh, refused = no, no  # onset just located: phi'' = 0 exactly; onset refused: a touch (graze) of the threshold
     shape = L.Shape(par.gamma, par.slope, par.on_base)
     branch = L.Branch(0.0, par.x, 1.0)
     peak_tilt, peak_x, will_overturn = abs(par.tilt), abs(par.x), False
@@ -131,7 +131,7 @@ def _integrate(par, ground, upright, options, arrays):
             if h <= ROUNDING * finish:
                 break
             body = L.Body(s, tilt, rate)
-            if kind == QUIET and s == 0 and not par.on_base:  # nothing moves
+            if kind == QUIET and s == 0 and not par.on_base:  # the block stands on rigid ground
                 if options.decide and after:
                     h = min(h, max(options.shortest - t, 0.0))
                     status = L.DECIDED
@@ -163,7 +163,7 @@ def _integrate(par, ground, upright, options, arrays):
             step = L.Step(t, h, order, highest, gravity, factors, corner)
             if s != 0:
                 used, h = rocking_of_step(par, upright, kind, body, fresh, step, options.tolerance, P)
-                if fresh and not s * P[L.PHI, 3] > 0:  # the threshold was only touched: the block stays down
+                if fresh and not s * P[L.PHI, 3] > 0:  # a graze of the threshold: no uplift
                     mode, s, fresh, refused = L.CONTACT, 0.0, False, True
                     totals[L.UPLIFTS] -= 1
                     continue
@@ -191,7 +191,7 @@ def _integrate(par, ground, upright, options, arrays):
                 tilt = s * par.gamma
                 if totals[L.UNSTABLE_TIME] < 0:
                     totals[L.UNSTABLE_TIME] = t + h
-            if abs(tilt) <= par.gamma:  # what comes later is the last fall, or it comes back
+            if abs(tilt) <= par.gamma:  # otherwise the last fall, unless the block comes back
                 held = totals[L.FRICTION], totals[L.NORMAL], totals[L.PEAK_ACCELERATION], peak_x, t + h
             if h > 0:
                 fresh, refused = False, False
@@ -237,7 +237,7 @@ def _lifted(par, totals):
 
 @inner
 def _is_final(par, options, body, base, peak_tilt, peak_x, totals):
-    """After the motion: (may the run end here, will it overturn, peak tilt and impacts that are still to come)."""
+    """After the motion: (whether the run may end, whether the block will overturn, further peak tilt and impacts)."""
     if not options.record and not par.on_base:
         return settle(par, body)
     peaks = peak_tilt, peak_x, totals[L.PEAK_ACCELERATION] if options.record else -1.0
@@ -247,7 +247,7 @@ def _is_final(par, options, body, base, peak_tilt, peak_x, totals):
 
 @inner
 def _conclude(par, end_of_motion, body, base, totals):
-    """Is the outcome at the end certain? Fills the rest of `totals`."""
+    """Whether the outcome at the end is certain; fills the rest of `totals`."""
     lifted, overturned = _lifted(par, totals), totals[L.MODE] == L.OVERTURNED
     certain = overturned or totals[L.STATUS] == L.DECIDED
     if totals[L.STATUS] == L.COMPLETE and not certain and totals[L.TIME] >= end_of_motion:

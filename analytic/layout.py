@@ -44,8 +44,8 @@ ROWS = 14
 # Kinds of event inside a step.
 NONE, UPLIFT, IMPACT, REVERSAL, CORNER, PASSAGE, OVERTURNING = range(7)
 
-# The scene, in numbers alone, so that a row of an array holds one; `on_base` is 0 or 1. See RockingModel and BearingLaw
-# for their meaning; slope is tan(gamma), arm the velocity that a
+# The scene as numbers only, so that it fits a row of an array; `on_base` is 0 or 1. See RockingModel and BearingLaw for
+# their meaning; slope is tan(gamma), arm the velocity that a
 # base gains per tilt rate lost, eq. (8), law the number of the bearings' law, constants its `laws.Constants`.
 Parameters = namedtuple(
     "Parameters", "m M J R gamma slope g p2 e arm on_base law count kb damping tilt rate x v z duration constants"
@@ -55,16 +55,16 @@ Parameters = namedtuple(
 # times and frequency: a pulse, or samples of its own.
 Ground = namedtuple("Ground", "kind dt samples upright shaking")
 Shaking = namedtuple("Shaking", "scale frequency phase start end upright_scale upright_phase")
-# What to do: `record` keeps events (up to `capacity` of a kind), ledger and diagnostics; `decide` stops when
-# the outcome is certain and the peaks are final (decision.py), but not before the time `shortest`; without it that ends
-# a base in full contact alone. `most_steps` ends a run that does not get on (SPENT).
+# Options: `record` keeps events (up to `capacity` of a kind), ledger and diagnostics; `decide` stops when
+# the outcome is certain and the peaks are final (decision.py), but not before the time `shortest`; without `decide`,
+# `shortest` applies only to a base in full contact. `most_steps` limits the steps of a run (SPENT).
 Options = namedtuple("Options", "tolerance order rest_rate record decide output_step capacity shortest most_steps")
-# What a run writes to: Taylor coefficients and scratch, events, history and totals.
+# Workspace of a run: Taylor coefficients and scratch, events, history and totals.
 Arrays = namedtuple("Arrays", "P work impacts uplifts rests history totals")
 
-# Of the parameters those that an event needs: they are handed over in every step.
+# Parameters for event location, passed in every step.
 Shape = namedtuple("Shape", "gamma slope on_base")
-# The block: side of the corner it turns about (1 or -1; 0 in full contact), tilt and its rate.
+# The block: side of the pivot (1 or -1; 0 in full contact), tilt and its rate.
 Body = namedtuple("Body", "s tilt rate")
 # Displacement and velocity of the base, hysteretic force of a bearing.
 Base = namedtuple("Base", "x v z")

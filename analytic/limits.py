@@ -1,4 +1,4 @@
-"""What is beyond the limits of a scene: of the scene as it is, and of a run beyond what its parts are built for."""
+"""Warnings on a scene: missing friction, a start beyond balance, and displacements beyond the bearings' x_max."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ if TYPE_CHECKING:
 
 
 def scene_warnings(scene: Scene) -> tuple[Caution, ...]:
-    """What is to be said of a scene before any outcome of it: a base that nothing holds, a start beyond the balance."""
+    """Warnings that precede any outcome of a scene: a base without bearings or friction, a start beyond balance."""
     found, tilt, gamma = [], scene.start.tilt, scene.block.slenderness
     if scene.base is not None and scene.bearings is None:
         words = (
             "No friction is modelled under the base, and it has no bearings: such a base exists in thought experiments "
-            "only. Leave it out where a pedestal is fixed to the ground."
+            "only. Leave it out if the pedestal is fixed to the ground."
         )
         found.append(Caution("model", words))
     if abs(tilt) >= gamma:
@@ -29,7 +29,7 @@ def scene_warnings(scene: Scene) -> tuple[Caution, ...]:
 
 
 def limit_warnings(scene: Scene, peak_base_displacement: float) -> tuple[Caution, ...]:
-    """A warning where the base moves further [m] than the bearings' x_max."""
+    """A warning if the peak base displacement [m] exceeds the bearings' x_max."""
     limit = None if scene.bearings is None else scene.bearings.x_max
     if limit is None or not peak_base_displacement > limit:
         return ()

@@ -24,7 +24,7 @@ PULSE_INTERVALS = 4000  # of a pulse; its interpolation error is then below 1e-6
 def displacement_spectrum(
     motion: Motion, periods: npt.ArrayLike, damping_ratios: npt.ArrayLike, *, scale: float = 1.0
 ) -> np.ndarray:
-    """Largest |x| [m] of linear oscillators that start at rest, the free vibration after the motion included.
+    """Largest |x| [m] of linear oscillators that start at rest, including the free vibration after the motion.
 
     Exact for acceleration that is linear between samples (N. C. Nigam and P. C. Jennings 1969, Bull. Seismol. Soc.
     Am. 59(2), 909-922); maxima between samples are located. A pulse is sampled at `PULSE_INTERVALS` intervals.
@@ -35,7 +35,7 @@ def displacement_spectrum(
     periods : array, shape (n,)
         Undamped natural periods [s], above 0.
     damping_ratios : array, shape (k,)
-        Shares of critical damping, in [0, 1).
+        Damping over critical damping, in [0, 1).
     scale : float
         Factor on the acceleration.
 

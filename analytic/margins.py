@@ -1,13 +1,14 @@
-"""By how much must a quantity change before a scene reaches another limit state, or its outcome changes?
+"""Margins: the change of a quantity at which a scene reaches another limit state, or its outcome changes.
 
-A limit state is reached where the block lifts, where its peak tilt exceeds a share of the slenderness, where the base
-goes beyond the x_max of its bearings, or where the block overturns.
+A limit state is reached if the block lifts, if its peak tilt exceeds a share of the slenderness, if the base exceeds
+the x_max of its bearings, or if the block overturns.
 
-An outcome need not change only once: resonances leave narrow bands of another outcome far from the first boundary, and
-safe gaps beyond it. So each quantity is scanned, one at a time, at even relative changes, and every boundary between
-two changes is bisected. A band narrower than the scan's `step` may be missed; one of twice the step never is. Where
-narrow bands of outcomes alternate, the boundary is interleaved (as a fractal is): the safe gap about the scene is then
-scanned again in steps `FINER` times smaller, and the margin says so, as still narrower bands may lie in it.
+The outcome may change more than once: resonances cause narrow bands of another outcome far from the first boundary, and
+safe gaps beyond it. Each quantity is therefore scanned, one at a time, at equidistant relative changes, and every
+boundary between two changes is bisected. A band narrower than the `step` of the scan may be missed; a band of twice the
+step is always found. Where narrow bands of outcomes alternate, the boundary is interleaved (fractal). The safe gap
+about the scene is then scanned again in steps `FINER` times smaller, and the margin says so, as it may contain still
+narrower bands.
 """
 
 from __future__ import annotations
@@ -33,15 +34,15 @@ TILT = 0.5  # share of the slenderness
 SPAN, STEP = 0.2, 5e-4
 LARGEST_SPAN = 9.0  # ten times the motion: a record of 0.1 g then has 1 g
 MOST_STEPS = 2e9  # of all runs, some twenty minutes on two cores
-BISECTIONS = 14  # of a step: boundaries are known to 6e-5 of it
+BISECTIONS = 14  # boundaries are located to 6e-5 of a step
 FINER = 20
 
 
 @dataclass(frozen=True)
 class Band:
-    """Changes from `low` to `high` [relative] of a quantity that reach the same of LIMIT_STATES.
+    """Relative changes from `low` to `high` of a quantity that reach the same of LIMIT_STATES.
 
-    holds: N > 0, and no sliding.
+    holds: the model is valid, N > 0 without sliding.
     """
 
     low: float
@@ -51,7 +52,7 @@ class Band:
 
     @property
     def outcome(self) -> str:
-        """As `Response.outcome` names it."""
+        """See `Response.outcome`."""
         if "overturns" in self.reached:
             return "overturns"
         return "rocks" if "lifts" in self.reached else "stands"
@@ -59,9 +60,9 @@ class Band:
 
 @dataclass(frozen=True)
 class Margin:
-    """What relative changes of one quantity do; `value` is the scene's own, `bands` from low to high.
+    """Effects of relative changes of one quantity.
 
-    step: of the scan.
+    value: that of the scene. bands: from low to high. step: of the scan.
     """
 
     quantity: str
@@ -72,7 +73,7 @@ class Margin:
 
     @property
     def outcome(self) -> str:
-        """That of the scene as it is."""
+        """The outcome of the unchanged scene."""
         return self._own.outcome
 
     @property
@@ -91,29 +92,29 @@ class Margin:
         return _nearer(self._edges(_outcome))
 
     def reached(self, state: str) -> bool:
-        """Whether the scene as it is reaches one of LIMIT_STATES."""
+        """Whether the unchanged scene reaches one of LIMIT_STATES."""
         return state in self._own.reached
 
     def change(self, state: str) -> float | None:
-        """The nearest change at which one of LIMIT_STATES becomes reached, or is no longer; None as in `down`."""
+        """The smallest change at which one of LIMIT_STATES is reached, or no longer reached; None as in `down`."""
         return _nearer(self._edges(lambda band: state in band.reached))
 
     @property
     def leaves_model(self) -> float | None:
-        """The nearest change at which the model no longer holds (N <= 0, or sliding); 0 where it does not hold now."""
+        """The smallest change at which the model is not valid (N <= 0, or sliding); 0 if it is not valid now."""
         return _nearer(self._edges(lambda band: band.holds)) if self._own.holds else 0.0
 
     @property
     def outcomes(self) -> list[tuple[float, float, str]]:
-        """[(low, high, outcome)]: the bands, neighbours of one outcome as one."""
+        """[(low, high, outcome)]: the bands, adjacent ones of the same outcome joined."""
         grouped = [(outcome, list(group)) for outcome, group in itertools.groupby(self.bands, _outcome)]
         return [(group[0].low, group[-1].high, outcome) for outcome, group in grouped]
 
     @property
     def interleaved(self) -> bool:
-        """Whether the outcome changes and changes back within two steps: it may change nearer than `nearest` says.
+        """Whether the outcome changes and changes back within two steps, so that it may change closer than `nearest`.
 
-        To rock on the way from standing to overturning is no such change, however short the way.
+        A short band of rocking between standing and overturning does not count.
         """
         found = self.outcomes
         return any(
@@ -131,7 +132,7 @@ class Margin:
         return next(band for band in self.bands if band.low <= 0 <= band.high)
 
     def _edges(self, kind):
-        """The nearest changes below and above 0 at which the `kind` of a band is not that of the scene, or None."""
+        """The nearest changes below and above 0 at which `kind` of a band differs from that of the scene, or None."""
         others = [band for band in self.bands if kind(band) != kind(self._own)]
         return (
             max((band.high for band in others if band.high <= 0), default=None),
@@ -149,7 +150,7 @@ def _nearer(edges):
 
 @dataclass(frozen=True)
 class Quantity:
-    """A quantity of a scene: its unit, its value (None where the scene has none) and the scene with it changed."""
+    """A quantity of a scene: its unit, its value (None if the scene has none) and the changed scene."""
 
     unit: str
     value: Callable[[Scene], float | None]
@@ -195,7 +196,7 @@ QUANTITIES = {
         "-", _restitution, lambda scene, factor: scene.with_(block={"restitution": factor * _restitution(scene)})
     ),
     "size": Quantity("m", lambda scene: scene.block.radius, _size),
-    # the motion is scaled by the batch, which then need not copy its samples
+    # the batch scales the motion without a copy of its samples
     "motion": Quantity("m/s2", lambda scene: scene.motion and scene.motion.peak, lambda scene, factor: scene),  # type: ignore[arg-type, return-value]  # a motion or None is the number or None
     "start": Quantity(
         "rad, rad/s",
@@ -217,7 +218,7 @@ QUANTITIES = {
 
 
 def limit_states(scene: Scene) -> tuple[str, ...]:
-    """Those of LIMIT_STATES that a scene can reach: "stroke" needs bearings with an x_max."""
+    """The LIMIT_STATES that a scene can reach: "stroke" needs bearings with an x_max."""
     stroke = scene.bearings is not None and scene.bearings.x_max is not None
     return tuple(state for state in LIMIT_STATES if stroke or state != "stroke")
 
@@ -232,30 +233,30 @@ def margins(
     workers: int | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> list[Margin]:
-    """What each quantity's relative changes of up to `span` do; a `Margin` each, the nearest change of outcome first.
+    """The `Margin` of each quantity for relative changes up to `span`; the smallest change of outcome comes first.
 
-    Every run goes on until its outcome is decided. Changes that are no scene (e above 1, ka below kb) end the range;
-    downwards the last step clear of -1 does.
+    Every run continues until its outcome is decided. The range ends where a change gives no valid scene (e above 1, ka
+    below kb), and downwards at the last step before -1.
 
     Parameters
     ----------
     tilt : float
-        Share of the slenderness that the peak tilt exceeds in the limit state "tilt"; above 0, up to 1.
+        Limit of the peak tilt over the slenderness in the limit state "tilt"; above 0, up to 1.
     span, step : float
-        Largest relative change, up to 9, and how far the scanned ones lie apart.
+        Largest relative change, up to 9, and the distance of the changes scanned.
     only : collection of str
-        Of QUANTITIES; without it all that the scene has.
+        Some of QUANTITIES; by default all that the scene has.
     workers : int or None
-        Threads; without it one per core. The result does not depend on it.
+        Threads; by default one per core. The result does not depend on it.
     progress : callable or None
-        Is told the name of each quantity before it is scanned.
+        Called with the name of each quantity before its scan.
 
     Raises
     ------
     SettingError
         tilt, span or step is out of range.
     SceneError
-        The scene is too stiff or too long for so many runs; names the part.
+        The scene is too stiff or too long for so many runs; the message names the part.
     """
     if not 0 < tilt <= 1:
         raise SettingError(f"tilt = {tilt!r}: give a share of the slenderness, above 0 and up to 1")
@@ -268,7 +269,7 @@ def margins(
     scene = scene.with_(duration=None)
     count = math.floor(span / step * (1 + 1e-12))
     changes = step * np.arange(-count, count + 1)
-    changes = changes[1 + changes > 0.5 * step]  # nearer to -1 next to nothing is left of the quantity
+    changes = changes[1 + changes > 0.5 * step]  # closer to -1 the quantity almost vanishes
     values = {name: value for name, each in QUANTITIES.items() if (value := each.value(scene)) is not None}
     values = {name: value for name, value in values.items() if not only or name in only}
     check_cost(scene, len(values) * len(changes))
@@ -285,7 +286,7 @@ def margins(
 
 
 def check_cost(scene: Scene, runs: int, most: float = MOST_STEPS) -> None:
-    """Raise `SceneError` for a scene that takes more than `most` steps in so many runs, beside those of its record."""
+    """Raise `SceneError` if so many runs take more than `most` steps, apart from the steps for its record."""
     steps = simulate(scene, history=False).steps
     samples = len(scene.motion.samples) if isinstance(scene.motion, SampledMotion) else 0
     if steps > STEPS_PER_SAMPLE * samples + most / runs:
@@ -294,7 +295,7 @@ def check_cost(scene: Scene, runs: int, most: float = MOST_STEPS) -> None:
 
 @dataclass(frozen=True)
 class Contact:
-    """What the contact has to spare: min N/(m g), the friction demand |H|/N, the scene's coefficient or None."""
+    """Reserves of the contact: min N/(m g), friction demand |H|/N, and the scene's coefficient or None."""
 
     least_normal: float
     friction_demand: float
@@ -302,13 +303,13 @@ class Contact:
 
 
 def contact_margins(scene: Scene) -> Contact:
-    """The `Contact` of a scene as it is, run until its outcome is decided."""
+    """The `Contact` of the unchanged scene, run until its outcome is decided."""
     response = simulate(scene.with_(duration=None), history=False)
     return Contact(response.min_normal_ratio, response.friction_demand, scene.friction)
 
 
 def _finer(margin, changes):
-    """The changes, and between the nearest changes of the outcome steps `FINER` times smaller."""
+    """The changes, with steps `FINER` times smaller between the nearest changes of the outcome."""
     low = changes[0] if margin.down is None else margin.down
     high = changes[-1] if margin.up is None else margin.up
     counts = np.arange(math.ceil(FINER * low / margin.step), FINER * high / margin.step)
@@ -316,7 +317,7 @@ def _finer(margin, changes):
 
 
 def _bands(scene, name, changes, tilt, workers):
-    """Tuple of `Band` over the changes. Each state has its boundaries bisected: two may lie within one step."""
+    """Tuple of `Band` over the changes. Boundaries are bisected for each state, as two may lie within one step."""
     changes, scenes = _scenes(scene, name, changes)
     states = _states(scene, name, changes, scenes, tilt, workers)
     edges, columns = np.nonzero(states[1:] != states[:-1])
@@ -336,7 +337,7 @@ def _bands(scene, name, changes, tilt, workers):
 
 
 def _scenes(scene, name, changes):
-    """(the changes about 0 that give a scene, their scenes)."""
+    """(the changes about 0 that give a valid scene, their scenes)."""
     changed = QUANTITIES[name].changed
     kept = {}
     for direction in (changes[changes >= 0], changes[changes < 0][::-1]):
@@ -350,21 +351,21 @@ def _scenes(scene, name, changes):
 
 
 def _states(scene, name, changes, scenes, tilt, workers):
-    """(changes, LIMIT_STATES and one more): which are reached, and whether the model holds."""
+    """Array (changes, LIMIT_STATES and one more): the states reached, and whether the model is valid."""
     if scenes is None:
         scenes = [QUANTITIES[name].changed(scene, 1 + change) for change in changes]
     scales = 1 + changes if name == "motion" else None
     outcomes = simulate_many(scenes, scales=scales, contact=True, workers=workers)
     for index in np.flatnonzero(outcomes.failed):
-        simulate(scenes[index], history=False)  # raises what is wrong
-        raise SceneError(name, None, f"changed by {changes[index]:.2%} the analytic model cannot go on", "take less")
+        simulate(scenes[index], history=False)  # raises the error
+        raise SceneError(name, None, f"changed by {changes[index]:.2%} the analytic model fails", "give a smaller span")
     slenderness = np.array([each.block.slenderness for each in scenes])
     farthest = scene.bearings.x_max if "stroke" in limit_states(scene) else math.inf
     limit = math.inf if scene.friction is None else scene.friction
     return np.column_stack(
         [
             outcomes.lifted | outcomes.overturns,
-            (outcomes.peak_tilt > tilt * slenderness) | outcomes.overturns,  # a fall is not followed to its end
+            (outcomes.peak_tilt > tilt * slenderness) | outcomes.overturns,  # the peak tilt of a fall is not final
             outcomes.peak_base_displacement > farthest,
             outcomes.overturns,
             (outcomes.min_normal_ratio > 0) & ~(outcomes.friction_demand > limit),

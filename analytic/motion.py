@@ -1,6 +1,6 @@
 """Ground acceleration: sampled records and analytic pulses. SI units, zero outside their duration.
 
-A motion is horizontal; where it has a `vertical` one beside it, that is a motion of the same kind.
+A motion is horizontal. Its vertical component `vertical`, if any, is a motion of the same kind.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def _positive(key: str, value: object, unit: str) -> None:
 
 
 def slowest_key(motion: Motion) -> str:
-    """The key of a scene file to which a motion owes most of its length."""
+    """The key of a scene file that determines the length of a motion."""
     if isinstance(motion, SampledMotion):
         return "motion.dt"
     return "motion.start" if motion.start > motion.length else "motion.frequency"
@@ -49,10 +49,10 @@ class SampledMotion:
     label : str
         What the motion is, for plots and tables.
     warnings : tuple of str
-        What is odd about it (a peak above 3 g, ...), as sentences; every response of a scene repeats them.
+        Sentences on unusual properties (a peak above 3 g, ...), which every response repeats.
     vertical : SampledMotion or None
         The vertical ground acceleration a_v, upward: as many samples at the same interval (`pairing.paired`). Gravity
-        is then g + a_v. Bearings carry it rigidly.
+        is then g + a_v. Bearings are vertically rigid.
     """
 
     dt: float
@@ -89,7 +89,7 @@ class SampledMotion:
             )
 
     def __reduce__(self) -> tuple[type[Self], tuple[float, np.ndarray, str, tuple[str, ...], SampledMotion | None]]:
-        """Built anew in another process: a copy alone could be written to, for which the kernel is compiled again."""
+        """Rebuild in another process: a plain copy would be writable, for which the kernel is compiled again."""
         return type(self), (self.dt, self.samples, self.label, self.warnings, self.vertical)
 
     @property
@@ -150,10 +150,10 @@ class PulseMotion:
     start : float
         [s], not negative.
     phase : float
-        [rad], added to u in the sines and the cosine, within the same times.
+        [rad], added to u in sines and cosines, at the same start and end.
     vertical : PulseMotion or None
         The vertical ground acceleration a_v, upward: a pulse of the same shape, frequency and start, with its own
-        amplitude and phase. Gravity is then g + a_v. Bearings carry it rigidly.
+        amplitude and phase. Gravity is then g + a_v. Bearings are vertically rigid.
     """
 
     shape: str
@@ -194,7 +194,7 @@ class PulseMotion:
 
     @property
     def form(self) -> Pulse:
-        """What its shape is, for all solvers."""
+        """The entry of `PULSES`."""
         return PULSES[self.shape]
 
     @property
@@ -239,7 +239,7 @@ class PulseMotion:
     def digest(self) -> str:
         """Content of the motion as a hash: equal motions have equal digests."""
         content: tuple[str, ...] = (self.shape, self.amplitude.hex(), self.frequency.hex(), self.start.hex())
-        if self.phase or self.vertical:  # else the digests that stored results carry
+        if self.phase or self.vertical:  # otherwise keeps the digests in stored results
             content += (self.phase.hex(), self.vertical.digest() if self.vertical else "")
         return hashlib.sha256(repr(content).encode()).hexdigest()
 

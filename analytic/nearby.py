@@ -1,6 +1,6 @@
-"""What a run does where its motion is a little weaker or stronger: do outcome and peak tilt depend on it?
+"""Sensitivity of outcome and peak tilt to the scale of the motion.
 
-The motion at hand is one of many that could have come, and its scale is known to some per cent at best.
+The motion is one of many possible ones, and its scale is known to a few per cent at best.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from .response import Caution
 if TYPE_CHECKING:
     from .scene import Scene
 
-SHARE = 0.05  # of the motion, either way: what the scale of a recorded motion is seldom known better than
-FOLD = 5.0  # a peak tilt that grows or falls so many times within SHARE is said to depend on it ...
-SEEN = 0.01  # ... unless it stays below this share of the slenderness, where no range is promised to an engine either
+SHARE = 0.05  # of the motion, up and down: the scale of a recorded motion is seldom known better
+FOLD = 5.0  # a peak tilt is sensitive if it changes by this factor within SHARE ...
+SEEN = 0.01  # ... and exceeds this share of the slenderness, below which engines are not tested either
 MOST_STEPS = 1e8  # of all runs: a minute on two cores
 
 
@@ -28,7 +28,7 @@ def nearby(scene: Scene, *, workers: int | None = None) -> tuple[np.ndarray, Out
     Raises
     ------
     SceneError
-        The scene costs too much to be run so often.
+        The scene takes too many steps for so many runs.
     """
     count = round(SHARE / STEP)
     changes = STEP * np.arange(-count, count + 1)
@@ -37,9 +37,9 @@ def nearby(scene: Scene, *, workers: int | None = None) -> tuple[np.ndarray, Out
 
 
 def cliffs(scene: Scene, changes: np.ndarray, found: Outcomes) -> tuple[Caution, ...]:
-    """Cautions where the outcome, or the peak tilt by `FOLD` times, depends on less than `SHARE` of the motion.
+    """A warning if a change of the motion below `SHARE` changes the outcome, or the peak tilt by a factor of `FOLD`.
 
-    changes, found : as of `nearby`. value of a `Caution` is the nearest such change; none where nothing depends on it.
+    changes, found : results of `nearby`. The value of a `Caution` is the smallest such change.
     """
     own = len(changes) // 2
     names, ratios = found.names, found.peak_tilt / scene.block.slenderness
@@ -47,7 +47,7 @@ def cliffs(scene: Scene, changes: np.ndarray, found: Outcomes) -> tuple[Caution,
     other = _nearest(changes, names != names[own])
     if other is not None:
         text = (
-            f"The outcome depends on less than {SHARE:.0%} of the motion: as it is the block {names[own]}, at "
+            f"The outcome is sensitive to changes of the motion below {SHARE:.0%}: the block {names[own]}, but at "
             f"{changes[other]:+.2%} it {names[other]}."
         )
         said.append(Caution("motion", text, "outcome", float(changes[other]), SHARE))
@@ -56,8 +56,8 @@ def cliffs(scene: Scene, changes: np.ndarray, found: Outcomes) -> tuple[Caution,
     apart = _nearest(changes, upright & upright[own] & (high >= np.maximum(FOLD * low, SEEN)))
     if apart is not None:
         text = (
-            f"The peak tilt depends on less than {SHARE:.0%} of the motion: {ratios[own]:.3g} of the slenderness, "
-            f"and {ratios[apart]:.3g} at {changes[apart]:+.2%}."
+            f"The peak tilt is sensitive to changes of the motion below {SHARE:.0%}: {ratios[own]:.3g} of the "
+            f"slenderness, but {ratios[apart]:.3g} at {changes[apart]:+.2%}."
         )
         said.append(Caution("motion", text, "peak tilt", float(changes[apart]), SHARE))
     return tuple(said)

@@ -1,4 +1,4 @@
-"""A scene file from what one can measure: height, width and weight of a block, its base and bearings, a motion.
+"""A scene file from measured quantities: height, width and mass of a block, its base and bearings, a motion.
 
 text = scene_text("bust", block_from(1.9, 0.55, density=MATERIALS["marble"]))
 """
@@ -15,7 +15,7 @@ from .part import UNITS
 from .rocking import RockingModel
 from .scene import Base, Bearings, Block, Scene
 
-# Typical densities [kg/m3]; a weighed block is better.
+# Typical densities [kg/m3]; a measured mass is better.
 MATERIALS = {
     "marble": 2700.0,
     "granite": 2650.0,
@@ -27,7 +27,7 @@ MATERIALS = {
     "wood": 600.0,
 }
 
-# Rows of `derived` that are compared with what was asked for, and against each other.
+# Rows of `derived` that are compared with the targets and with each other.
 PERIOD, DAMPING = "secant period at x_max", "equivalent damping at x_max"
 UPLIFT, YIELD = "uplift acceleration g tan(slenderness)", "acceleration at which the bearings yield"
 
@@ -37,8 +37,8 @@ def block_from(
 ) -> Block:
     """The homogeneous rectangular `Block` of height and width [m], width along the motion.
 
-    Its mass [kg], or its density [kg/m3] with the depth [m] across the motion (the width, where that is not given).
-    R = sqrt(h^2 + b^2) and gamma = atan(b/h) of half height h and half width b.
+    Given is its mass [kg], or its density [kg/m3] and depth [m] across the motion (default: the width).
+    R = sqrt(h^2 + b^2) and gamma = atan(b/h), with half height h and half width b.
 
     Raises
     ------
@@ -65,10 +65,10 @@ def block_from(
 
 
 def derived(scene: Scene) -> list[tuple[str, float, str]]:
-    """What follows from a scene: rows of (name, value, unit).
+    """Derived quantities of a scene: rows of (name, value, unit).
 
-    Secant period and equivalent damping, W_D/(4 pi E_s) of the hysteresis alone, are given at an x_max at which the
-    bearings yield: below it, the loss is lost in rounding.
+    Secant period and equivalent damping, W_D/(4 pi E_s) of the hysteresis only, are given if the bearings yield at
+    x_max: below yield the loss is smaller than rounding errors.
     """
     block, model = scene.block, RockingModel.of(scene)
     uplift = scene.gravity * math.tan(block.slenderness)
@@ -120,12 +120,12 @@ def scene_text(
     friction : float or None
         Coefficient between block and base.
     about : sequence of str
-        Comments at the top.
+        Comment lines at the top.
     """
     lines = [*(f"# {line}" for line in about), f"name = {_toml(name)}"]
     if friction is not None:
         lines.append(
-            f"friction = {_toml(friction)}  # between the block and what it stands on; the demand is compared with it"
+            f"friction = {_toml(friction)}  # of the block on its support; the friction demand is compared with it"
         )
     lines += ["", "[block]"]
     lines += _rows({"mass": (block.mass, "kg"), "radius": (block.radius, "m; base corner to centre of mass")})
@@ -133,7 +133,7 @@ def scene_text(
     lines += _rows({"slenderness": (block.slenderness, f"rad, {degrees:.4g} degrees; atan(width/height)")})
     lines += [
         f"# corner_inertia = {block.inertia:.6g}  # kg m2; 4/3 m R^2 of a homogeneous rectangle, unless given",
-        "# restitution = 0.9  # eq. (7) gives it, unless it was measured",
+        "# restitution = 0.9  # default: eq. (7); give a measured one",
     ]
     if base is not None:
         lines += ["", *_base(base)]
@@ -147,9 +147,9 @@ def scene_text(
 
 
 def with_bearings(text: str, bearings: Bearings, base: Base | None = None) -> str:
-    """The text of a scene file with other bearings: its table [bearings] is replaced, or put at its end.
+    """The text of a scene file with other bearings: the table [bearings] is replaced, or added at the end.
 
-    base : of a scene that has none; its table is put before that of the bearings.
+    base : for a scene without one; its table is added before that of the bearings.
 
     Examples
     --------
@@ -174,7 +174,7 @@ def _base(base):
 def _bearings(bearings):
     values = {key: (value, UNITS.get(f"bearings.{key}", "")) for key, value in _given(bearings).items()}
     if bearings.x_max is not None:
-        values["x_max"] = bearings.x_max, "m; what they are built for: a run that goes beyond it says so"
+        values["x_max"] = bearings.x_max, "m; design displacement: a run beyond it has a warning"
     return ["[bearings]  # per bearing", *_rows({"law": (bearings.law, ""), **values})]
 
 

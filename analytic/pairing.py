@@ -1,4 +1,4 @@
-"""Two recorded motions, horizontal and vertical, brought to one step and one length: the pair is one motion."""
+"""A horizontal and a vertical recorded motion brought to one step and one length, as one motion."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from .errors import SceneError
 from .motion import SampledMotion
 
 MOST_SAMPLES = 10_000_000  # of a component: a day at 100 Hz
-SAME_STEP = 1e-9  # relative difference of two steps that are the same, printed to other digits
+SAME_STEP = 1e-9  # relative difference of two equal steps that are printed with different precision
 
 
 def paired(level: SampledMotion, upright: SampledMotion) -> SampledMotion:
-    """The motion `level` with `upright` as its vertical one; both count their time from their first sample.
+    """The motion `level` with `upright` as its vertical component; the time of both starts at their first sample.
 
-    The coarser of the two is resampled to the step of the other, linearly, as a motion is between its samples; the
-    shorter one gets zeros at its end. Both is said in the warnings, which also repeat those of `upright`.
+    The coarser one is resampled linearly to the step of the other, and the shorter one is padded with zeros. Warnings
+    say so, after those of `upright`.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What parts of a scene have in common: frozen, checked by pydantic, and all mistakes told in a `SceneError`."""
+"""Base class of the parts of a scene: frozen, checked by pydantic; all mistakes are reported in one `SceneError`."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ LIMITS = {
     "less_than_equal": "up to {:.6g}",
 }
 WANTED = {"string_type": 'text in "quotes"', "int_type": "a whole number", "int_from_float": "a whole number"}
-# What one measures or asks for is no key of a scene; `rocking new` computes what is.
+# Measured or target quantities that are not keys of a scene; `rocking new` computes the keys from them.
 MEASURED = {
     **dict.fromkeys(("block.height", "block.width"), ("radius and slenderness", "--height ... --width ...")),
     **dict.fromkeys(
@@ -60,7 +60,7 @@ MEASURED = {
 
 
 class Part(BaseModel):
-    """A part of a scene. `table` is its name in a scene file; no part is made of a mistake: `SceneError`."""
+    """A part of a scene. `table` is its name in a scene file. Mistakes raise `SceneError`."""
 
     model_config = ConfigDict(
         frozen=True, extra="forbid", strict=True, allow_inf_nan=False, arbitrary_types_allowed=True
@@ -73,12 +73,12 @@ class Part(BaseModel):
         except ValidationError as error:
             raise scene_error(error, type(self)) from None
 
-    # pydantic makes parts of parts without it, so that their mistakes keep their place in the whole
+    # pydantic builds nested parts without it, so that their mistakes keep their full location
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
 
 
 def scene_error(error: ValidationError, part: type[Part]) -> SceneError:
-    """All that pydantic found in a `part`, one mistake a key; unknown keys first: they explain missing ones."""
+    """All mistakes that pydantic found in a `part`, one per key; unknown keys first, as they explain missing ones."""
     found: dict[str, SceneError] = {}
     for problem in sorted(error.errors(), key=lambda problem: problem["type"] != "extra_forbidden"):
         mistake = _mistake(problem, part)
@@ -88,10 +88,10 @@ def scene_error(error: ValidationError, part: type[Part]) -> SceneError:
 
 
 def _mistake(problem: ErrorDetails, part: type[Part]) -> SceneError:
-    """One of the problems that pydantic found."""
+    """The error for one of the problems that pydantic found."""
     kind, value, context = problem["type"], problem["input"], problem.get("ctx", {})
     loc = [str(name) for name in problem["loc"]]
-    if kind.startswith("dataclass"):  # one of several classes, whose name is the last of the place
+    if kind.startswith("dataclass"):  # one of several classes; its name is last in the location
         loc, kind = loc[:-1], "model_type"
     key = ".".join([part.table, *loc] if part.table else loc)
     unit = f" [{UNITS[key]}]" if key in UNITS else ""
@@ -114,7 +114,7 @@ def _mistake(problem: ErrorDetails, part: type[Part]) -> SceneError:
 
 
 def missing(key: str) -> SceneError:
-    """A table or a key that is not there."""
+    """The error for a missing table or key."""
     if key in {table.table for table in Part.__subclasses__() if table.table}:
         return SceneError(key, None, "missing", f"add a table [{key}]")
     unit = f" [{UNITS[key]}]" if key in UNITS else ""
@@ -129,7 +129,7 @@ def _unknown(key: str, loc: Sequence[str], value: object, part: type[Part]) -> S
     for table in tables:
         kinds = part.model_fields[table].annotation
         part = next(kind for kind in (kinds, *get_args(kinds)) if isinstance(kind, type) and issubclass(kind, Part))
-    close = difflib.get_close_matches(name, part.model_fields, 1)  # alike, and it may still be another quantity
+    close = difflib.get_close_matches(name, part.model_fields, 1)  # a similar name, possibly of another quantity
     hint = f"write {close[0]} if that is meant, else remove it" if close else "remove it"
     hint += f", known are {', '.join(part.model_fields)}"
     return SceneError(key, value, "unknown key", hint)

@@ -1,4 +1,4 @@
-"""Values and first roots of the Taylor polynomials of a step (compiled).
+"""Values, roots and bounds of the Taylor polynomials of a step, for event location (compiled).
 
 A polynomial is an array of coefficients, lowest first; `order` is the highest power used.
 """
@@ -24,9 +24,9 @@ def value(f, order, t):
 
 @inner
 def bracketed_root(f, first, order, low, high):
-    """Root of f(t)/t^first in (low, high], where it falls from + to -: Newton from the far end, kept in the bracket.
+    """Root of f(t)/t^first in (low, high], where it falls from + to -: Newton's method from the far end, bracketed.
 
-    Just after an impact f is concave, so Newton from the far end cannot fall back to the trivial root at 0.
+    Just after an impact f is concave, so that Newton's method from the far end does not converge to the root at 0.
     """
     t = high
     for _ in range(BISECTIONS):
@@ -43,7 +43,7 @@ def bracketed_root(f, first, order, low, high):
         step = total / slope if slope < 0 else 0.0
         following = t - step
         if slope >= 0 or following <= low or following >= high:
-            # Newton's step ends on the bracket only when it has converged to it
+            # a Newton step ends at the bracket only if it has converged there
             if slope < 0 and abs(step) <= 4e-16 * t:
                 return t
             following = 0.5 * (low + high)
@@ -55,10 +55,10 @@ def bracketed_root(f, first, order, low, high):
 
 @inner
 def first_root(f, order, h, work):
-    """First t in [0, h] where f falls below 0, or -1; f > 0 just after 0 unless it falls at once (then 0).
+    """First t in [0, h] at which f falls below 0, or -1; 0 if it falls at once.
 
-    Leading zero coefficients are a root at 0 and are divided out (just after an impact, or at the third-order
-    onset of uplift). Bernstein coefficients bound the polynomial, so no crossing is missed, however many there are.
+    Leading zero coefficients are a root at 0 and are divided out (just after an impact, or at the third-order onset of
+    uplift). Bernstein coefficients bound the polynomial, so that no crossing is missed, whatever their number.
 
     work : scratch array, shape SCRATCH
     """
@@ -84,14 +84,14 @@ def first_root(f, order, h, work):
     end = f[order]
     for k in range(order - 1, first - 1, -1):
         end = end * h + f[k]
-    if steepest < 0:  # falls all the way: at most one root
+    if steepest < 0:  # monotone: at most one root
         return bracketed_root(f, first, order, 0.0, h) if end < 0 else -1.0
     return _isolated_root(f, first, order, h, work)
 
 
 @inner
 def shifted(f, order, t):
-    """Make f the polynomial of the time since t, in place."""
+    """Shift the origin of f to t, in place."""
     for i in range(order):
         for k in range(order - 1, i - 1, -1):
             f[k] += t * f[k + 1]
@@ -124,7 +124,7 @@ def largest(f, sign, order, h, best, rate, work):
         rate[k] = sign * (k + 1) * f[k + 1]
     t, rising = 0.0, True
     for _ in range(order):
-        root = first_root(rate, order - 1, h - t, work)  # where f no longer rises, and then no longer falls
+        root = first_root(rate, order - 1, h - t, work)  # the next maximum, then the next minimum
         if root < 0:
             break
         if rising and root > 0:
@@ -140,7 +140,7 @@ def largest(f, sign, order, h, best, rate, work):
 
 @inner
 def _isolated_root(f, first, order, h, work):
-    """`first_root` for a polynomial that is not monotone: sign changes of Bernstein coefficients, halved as needed."""
+    """`first_root` for a polynomial that is not monotone: sign changes of Bernstein coefficients, with bisection."""
     n = order - first
     starts, widths = work[:, MAX_ORDER + 1], work[:, MAX_ORDER + 2]
     coefficients, power, binomial = work[0], 1.0, 1.0
@@ -167,14 +167,14 @@ def _isolated_root(f, first, order, h, work):
         if changes == 1:
             return bracketed_root(f, first, order, low, low + width)
         if changes == 0 or top >= BISECTIONS:
-            top -= 1  # no crossing here, or a touch without crossing that no halving tells apart
+            top -= 1  # no crossing, or a double root that bisection cannot separate
             continue
         left = work[top + 1]
-        for i in range(n + 1):  # de Casteljau at the middle: left half on top of the stack, right half below it
+        for i in range(n + 1):  # de Casteljau at the middle: left half on the stack, right half below it
             left[i] = b[0]
             for j in range(n - i):
                 b[j] = 0.5 * (b[j] + b[j + 1])
-        # b now holds the right half, since its last entries are the running right-hand ends
+        # b now holds the right half: its last entries are the right-hand ends
         width *= 0.5
         starts[top], widths[top] = low + width, width
         starts[top + 1], widths[top + 1] = low, width

@@ -1,4 +1,4 @@
-"""Problems A and B: the two scenes with reference solutions on which solvers are timed and compared."""
+"""Problems A and B: two scenes with reference solutions, for timing and comparing solvers."""
 
 import math
 

@@ -1,6 +1,6 @@
-"""The pulses, one entry of `PULSES` each: f(u) with u = frequency (t - start), plus the phase where it takes one.
+"""The pulses, one entry of `PULSES` each: f(u) with u = frequency (t - start), plus a phase where the pulse has one.
 
-A new pulse is its entry, and a function for the kernel's series where none of those here gives it.
+A new pulse is one entry, and a function for its Taylor series unless one here gives it.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 from .compiled import inner
 from .polynomial import INVERSE
 
-# A Ricker wavelet has no ends; four periods around its centre leave a step below 1e-15 of the amplitude.
+# A Ricker wavelet is unbounded; cut to four periods around its centre it has a jump below 1e-15 of the amplitude.
 RICKER_PERIODS = 4.0
 _CENTRE = RICKER_PERIODS * math.pi
 
@@ -67,12 +67,12 @@ class Pulse:
     """One shape of a pulse.
 
     length : of the pulse [rad].
-    value(ops, u) : f, with sin, cos and exp of `ops`: math, numpy, or an engine's own symbols.
+    value(ops, u) : f, with sin, cos and exp of `ops`: math, numpy, or an engine's symbolic functions.
     integral(ops, u, phase) : of f(u + phase) from 0 to u.
-    first_peak(phase) : u of the first of the largest |f|.
+    first_peak(phase) : u of the first maximum of |f|.
     turns(length, phase) : u of ends, zeros and extremes, ascending.
-    series : of f(u + shift) in the kernel, see `harmonic_series`; None: f = 1 throughout.
-    jumps : whether f begins and ends with a jump without a phase. phased : whether it takes a phase.
+    series : Taylor series of f(u + shift) in the kernel, see `harmonic_series`; None: f = 1.
+    jumps : whether f begins and ends with a jump at phase 0. phased : whether it has a phase.
     """
 
     length: float

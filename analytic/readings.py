@@ -1,4 +1,4 @@
-"""What is read off a Taylor step besides its end: history, diagnostics, energy ledger (compiled)."""
+"""Dense output of a Taylor step: history, contact diagnostics and energy ledger (compiled)."""
 
 import math
 
@@ -6,13 +6,13 @@ from . import layout as L
 from .compiled import inner
 from .polynomial import INVERSE, bound, derivative, largest, value
 
-# Points inside a step at which friction demand and normal force are read.
+# Points inside a step at which friction demand and normal force are evaluated.
 PROBES = 4
 
 
 @inner
 def write_history(par, body, step, output_step, arrays, written):
-    """Rows of the history up to the end of the step; returns how many are written by then."""
+    """Write the rows of the history up to the end of the step; returns the number of rows written so far."""
     history, P, order = arrays.history, arrays.P, step.order
     while written < history.shape[0] and written * output_step <= step.t + step.h:
         row = history[written]
@@ -29,9 +29,9 @@ def write_history(par, body, step, output_step, arrays, written):
 
 @inner
 def _integral_of_product(f, highest, g, order, h):
-    """Integral over [0, h] of f g, of orders `highest` and `order`, with every term of the product.
+    """Integral over [0, h] of f g, of orders `highest` and `order`, with all terms of the product.
 
-    Cut at the order of its factors the product would be worse than they are by up to two to that order.
+    Truncated at the order of its factors, the product would be less accurate than they are, by up to two to that order.
     """
     total, power = 0.0, h
     for j in range(highest + 1):
@@ -46,7 +46,7 @@ def _integral_of_product(f, highest, g, order, h):
 
 @inner
 def gravity_at(par, vertical, P, highest, d):
-    """g + a_v [m/s2] at d [s] in the step; highest : order of the ground's series."""
+    """g + a_v [m/s2] at d [s] in the step; highest : order of the series of the ground motion."""
     if vertical is None:
         gravity = par.g
     else:
@@ -56,7 +56,7 @@ def gravity_at(par, vertical, P, highest, d):
 
 @inner
 def _top(a, b, c):
-    """Largest value of the parabola through three readings at equal intervals, between them."""
+    """Maximum, between its points, of the parabola through three values at equal intervals."""
     turn, bend = 0.5 * (a - c), a - 2 * b + c
     if abs(turn) < -bend:  # its vertex is inside
         return b - 0.5 * turn * turn / bend
@@ -105,7 +105,7 @@ def read_lifting(par, step, P, totals):
     for k in range(max(highest, 0) + 1):
         lift[k] = P[L.GRAVITY, k]
     lift[0] -= par.g
-    last = 0.0  # the series of sin ends one term before the others on rigid ground
+    last = 0.0  # on rigid ground the series of sin is one term shorter
     for j in range(order):
         last -= P[L.W, j] * P[L.C, order - 1 - j]
     P[L.S, order] = last * INVERSE[order]

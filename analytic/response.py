@@ -1,26 +1,33 @@
-"""What comes out of a simulation, the same for every solver.
+"""The response of a simulation, the same for every solver.
 
-An outcome is “stands” (never lifted), “rocks” (lifted, stayed upright), “overturns” or “failed”, which comes with its
-evidence. A run goes on until the outcome is *decided*: until what energy is left can no longer overturn the block, or
-it is certain to fall (``analytic/decision.py`` derives the rule), and the peaks are final. One that a ``duration`` cuts
-earlier is **undecided**: tables say “undecided (rocks so far)”, JSON says ``"decided": false``. With a longer duration
-nothing changes; a base that swings on below a block that will not lift again is followed for a hundred periods.
+An outcome is “stands” (never lifted), “rocks” (lifted, stayed upright), “overturns” or “failed” (with the reason). A
+run continues until its outcome is *decided*: the remaining energy can no longer overturn the block, or the block is
+certain to overturn (``analytic/decision.py`` derives the rule), and the peaks are final. A run that a ``duration`` ends
+earlier is **undecided**: tables say “undecided (rocks so far)”, JSON has ``"decided": false``. A longer duration would
+not change a decided outcome. A base that oscillates below a block that will not lift again is followed for a hundred
+periods.
 
-Where the block overturns, the peaks of the base and the forces at the contact are those up to the last passage of
-|tilt| = slenderness: what follows is the fall, in which a real block slides.
+If the block overturns, base peaks and contact forces are those up to the last passage of |tilt| = slenderness. During
+the fall that follows a real block slides.
 
-An engine's run is compared with the analytic model of the same scene. ``differences`` name the quantity, its value here
-and in the model, and the limit: the outcome; a peak tilt or base displacement off by more than 2 %; where the block
-overturns the time of its last passage of the slenderness off by more than 2 % of a rocking period, that of overturning,
-and the number of impacts before; the restitution of an impact off by more than 0.01, or its loss 1 - e^2 by 10 %;
-impacts that are missing or too many. ``comparable`` is "yes", or says why not: the normal force reaches 0, no contact
-gives the friction demanded, the model reaches no end; or "on an edge", where a change of the scene by 1e-4 makes such a
-difference in the model itself: then what lies between such changes is none. From Python: ``simulate(scene,
-compare=False)`` leaves it out.
+An engine's run is compared with the analytic model of the same scene. ``differences`` give the quantity, its value in
+the run and in the model, and the limit:
 
-``warnings`` (kind, quantity, value, limit, text) say that a result lies outside what the model describes (the block
-would jump, or slide at the scene's ``friction``; the base goes beyond ``x_max``), or that the record is odd. The
-outcome beside a warning is no answer to build on.
+- the outcome;
+- a peak tilt or peak base displacement that is off by more than 2 %;
+- for a block that overturns: the time of its last passage of the slenderness, off by more than 2 % of a rocking period,
+  the time of overturning, and the number of impacts before;
+- the restitution of an impact, off by more than 0.01, or its loss 1 - e^2, by more than 10 %;
+- missing or extra impacts.
+
+``comparable`` is "yes", or says why not: the normal force reaches 0, no contact provides the friction demanded, or the
+model does not reach an end. Near an outcome boundary it is "on an edge": a change of the scene by 1e-4 makes such a
+difference in the model itself, and values between those of the changed scenes are no difference. In Python,
+``simulate(scene, compare=False)`` skips the comparison.
+
+``warnings`` (kind, quantity, value, limit, text) say that a result is outside the model (the block would jump, or slide
+at the scene's ``friction``; the base exceeds ``x_max``), or that the record is unusual. Do not rely on an outcome with
+such a warning.
 """
 
 import dataclasses
@@ -33,9 +40,9 @@ from typing import Any, Self, TextIO
 import numpy as np
 
 OUTCOMES = ("stands", "rocks", "overturns", "failed")
-# Quantities of a `Difference`, in words. Restitution: of the matched impact that is furthest off; missing and extra
-# impacts: numbers of impacts that count, here and in the model, and have a match. Loss: 1 - e^2. Times: of a block that
-# overturns; a fall begins at the last passage of the slenderness.
+# Quantities of a `Difference`, in words. Restitution: at the matched impact with the largest error. Missing and extra
+# impacts: numbers of impacts that count, with and without a match. Loss: 1 - e^2. Times: of a block that overturns; a
+# fall begins at the last passage of the slenderness.
 DIFFERENCES = {
     "outcome": "the block {here}, in the analytic model it {model}",
     "peak_tilt": "peak tilt {here:.4g} rad, in the analytic model {model:.4g}",
@@ -48,10 +55,11 @@ DIFFERENCES = {
     "missing_impacts": "{here:.0f} of {model:.0f} impacts of the analytic model are found",
     "extra_impacts": "{here:.0f} impacts, {model:.0f} of them in the analytic model",
 }
-# Whether a run can be compared: "yes", "no" (it was not asked for, or has failed), "on an edge" (a change of 1e-4 of
-# the scene makes such a difference in the model: what lies between such changes is no difference), else why not.
+# Whether a run can be compared: "yes"; "no" (not asked for, or failed); "on an edge" (near an outcome boundary: a
+# change of the scene by 1e-4 makes such a difference in the model, and values between those are no difference); else
+# why not.
 COMPARED, UNCOMPARED, EDGE = "yes", "no", "on an edge"
-JUDGED = (COMPARED, EDGE)  # of these the differences are looked for
+JUDGED = (COMPARED, EDGE)  # values with which differences are determined
 
 
 @dataclass(frozen=True)
@@ -101,10 +109,10 @@ class History:
 
 @dataclass(frozen=True)
 class Energy:
-    """Energy ledger [J]: what went in and where it went, in the ground's frame, from start to end.
+    """Energy balance [J] of a run, in the ground's frame.
 
-    kinetic and potential (gravity and the bearings' elastic kb x part) are changes from start to end;
-    input is the work of the inertial ground load; hysteretic, viscous and impact_loss are what left.
+    kinetic and potential (gravity and the bearings' elastic part kb x) are changes from start to end; input is the work
+    of the inertial load; hysteretic, viscous and impact_loss are dissipated energies.
     """
 
     kinetic: float
@@ -124,10 +132,9 @@ class Energy:
 class Caution:
     """A warning of a run.
 
-    kind: "record" (odd about the file of the motion), "model" (outside what the model describes), "limit" (outside what
-    a part of the scene is built for), "motion" (the result is sensitive to small changes of the motion) or "engine"
-    (said by an engine or its adapter). quantity, value, limit: what is beyond which limit [SI units], where it is a
-    number. text: a sentence.
+    kind: "record" (the record is unusual), "model" (outside the model), "limit" (beyond the design value of a part),
+    "motion" (the result is sensitive to small changes of the motion) or "engine" (from an engine or its adapter).
+    quantity, value, limit: the quantity with its value and limit [SI units], if it is a number. text: a sentence.
     """
 
     kind: str
@@ -141,18 +148,18 @@ class Caution:
 
 
 def about_record(motion: Any) -> tuple[Caution, ...]:
-    """What is odd about the record of a motion (or of None), as warnings; pulses have none."""
+    """Warnings on an unusual record of a motion; none for pulses or None."""
     return tuple(Caution("record", text) for text in getattr(motion, "warnings", ()))
 
 
 @dataclass(frozen=True)
 class Difference:
-    """What an engine's run has other than the analytic model: both values, and the difference that is tolerated.
+    """A difference of an engine's run from the analytic model: both values, and the limit that is exceeded.
 
-    quantity: one of `DIFFERENCES`; here, model: an outcome, or a number; model is None where the block ends otherwise
-    there, and alike in the model of a scene next to it. limit: of peaks and losses relative to the
-    model's, of the restitution [-], a time [s] or a number of impacts absolute; None for an outcome. near: between
-    which the number lies in the model where the scene is changed by up to 1e-4; None where that was not asked.
+    quantity: one of `DIFFERENCES`. here, model: an outcome or a number; model is None if the block's end differs in the
+    model, but not in a near copy of the scene. limit: relative to the model's value for peaks and losses, absolute for
+    restitution [-], times [s] and numbers of impacts; None for an outcome. near: range of the number in the model under
+    changes of the scene by up to 1e-4; None if not determined.
     """
 
     quantity: str
@@ -177,7 +184,7 @@ class Difference:
 
 @dataclass(frozen=True)
 class Failure:
-    """Why a run failed: a reason in plain words, the engine's own message, the last finite state."""
+    """Why a run failed: the reason, the engine's own message, and the last finite state."""
 
     reason: str
     message: str = ""
@@ -195,8 +202,8 @@ class Response:
     unstable_time: float | None  # s, first |tilt| = slenderness: a diagnostic, no proof of overturning
     peak_tilt: float  # rad
     peak_tilt_ratio: float  # peak tilt / slenderness
-    # where the block overturns, peaks of the base and forces at the contact end at the last passage of the slenderness:
-    # from there on the model falls about its corner, where a block would slide and jump
+    # if the block overturns, base peaks and contact forces are taken up to the last passage of the slenderness; after
+    # it the model's block falls about its corner, where a real one would slide and jump
     peak_base_displacement: float  # m
     peak_base_acceleration: float  # m/s2, absolute
     impacts: tuple[Impact, ...]
@@ -205,14 +212,14 @@ class Response:
     friction_demand: float  # max |H|/N at the contact
     min_normal_ratio: float  # min N/(m g) at the contact
     end: State
-    cpu_seconds: float  # of the simulation alone: no import, no compilation
+    cpu_seconds: float  # of the simulation, without import and compilation
     steps: int
     settings: dict
     versions: dict
     scene: str = ""  # name
     decided: bool = True  # False: it ended before the outcome was certain; see analytic/decision.py
     fall_time: float | None = None  # s, last passage of |tilt| = slenderness of a block that overturns; 0 without one
-    warnings: tuple[Caution, ...] = ()  # where the result lies outside what is modelled, or is odd
+    warnings: tuple[Caution, ...] = ()  # the result is outside the model, or the record is unusual
     differences: tuple[Difference, ...] = ()  # of an engine's run from the analytic model
     comparable: str = UNCOMPARED  # whether it was compared with the model; see `COMPARED`
     failure: Failure | None = None
@@ -227,7 +234,7 @@ class Response:
 
     @property
     def outcome_text(self) -> str:
-        """The outcome in words for people: the outcome, or "undecided (rocks so far)"."""
+        """The outcome as shown: the outcome, or "undecided (rocks so far)"."""
         return self.outcome if self.decided or self.outcome == "failed" else f"undecided ({self.outcome} so far)"
 
     @property
@@ -251,16 +258,16 @@ class Response:
 
     @classmethod
     def unmeasured(cls, **known: Any) -> Self:
-        """The response of a run of which no more than this is known: other numbers are NaN, there are no events."""
+        """A response with the `known` fields only: other numbers are NaN, and there are no events."""
         numbers = {part.name: math.nan for part in dataclasses.fields(cls) if part.type is float}
         nothing = dict(overturning_time=None, unstable_time=None, impacts=(), uplifts=(), rests=(), steps=0)
         return cls(**{**numbers, **nothing, "end": State(*[math.nan] * 6), **known})
 
     @classmethod
     def from_json(cls, values: Mapping[str, Any], history: History | None = None) -> Self:
-        """The response that gave these values by `to_json`; a number that was not finite is NaN.
+        """The response from the values of `to_json`; numbers that were not finite are NaN.
 
-        values may lack cpu_seconds; history: the `History` to give it.
+        values may lack cpu_seconds. history: the `History` of the response.
         """
         values = {name: value for name, value in values.items() if name != "impact_count"}
         failure, energy = values.get("failure"), values.get("energy")

@@ -1,7 +1,7 @@
 """Uplift, rocking and impact of a rigid block: eqs (1)-(8) of the Caryatid paper, corrected where misprinted.
 
-tilt phi > 0 tips toward +x; s = sgn(phi) is the side; x is the base displacement relative to the ground. Under a
-vertical ground acceleration a_v, upward, gravity is g + a_v wherever it stands: bearings carry a_v rigidly.
+The tilt phi is positive toward +x; s = sgn(phi) is the side of the pivot; x is the base displacement relative to the
+ground. Under a vertical ground acceleration a_v, upward, g is replaced by g + a_v: bearings are vertically rigid.
 """
 
 from __future__ import annotations
@@ -143,15 +143,15 @@ class RockingModel:
 
 
 def restitution(scene: Scene) -> float:
-    """e_phi of a scene: its own where it gives one, else that of eq. (7), at least 0."""
+    """e_phi of a scene: the given one, else that of eq. (7), at least 0."""
     given = scene.block.restitution
     return max(momentum_restitution(scene), 0.0) if given is None else given
 
 
 def momentum_restitution(scene: Scene) -> float:
-    """e_phi of eq. (7), whatever the scene gives: momentum-exact, 1 - 2 m b^2/(J_O - m mt h^2).
+    """e_phi of eq. (7) from conservation of momentum, 1 - 2 m b^2/(J_O - m mt h^2), even if the scene gives another.
 
-    May be negative (stocky block, light base).
+    It may be negative (stocky block, light base).
     """
     block = scene.block
     b, h = block.half_width, block.half_height
@@ -174,7 +174,7 @@ def base_jump_length(scene: Scene) -> float:
 
 
 def base_jump_length_as_printed(scene: Scene) -> float:
-    """e_x of eq. (8) as printed: a factor R cos(gamma) too many, so a length squared. Kept to show the misprint."""
+    """e_x of eq. (8) as printed, with a factor R cos(gamma) too many: a length squared. Kept to show the misprint."""
     block, mt = scene.block, scene.mass_share
     R, gamma, m = block.radius, block.slenderness, block.mass
     return (

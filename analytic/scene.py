@@ -15,11 +15,12 @@ from .laws import LAWS, NUMBERS
 from .motion import PulseMotion, SampledMotion, slowest_key
 from .part import Part
 
-# Phase [rad] that may pass between two neighbouring doubles: 1e7 s hold 1/50 of it for the smallest blocks.
+# Largest phase [rad] between two adjacent doubles of the time; 1e7 s give 1/50 of it for the smallest blocks.
 RESOLUTION = 1e-4
-# No quantity of a scene is beyond these in SI units, and their products neither overflow nor vanish.
+# Limits of all quantities of a scene in SI units, within which products neither overflow nor vanish.
 LEAST, MOST = 1e-20, 1e20
-KEYS = tuple(dict.fromkeys(name for law in LAWS for name in law.needs + law.ignores))  # of [bearings], not of all laws
+# Keys of [bearings] that only some laws use.
+KEYS = tuple(dict.fromkeys(name for law in LAWS for name in law.needs + law.ignores))
 
 
 def _not_vanishing(value: float) -> float:
@@ -28,7 +29,7 @@ def _not_vanishing(value: float) -> float:
     return value
 
 
-# By name, as the reference shows them.
+# Named types, which the reference shows by name.
 Positive = TypeAliasType("Positive", Annotated[float, Gt(0), Le(MOST), AfterValidator(_not_vanishing)])
 Slenderness = TypeAliasType("Slenderness", Annotated[float, Gt(0), Lt(math.pi / 2), AfterValidator(_not_vanishing)])
 NotNegative = Annotated[float, Ge(0), Le(MOST)]
@@ -38,9 +39,9 @@ Number = Annotated[float, Ge(-MOST), Le(MOST)]
 class Block(Part):
     """The rigid block.
 
-    mass m [kg]; radius R [m], base corner to centre of mass; slenderness gamma [rad], angle of R to the
-    vertical; corner_inertia J_O [kg m2] about a base corner, default 4/3 m R^2 (rectangle); restitution
-    overrides the e_phi of eq. (7).
+    mass m [kg]; radius R [m], base corner to centre of mass; slenderness gamma [rad], angle of R to the vertical;
+    corner_inertia J_O [kg m2] about a base corner, default 4/3 m R^2 (rectangle); restitution e_phi, default that of
+    eq. (7).
     """
 
     table: ClassVar[str] = "block"
@@ -96,9 +97,9 @@ class Bearings(Part):
     """The bearings under the base; all stiffnesses and forces per bearing.
 
     algebraic: the hysteretic law of eqs (9)-(14). linear: f = ka x; kb, alpha and delta_k are not used.
-    bouc-wen: an ODE-state law matched to the f0, ka and kb of the algebraic one. bilinear: ka up to the yield force
-    F_y [N], kb after it; its characteristic strength is Q_d = F_y (1 - kb/ka). damping [N s/m] adds a viscous force to
-    any of them. x_max [m]: the displacement they are built for; nothing stops them there, but a peak beyond it is said.
+    bouc-wen: the Bouc-Wen law with the f0, ka and kb of the algebraic one. bilinear: ka up to the yield force F_y [N],
+    kb after it; its characteristic strength is Q_d = F_y (1 - kb/ka). damping [N s/m] adds a viscous force to any of
+    them. x_max [m]: design displacement; it is no stop, but a peak beyond it gives a warning.
     """
 
     table: ClassVar[str] = "bearings"
@@ -141,7 +142,7 @@ class Bearings(Part):
         return self
 
     def given(self, name: str) -> float:
-        """The number called `name`, one that this law needs."""
+        """The number called `name`, which this law needs."""
         return float(getattr(self, name))
 
 
@@ -160,12 +161,12 @@ class Start(Part):
 
 
 class Scene(Part):
-    """One thing to simulate. A part that is None is not modelled at all.
+    """All that is simulated. A part that is None is not modelled.
 
-    Without a base the block stands on rigid ground; without bearings the base slides freely; without a
-    motion the block moves freely. Without a duration [s] a run goes on until its outcome is decided. friction:
-    coefficient between the block and what it stands on; the analytic model never slides and only compares its demand
-    with it, an engine uses it.
+    Without a base the block stands on rigid ground; without bearings the base slides without friction; without a motion
+    the block moves freely. Without a duration [s] a run continues until its outcome is decided. friction: coefficient
+    between the block and its support. An engine uses it; the analytic model, which does not slide, compares its
+    friction demand with it.
     """
 
     block: Block
@@ -180,7 +181,7 @@ class Scene(Part):
 
     @property
     def end(self) -> float:
-        """When a run ends [s]: the duration, which every scene has that reaches a solver; see `until_decided`."""
+        """End of a run [s]: the duration, which is set in every scene passed to a solver; see `until_decided`."""
         assert self.duration is not None
         return self.duration
 
@@ -201,7 +202,7 @@ class Scene(Part):
 
     @model_validator(mode="after")
     def _times_are_resolved(self) -> Self:
-        """Refuse times so late that two doubles lie too far apart for the block, or for the motion, to move between."""
+        """Refuse times at which adjacent doubles are too far apart to resolve the block or the motion."""
         ends = {"run.duration": (self.duration or 0.0, self.rocking_frequency)}
         if self.motion is not None:
             fastest = max(self.rocking_frequency, getattr(self.motion, "frequency", 0.0))
@@ -243,10 +244,10 @@ class Scene(Part):
         return type(self)(**values)
 
     def digest(self) -> str:
-        """Content of the scene as a hash: scenes that simulate alike have equal digests (the name is left out)."""
+        """Hash of the scene without its name: equal for scenes with the same simulation."""
         content = self.model_dump(mode="python", exclude={"name", "motion"})
         content["motion"] = self.motion.digest() if self.motion else None
-        if self.bearings:  # the digests that stored results carry
+        if self.bearings:  # keeps the digests in stored results
             content["bearings"] = {
                 name: value
                 for name, value in content["bearings"].items()

@@ -1,8 +1,8 @@
-"""Scene files (TOML) to scenes; the mistakes in them become one `SceneError`.
+"""Scenes from scene files (TOML); all mistakes in a file are reported in one `SceneError`.
 
 SI units. Only ``[block]`` is needed; a part that is left out is not modelled::
 
-    # friction = 0.7          # optional: coefficient between the block and what it stands on; before the first table
+    # friction = 0.7          # optional: coefficient between the block and its support; before the first table
 
     [block]
     mass = 3172.05            # kg
@@ -22,7 +22,7 @@ SI units. Only ``[block]`` is needed; a part that is left out is not modelled::
     alpha = 44.69             # of algebraic and bouc-wen
     # yield_force = 700.0     # N, of bilinear: where ka ends and kb begins; in place of alpha
     # damping                 # N s/m, viscous
-    # x_max = 0.30            # m, what they are built for: a peak displacement beyond it is warned of
+    # x_max = 0.30            # m, design displacement: a peak beyond it gives a warning
 
     [motion]                  # without it free motion; exactly one of record, pulse, synthetic
     synthetic = "duzce-like"  # with optional seed
@@ -40,15 +40,15 @@ SI units. Only ``[block]`` is needed; a part that is left out is not modelled::
     [run]                     # optional: without it a run ends when its outcome is decided
     duration = 20.0           # s
 
-Under a vertical motion a_v gravity is g + a_v(t) for the block. The base rides on bearings that are taken as rigid
-vertically, which every such outcome says: real ones sway at some 10 to 20 Hz. Components of another step or length are
-brought together, and ``warnings`` say how. Where the normal force reaches zero the outcome is outside the model.
+Under a vertical motion a_v, gravity is g + a_v(t) for the block. The bearings are vertically rigid in the model, while
+real ones vibrate vertically at some 10 to 20 Hz; a warning says so. Components with different steps or lengths are
+resampled and padded, and ``warnings`` say how. Where the normal force reaches zero, the outcome is outside the model.
 
-An engine uses ``friction`` in place of its own setting; the analytic model, which does not slide, warns where its
-demand is above it.
+An engine uses ``friction`` in place of its own setting. The analytic model, which does not slide, warns if its friction
+demand exceeds it.
 
-``rocking run`` tries start, motion and restitution changed by a millionth in the analytic model, too, and warns where
-the outcome is another one then: on such an edge trust no solver.
+``rocking run`` also runs the analytic model with start, motion and restitution changed by a millionth. It warns if the
+outcome changes: so near an outcome boundary no solver can be trusted.
 """
 
 import tomllib
@@ -70,7 +70,7 @@ from .records import UNITS, fema, read_record
 from .scene import Base, Bearings, Block, NotNegative, Number, Positive, Scene, Start
 from .synthetic import DEFAULT_SEED, STYLES, synthetic_motion
 
-LARGEST, DEEPEST = 100_000, 100  # bytes of a scene file and dots in a line of it: far more than its keys take
+LARGEST, DEEPEST = 100_000, 100  # bytes of a scene file and dots in a line, far more than its keys need
 SHIPPED = Path(__file__).parent / "scenes"
 
 MOTIONS = {
@@ -81,7 +81,7 @@ MOTIONS = {
 
 
 def _as_text(found: object) -> object:
-    """A channel's number as text."""
+    """The number of a channel as text."""
     return str(found) if type(found) is int else found
 
 
@@ -91,7 +91,7 @@ class _Motion(Part):
     table: ClassVar[str] = "motion"
 
     record: str | None = None
-    units: Literal[*UNITS] | None = None  # type: ignore[valid-type]  # one list of names, here and where they are read
+    units: Literal[*UNITS] | None = None  # type: ignore[valid-type]  # names from the one list of them
     dt: Positive | None = None
     column: int | str | None = None
     channel: Annotated[str, BeforeValidator(_as_text)] | None = None
@@ -110,7 +110,7 @@ class _Motion(Part):
     scale: Number = 1.0
 
     def motion(self, folder: Path) -> SampledMotion | PulseMotion:
-        """The ground motion; records are looked up from `folder`."""
+        """The ground motion; paths of records are relative to `folder`."""
         kinds = [kind for kind in MOTIONS if getattr(self, kind) is not None]
         if len(kinds) != 1:
             problem = "names several motions at once" if kinds else "names no motion"
@@ -170,7 +170,7 @@ class _Motion(Part):
         return read_record(path, self.units, self.scale, dt=self.dt, **said)  # it does not say its unit
 
     def _recorded(self, folder: Path, key: Literal["record", "vertical"]) -> SampledMotion:
-        """The component that `key` names; a vertical one without a file is another channel of the record's."""
+        """The component that `key` names; a vertical one without a file is another channel of the record."""
         name = self.vertical or self.record if key == "vertical" else self.record
         assert name is not None  # checked
         path = Path(name) if fema.is_one(name) else folder / name
@@ -195,7 +195,7 @@ class _Run(Part):
 
 
 class _SceneFile(Part):
-    """A scene file as written; keys are those of the file."""
+    """A scene file with the keys of the file."""
 
     name: str = ""
     gravity: Positive = 9.81
@@ -219,8 +219,8 @@ def load_scene(path: str | PathLike[str]) -> Scene:
     Raises
     ------
     SceneError
-        Names the file, the key, what was found there and the remedy. It tells all mistakes in keys and their values,
-        and those of the motion; how the parts fit together is checked once each of them is right.
+        The message names the file, the key, the value and the remedy. It lists all mistakes in keys, in values and in
+        the motion. The consistency of the parts is checked after each of them is correct.
     """
     path = Path(path)
     if str(path) in shipped_scenes() and not path.exists():
@@ -235,7 +235,7 @@ def _parse(path: Path) -> dict[str, Any]:
     try:
         text = read_plain(path, LARGEST).decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
         for number, line in enumerate(text.split("\n"), 1):
-            if line.split("#")[0].count(".") > DEEPEST:  # the parser's time grows with the square of a key's parts
+            if line.split("#")[0].count(".") > DEEPEST:  # the parser takes quadratic time in the parts of a key
                 raise SceneError(
                     "scene", None, f"line {number} is nested too deeply", "write the tables of a scene file, one level"
                 )
@@ -256,7 +256,7 @@ def _parse(path: Path) -> dict[str, Any]:
 
 
 def _scene(table: Mapping[str, Any], path: Path) -> Scene:
-    """The scene of a file's tables; their mistakes, those of the motion and of parts that do not fit at once."""
+    """The scene from the tables of a file; raises all mistakes of tables, motion and consistency together."""
     mistakes: list[SceneError] = []
     file = motion = None
     scene: Scene | None = None
@@ -291,7 +291,7 @@ def _scene(table: Mapping[str, Any], path: Path) -> Scene:
 
 
 def _motion_alone(table: Mapping[str, Any]) -> _Motion | None:
-    """The table [motion] of a file with mistakes elsewhere; None where it is missing or has mistakes itself."""
+    """The table [motion] of a file with mistakes elsewhere; None if it is missing or has mistakes itself."""
     try:
         return _Motion.model_validate(table.get("motion"))
     except ValidationError:

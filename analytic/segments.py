@@ -1,4 +1,4 @@
-"""Ground motion cut where it is not smooth, so that an integrator need not step over a corner."""
+"""Smooth segments of a ground motion, so that an integrator need not step across a corner of it."""
 
 from __future__ import annotations
 

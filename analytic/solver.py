@@ -45,7 +45,7 @@ REST_RATE = 1e-8
 # History points where the motion has no sampling interval of its own.
 HISTORY_POINTS = 2000
 
-# Events of a kind kept in the first try; a run with more is repeated with room for all.
+# Events of a kind kept in the first run; a run with more is repeated with room for all.
 CAPACITY = 4096
 
 _NO_SAMPLES = np.zeros(2)
@@ -137,10 +137,10 @@ def simulate(
 ) -> Response:
     """Simulate a scene with the analytic rocking model.
 
-    Without a duration the run ends when its outcome is decided and its peaks are final (`decision`). With one, a base
-    that swings on under a block which will never lift again is followed no further than `longest_duration`. Where it
-    cuts it while the block is certain to overturn (rigid ground, after the motion), the outcome says so, and the time
-    of overturning lies beyond the end.
+    Without a duration the run ends when its outcome is decided and its peaks are final (`decision`). With a duration, a
+    base that oscillates under a block which will not lift again is followed up to `longest_duration` at most. If the
+    duration ends while the block is certain to overturn (rigid ground, after the motion), the outcome is "overturns",
+    and the time of overturning lies beyond the end.
 
     Parameters
     ----------
@@ -192,7 +192,7 @@ def simulate(
         totals, *result = kernel.run(par, shaking, chosen._replace(capacity=most))
     cpu = time.process_time() - begin
     response = _response(scene, par, totals, result, cpu, settings, history)
-    if totals[layout.WILL_OVERTURN] and totals[layout.MODE] == layout.ROCKING:  # cut while it falls
+    if totals[layout.WILL_OVERTURN] and totals[layout.MODE] == layout.ROCKING:  # ends during the fall
         later = par._replace(duration=par.duration + longest_duration(scene))
         totals, *_ = kernel.run(later, shaking, options(tolerance, rest_rate=rest_rate))
         over, fall = float(totals[layout.TIME]), float(totals[layout.FALL_TIME])
@@ -222,8 +222,8 @@ def _output_step(scene, asked, history):
 def compile_kernels(vertical: bool = False) -> None:
     """Load the compiled functions, or compile them: once per machine, some ten seconds.
 
-    `simulate` does so before its clock starts, and whoever starts one of his own does so before that. vertical : also
-    for motions with a vertical component.
+    `simulate` does so before it takes the time; call it before your own timing. vertical : also for motions with a
+    vertical component.
     """
     from .scene import Block, Scene
 
@@ -232,7 +232,7 @@ def compile_kernels(vertical: bool = False) -> None:
     with compiling():
         state = parameters(scene), Body(0.0, 0.0, 0.0), Base(0.0, 0.0, 0.0)
         kernel.run(state[0], quiet, options(output_step=1.0))
-        # what else solvers call from Python
+        # other functions that solvers call from Python
         BearingLaw.of(None).moved(0.0, 1e-6)
         will_not_overturn(*state, False)
         peaks_are_final(*state, (0.0, 0.0, 0.0))
@@ -240,7 +240,7 @@ def compile_kernels(vertical: bool = False) -> None:
 
 @functools.cache
 def versions() -> dict[str, str]:
-    """Versions of what the analytic model runs on."""
+    """Versions of Python and of the packages behind the analytic model."""
     import numba
 
     return {"numpy": np.__version__, "numba": numba.__version__}
@@ -301,7 +301,7 @@ def _warnings(scene: Scene, totals: np.ndarray, velocity: float) -> tuple[Cautio
     found += model_warnings(scene, float(totals[layout.FRICTION]), float(totals[layout.NORMAL]))
     peak = float(totals[layout.PEAK_X])
     found += limit_warnings(scene, peak)
-    drift = abs(velocity) * CAP_PERIODS * period(scene)  # what is left of rounding slides nowhere
+    drift = abs(velocity) * CAP_PERIODS * period(scene)  # rounding errors are no motion
     if scene.base is not None and scene.bearings is None and drift > PEAK_TOLERANCE * peak:
         words = (
             f"the base slides on at {velocity:.3g} m/s with no bearing to stop it: its displacement has no peak, the "

@@ -1,4 +1,4 @@
-"""One step of the kernel, part by part: stretch of ground motion, series, first event, end of step (compiled).
+"""Parts of a step of the kernel: interval of smooth ground motion, series, first event, end of step (compiled).
 
 `upright`: samples of the vertical motion, any for a pulse, None without one; what asks for it is decided when compiled.
 """
@@ -26,10 +26,10 @@ from .taylor import (
     rigid_series,
 )
 
-# No step of a rocking block reaches this far [1/omega_r] at a useful tolerance: from here its length is soon found.
+# First trial length of a step of a rocking block [1/omega_r]: no step is longer at a useful tolerance.
 FARTHEST = 4.0
 
-# The bearings' law, see `laws.Law`.
+# Functions of the bearing law, see `laws.Law`.
 mark, begin_step, reached = law_function("mark"), law_function("begin"), law_function("reached")
 
 
@@ -62,7 +62,7 @@ def ground_of_step(shaking, stretch, tau, h, A):
     kind = stretch.kind
     if shaking.frequency == 0 and kind != QUIET:  # a constant pulse, too
         kind = LINEAR_GROUND
-    phase = shaking.phase + shaking.frequency * tau  # not by t: late pulses are as exact as early ones
+    phase = shaking.phase + shaking.frequency * tau  # not from t, which would lose accuracy for late pulses
     if kind >= PULSE:
         h = min(h, 1.0 / shaking.frequency)
     level = stretch.a0 + stretch.slope * tau
@@ -109,7 +109,7 @@ def contact_of_step(par, step, tolerance, P):
             P[L.GROUND, k] = 0.0
         return step.h
     contact_series(order, par, step.factors, highest, P)
-    # the force too: where ka is close to kb it varies faster than the velocity shows
+    # the force, too: with ka close to kb it varies faster than the velocity
     return allowed_step(P[L.F], order, tolerance, allowed_step(P[L.V], order, tolerance, step.h))
 
 
@@ -120,7 +120,7 @@ def rocking_of_step(par, upright, kind, body, fresh, step, tolerance, P):
     h = min(step.h, FARTHEST / math.sqrt(par.p2))
     angle, used, reach = s * par.gamma - tilt, order, h
     P[L.PHI, 0], w[0], P[L.S, 0], P[L.C, 0] = tilt, rate, math.sin(angle), math.cos(angle)
-    if tilt == 0 and rate != 0 and kind != LINEAR_GROUND:  # a hop: its length tells the order it needs
+    if tilt == 0 and rate != 0 and kind != LINEAR_GROUND:  # after an impact: the swing's length determines the order
         back = hop_deceleration(par, s, step.gravity, P[L.GROUND, 0] if highest >= 0 else 0.0, P[L.F, 0])
         if back > 0:
             hop = 2 * abs(rate) / back
@@ -144,14 +144,14 @@ def rocking_of_step(par, upright, kind, body, fresh, step, tolerance, P):
         good = allowed_step(w, used, tolerance, good)
         if used == order or good == reach:
             return used, good
-        used, reach = order, h  # the hop was longer than it looked
+        used, reach = order, h  # the swing is longer than estimated
 
 
 @inner
 def first_event(shape, upright, body, refused, direction, step, P, work):
     """(kind of the first event in the step, its time since the start; NONE and the step's length without one).
 
-    refused : an onset of uplift was just a touch; direction : of the base's travel.
+    refused : the last onset of uplift was a graze; direction : of the base velocity.
     """
     s, tilt, _ = body
     found, h, order, event, phi = L.NONE, step.h, step.order, P[L.EVENT], P[L.PHI]
@@ -185,7 +185,7 @@ def first_event(shape, upright, body, refused, direction, step, P, work):
 
 @inlined
 def read_step(par, upright, body, step, options, arrays, written):
-    """History, diagnostics and ledger of the step; returns the rows of the history written."""
+    """Write history, diagnostics and energy ledger of the step; returns the rows of the history written."""
     rocking, moved = body.s != 0, step.h > 0
     if arrays.history.shape[0] > 0 and (moved or step.t == 0):
         written = write_history(par, body, step, options.output_step, arrays, written)
@@ -200,7 +200,7 @@ def read_step(par, upright, body, step, options, arrays, written):
 
 @inlined
 def end_of_block(body, step, peak_tilt, P, work):
-    """(tilt, rate, peak tilt) at the end of the step; a peak inside it is a root of the rate."""
+    """(tilt, rate, peak tilt) at the end of the step; a peak inside it is located as a root of the rate."""
     (s, _, rate), h, order, first = body, step.h, step.order, np.int64(0)
     phi, w, event = P[L.PHI], P[L.W], P[L.EVENT]
     tilt_end, rate_end = value(phi, order, h), value(w, order, h)
@@ -216,7 +216,7 @@ def end_of_block(body, step, peak_tilt, P, work):
 
 @inlined
 def end_of_base(par, found, base, branch, step, P):
-    """The base at the end of the step, at which the event `found` is."""
+    """The base at the end of the step, which is at the event `found`."""
     z, (direction, x_c, mark_c), h, order = base.z, branch, step.h, step.order
     x, v = value(P[L.X], order, h), value(P[L.V], order, h)
     if found == L.REVERSAL:

@@ -15,24 +15,24 @@ DEFAULT_SEED = 620
 PEAK = 0.515 * G  # m/s2
 DT, COUNT = 0.005, 5000
 PULSE = (
-    (0.75, 0.92),  # acceleration amplitude of the pulse over PEAK
+    (0.75, 0.92),  # acceleration amplitude of the pulse, over PEAK
     (0.70, 0.82),  # velocity amplitude, m/s
     (2.0, 3.5),  # cycles in the pulse
     (0.0, 2 * math.pi),  # phase, rad
     (3.5, 4.5),
 )  # time of its centre, s
-BAND = (1.0, 10.0)  # Hz, where the noise has its energy
-DECIMALS = 9  # samples are rounded to 1e-9 m/s2, so that another FFT or libm gives the same motion
+BAND = (1.0, 10.0)  # Hz, band of the noise
+DECIMALS = 9  # samples are rounded to 1e-9 m/s2, so that every FFT and libm gives the same motion
 
 
 def synthetic_motion(style: str = "duzce-like", seed: int = DEFAULT_SEED) -> SampledMotion:
     """A synthetic near-fault ground motion; equal seeds give equal motions.
 
     A velocity pulse (Mavroeidis and Papageorgiou 2003, eq. 3) of 0.70 to 0.82 m/s and period 0.95 to 1.36 s, with
-    random length, phase and place, plus noise of random phases between 1 and 10 Hz under a gamma envelope. The noise
-    is as strong as makes the peak acceleration 0.515 g. The ground velocity ends at zero.
+    random length, phase and time, plus noise of random phases between 1 and 10 Hz under a gamma envelope. The noise is
+    scaled so that the peak acceleration is 0.515 g. The final ground velocity is zero.
 
-    Only the raw 64-bit stream of PCG64 is used, which numpy guarantees to stay the same between versions.
+    Only the raw 64-bit stream of PCG64 is used, which numpy guarantees not to change between versions.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def synthetic_motion(style: str = "duzce-like", seed: int = DEFAULT_SEED) -> Sam
     envelope = (time / centre * np.exp(1 - time / centre)) ** 2
     noise = envelope * _band_noise(frequencies, uniform[5:])
     noise -= envelope * (noise.sum() / envelope.sum())  # no residual velocity
-    # The largest factor that keeps every |pulse + factor noise| at or below the peak: reached at one sample.
+    # The largest factor at which every |pulse + factor noise| is at most the peak; it is reached at one sample.
     heard = np.abs(noise) > 1e-12 * np.abs(noise).max()
     factor = ((PEAK - np.sign(noise[heard]) * pulse[heard]) / np.abs(noise[heard])).min()
     samples = np.round(pulse + factor * noise, DECIMALS)

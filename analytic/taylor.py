@@ -15,14 +15,14 @@ from .pulses import SERIES
 # Order of the series between the samples of a record, where steps end anyway (`rocking study speed-error`).
 SHORT_ORDER = 8
 
-# A damped motion decays until its numbers have no digits left; below this size [rad, m, ...] it sets no step.
+# A decayed motion below this size [rad, m, ...] does not limit the step.
 NEGLIGIBLE = 1e-200
 
-# A step is shortened by no more than this at once: powers of a long one overflow.
+# Largest reduction of a step at once, as powers of a long step overflow.
 MOST_SHRINK = 1e-3
 
 _bearing_term = law_function("term")
-USUAL_LAW = NUMBERS["algebraic"]  # the one whose series is unrolled
+USUAL_LAW = NUMBERS["algebraic"]  # its series is unrolled
 
 # Kinds of ground motion within a segment: none, linear, and from PULSE on the series of `pulses.SERIES`.
 QUIET, LINEAR_GROUND, PULSE = range(3)
@@ -52,7 +52,7 @@ def allowed_step(f, order, tolerance, h):
 
 @inner
 def hop_order(length, order, tolerance):
-    """Order that a hop of `length` [1/omega_r] needs, at most `order`; the series falls about as (length)^k."""
+    """Order for a swing of `length` [1/omega_r], at most `order`; the terms decrease about as (length)^k."""
     if length >= 0.25:
         return order
     return min(order, max(5, int(math.log(0.01 * tolerance) / math.log(2 * length)) + 3))
@@ -179,7 +179,7 @@ def base_series(order, par, factors, highest, P, G):
     """Rocking on the base, eqs (3)-(6), with c phi'' + n phi'^2 written as (c phi')'.
 
     M X + m (c phi')' = -F;   m c X + J phi'' = -m g n;   X = a_g + x''. With the series G of g + a_v, as many terms as
-    a_g has, that stands for g.
+    a_g has, G replaces g.
     """
     if order == SHORT_ORDER and par.law == USUAL_LAW:
         _base_series(SHORT_ORDER, USUAL_LAW, par, factors, highest, P, G)

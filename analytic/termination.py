@@ -1,4 +1,4 @@
-"""May a run that another solver made end here? The rules of `decision.py`, applied to the run's own end state."""
+"""The rules of `decision.py` applied to the end state of another solver's run: whether that run may end."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def is_decided(scene: Scene, response: Response, *, contact_tilt: float = 0.0) -> bool:
-    """Is the outcome of a run certain at its end? Rules (a), (b) and (c), applied to the run's own end state.
+    """Whether the outcome of a run is certain at its end, by rules (a), (b) and (c).
 
     Parameters
     ----------
@@ -29,13 +29,13 @@ def is_decided(scene: Scene, response: Response, *, contact_tilt: float = 0.0) -
     Returns
     -------
     bool
-        False for a failed run, and where it ended before the ground motion.
+        False for a failed run, and for one that ended before the ground motion.
     """
     return _at_end(scene, response, contact_tilt)[0]
 
 
 def is_finished(scene: Scene, response: Response, *, contact_tilt: float = 0.0) -> bool:
-    """Is the outcome of a run certain at its end, and can its peaks no longer grow? See `is_decided`."""
+    """Whether the outcome of a run is certain at its end and its peaks can no longer grow; see `is_decided`."""
     decided, state = _at_end(scene, response, contact_tilt)
     if not decided or state is None:
         return decided
@@ -44,7 +44,7 @@ def is_finished(scene: Scene, response: Response, *, contact_tilt: float = 0.0) 
 
 
 def _at_end(scene: Scene, response: Response, contact_tilt: float) -> tuple[bool, tuple[Parameters, Body, Base] | None]:
-    """(decided, the kernel's parameters and state, or None where the block has overturned or the run failed)."""
+    """(decided, the kernel's parameters and state; None if the block has overturned or the run failed)."""
     if response.outcome in ("overturns", "failed"):
         return response.outcome == "overturns", None
     par, end = parameters(scene), response.end
@@ -68,7 +68,7 @@ def until_decided(
     at_least: float = 0.0,
     finished: Callable[[Scene, Response], bool] = is_finished,
 ) -> Response:
-    """``simulate(scene)`` with durations that grow until the run has finished, or the longest is reached.
+    """``simulate(scene)`` with increasing durations until the run has finished or the longest is reached.
 
     Parameters
     ----------
@@ -77,9 +77,9 @@ def until_decided(
     scene : Scene
         Without a duration.
     at_least : float
-        The first duration tried [s], if it is longer than `shortest_duration`.
+        First duration [s], if longer than `shortest_duration`.
     finished : callable
-        Of (scene, response): may the run end here?
+        (scene, response) -> whether the run may end here.
     """
     longest, begin = longest_duration(scene), motion_end(scene)
     duration = min(max(shortest_duration(scene), at_least), longest)

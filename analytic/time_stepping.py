@@ -1,7 +1,7 @@
-"""A small fixed-step integrator that does what multibody engines do: it notices an impact only at a step's end.
+"""A small fixed-step integrator that, like multibody engines, detects an impact only at the end of a step.
 
-Semi-implicit Euler: accelerations at the step's start, velocities first, then positions. The impact law is the
-exact one of eqs (7), (8), so everything that differs from the event-driven model comes from time stepping alone.
+Semi-implicit Euler: accelerations at the start of the step, velocities first, then positions. The impact law is that of
+eqs (7), (8), so that all differences from the event-driven model come from time stepping.
 """
 
 from __future__ import annotations
@@ -37,14 +37,14 @@ def simulate_time_stepping(scene: Scene, *, step: float, history: bool = True) -
     ----------
     scene : Scene
     step : float
-        [s]; the duration is covered by whole steps, the last may reach past it.
+        [s]; the last step may end after the duration.
     history : bool
         Whether to keep the state at every step.
 
     Returns
     -------
     Response
-        engine "time-stepping", without energy ledger. All times and extremes are those of steps.
+        engine "time-stepping", without energy ledger. All times and extremes are at ends of steps.
 
     Raises
     ------
@@ -152,7 +152,7 @@ def _march(par, h, ground, gravity, rows):
         peak_a = max(peak_a, abs(absolute))
         friction = max(friction, abs(horizontal) / vertical if vertical > 0 else math.inf)
         normal = min(normal, vertical / (m * par.g))
-        if abs(tilt) <= gamma:  # what comes later is the last fall, or it comes back
+        if abs(tilt) <= gamma:  # otherwise the last fall, unless the block comes back
             held = peak_x, peak_a, friction, normal, t
         if k == len(ground) - 1:
             break
@@ -168,7 +168,7 @@ def _march(par, h, ground, gravity, rows):
                 v += par.arm * (before - rate)  # (8)
             impacts.append((t + h, before, rate, par.arm * (before - rate)))
             side = -side
-            if abs(rate) <= abs(spin) * h:  # it would not last a step
+            if abs(rate) <= abs(spin) * h:  # the swing would be shorter than a step
                 v += par.arm * rate
                 tilt, rate, side = 0.0, 0.0, 0.0
                 rests.append(t + h)

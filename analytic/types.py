@@ -1,4 +1,4 @@
-"""Types that signatures share; a type checker reads them, nothing runs them."""
+"""Types used in signatures, for a type checker."""
 
 from collections.abc import Callable
 from typing import TypeVar
@@ -6,4 +6,4 @@ from typing import TypeVar
 import numpy as np
 
 GroundFunction = Callable[[float], float]  # a_g(t) [m/s2] of one time [s]
-Values = TypeVar("Values", float, np.ndarray)  # one value, or an array of them: what goes in comes out
+Values = TypeVar("Values", float, np.ndarray)  # a number or an array; the result has the type of the argument

@@ -1,19 +1,20 @@
 """The same scene in multibody engines: ``get_engine("exudyn").simulate(scene)``.
 
-An engine is a package with an `engines.contract.Engine` called ``ENGINE``: the folders here are this project's own,
-others are declared by their packages (`engines.plugins`).
+An engine is a package with an `engines.contract.Engine` called ``ENGINE``. The folders here are this project's own;
+other packages declare theirs (`engines.plugins`).
 
-Tiers. ``defaults``: what a first script gets from the API. ``tuned``: only the engine moves a body or sets a velocity;
-the adapter chooses what a skilled user could choose in any scene. ``assisted``: the adapter sets a velocity, a position
-or a constraint by the model's event. No tuned variant has a parameter from the formula of the restitution: with another
-formula every trace stays the same, bit for bit (``tests/engines/test_tiers.py``).
+Each engine has one or more variants, of three kinds. ``defaults``: the engine as it comes, used as in a first script.
+``tuned``: only the engine moves a body or sets a velocity; the adapter chooses what a skilled user could choose in any
+scene. ``assisted``: the adapter sets a velocity, a position or a constraint by the model's event. No tuned variant uses
+the formula of the restitution: with another formula every trace stays the same, bit for bit
+(``tests/engines/test_kinds.py``).
 
 Examples
 --------
 >>> from analytic import load_scene, simulate
 >>> scene = load_scene("free-rocking-rigid")
 >>> engine = get_engine("exudyn")
->>> response = engine.simulate(scene)  # in its default variant; engine.variants has the others
+>>> response = engine.simulate(scene)  # in its main variant; engine.variants lists all
 >>> abs(response.impacts[0].rate_after / simulate(scene).impacts[0].rate_after - 1) < 1e-5
 True
 """
@@ -30,8 +31,8 @@ from .contract import EXTRA, Engine
 from .plugins import find_engines
 from .simulating import Simulator
 
-# Found, and imported by name, not by statement: a result of one engine depends neither on the records of the others nor
-# on which there are. The subject engines stand first.
+# Engines are imported by name, not by statement, so that a result of one engine does not depend on the other engines.
+# The subject engines come first.
 _records: list[Engine] = [import_module(f"{__name__}.{one.name}").ENGINE for one in iter_modules(__path__) if one.ispkg]
 _declared = {engine.name: engine for engine in sorted(_records, key=lambda engine: (not engine.subject, engine.name))}
 BUILT_IN = tuple(_declared)
@@ -60,12 +61,12 @@ def get_engine(name: str) -> Simulator:
 
 
 def available_engines(names: Iterable[str] | None = None) -> tuple[tuple[str, ...], dict[str, str]]:
-    """(those of the engines `names` that can be used, {name: why not} of the others); None: all that are declared.
+    """(engines of `names` that can be used, {name: why not} for the others); None: all that are declared.
 
     Raises
     ------
     ImportError
-        An adapter of this project is broken: that must not pass for a package that is absent.
+        An adapter of this project is broken, which must not be mistaken for an absent package.
     """
     present, missing = [], {}
     for name in (*ENGINES, *BROKEN) if names is None else names:
@@ -79,7 +80,7 @@ def available_engines(names: Iterable[str] | None = None) -> tuple[tuple[str, ..
 
 
 def missing_words(missing: Mapping[str, str]) -> list[str]:
-    """What to say of `missing` engines, {name: why} of `available_engines`: all extras of this project in one line."""
+    """Sentences on `missing` engines, {name: why} of `available_engines`; all extras of this project in one line."""
     extras = [name for name in missing if name in ENGINES and ENGINES[name].install == EXTRA.format(name)]
     words = [why for name, why in missing.items() if name not in extras]
     if extras:

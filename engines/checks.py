@@ -1,4 +1,4 @@
-"""What must hold in every engine run, however coarse: the bearing law, the block's place, no energy from nowhere."""
+"""Checks that every engine run must pass at any step: bearing law, position of the block, no energy gain."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
     from .swings import Trace
 
-# Energy gain of a run, in the units of `energy_gain`, above which it counts as failed: half of the motion's energy
-# came from nowhere. The errors of legitimate steps stay below a tenth of it (tests/engines/test_observe.py, steps up
-# to 1/60 s); a contact instability reaches 1, as its gain becomes the largest kinetic energy.
+# Energy gain of a run, in the units of `energy_gain`, above which it counts as failed: half of the motion's energy has
+# no physical source. Errors of stable steps stay below a tenth of it (tests/engines/test_observe.py, steps up to
+# 1/60 s). A contact instability reaches 1, as its gain becomes the largest kinetic energy.
 GAIN_LIMIT = 0.5
 
 # Sliding and height of the lower corner [share of R] that end a run as failed.
@@ -38,8 +38,9 @@ def replayed_force(scene: Scene, trace: Trace) -> np.ndarray:
 def replay_bearing(scene: Scene, trace: Trace) -> float:
     """Largest difference per bearing between the trace's force and the law replayed, over f0.
 
-    The steps of the trace are taken as monotonic, as an engine takes them that commits the history once per
-    accepted step. A linear law has no f0: there it is over the largest replayed force. 0 without bearings.
+    The displacement is taken as monotonic within each step, as in an engine that commits the history once per accepted
+    step. For a linear law, which has no f0, the difference is relative to the largest replayed force. 0 without
+    bearings.
     """
     if scene.bearings is None:
         return 0.0
@@ -52,9 +53,9 @@ def replay_bearing(scene: Scene, trace: Trace) -> float:
 def energy_balance(scene: Scene, trace: Trace) -> tuple[np.ndarray, np.ndarray]:
     """(balance, kinetic) [J], shape (n,): mechanical energy + loss in the bearings - input work, 0 at the start.
 
-    In the ground's frame, where the ground motion is the inertial load -a_g on both masses and -a_v on the block.
-    Constant in flight, about a corner or free, for an exact solution; every impact lowers it. Work by the trapezoidal
-    rule, over the trace's steps and the motion's samples together.
+    Taken in the ground's frame, where the ground motion is the inertial load -a_g on both masses and -a_v on the block.
+    For an exact solution it is constant while the block pivots or flies, and every impact lowers it. The work is
+    integrated by the trapezoidal rule over the union of the trace's steps and the motion's samples.
     """
     model = ArrayModel.of(scene)
     law, m, base = model.bearing, model.m, model.M - model.m if model.on_base else 0.0
@@ -73,7 +74,7 @@ def energy_balance(scene: Scene, trace: Trace) -> tuple[np.ndarray, np.ndarray]:
 
 
 def pivoting_centre(scene: Scene, trace: Trace) -> np.ndarray:
-    """Centre of a block that turns about its lower corner at the place of a standing one, as `Trace.centre`."""
+    """`Trace.centre` of a block that pivots about its lower corner without sliding."""
     side = np.where(trace.tilt < 0, -1.0, 1.0)
     c, n = ArrayModel.of(scene).lever(side, trace.tilt)
     return np.column_stack(
@@ -87,10 +88,10 @@ def pivoting_centre(scene: Scene, trace: Trace) -> np.ndarray:
 
 
 def check_place(scene: Scene, trace: Trace, overturned: bool) -> Failure | None:
-    """A `Failure` where at the end the block has slid on its base, sunk into it or left it, else None.
+    """A `Failure` if at the end the block has slid on its base, sunk into it or left it, else None.
 
-    On the way it may fly and land again: that is the engine's decision, as long as it lands where it stood. A block
-    that overturns may do so anywhere. None, too, where the engine's place of the block was not read.
+    During the run it may fly and land again, if it lands where it stood. A block that overturns may do so anywhere.
+    None, too, if the block's position was not read from the engine.
     """
     if trace.centre is None or overturned:
         return None
@@ -111,7 +112,7 @@ def check_place(scene: Scene, trace: Trace, overturned: bool) -> Failure | None:
 
 
 def _work(motion: Motion | None, time: np.ndarray, moved: np.ndarray, rate: np.ndarray) -> np.ndarray:
-    """Work [J] of the inertial load up to each step, from the sum of mass times displacement [kg m] and its rate."""
+    """Work [J] of the inertial load up to each step; moved: sum of mass times displacement [kg m]; rate: its rate."""
     if motion is None:
         return np.zeros_like(time)
     fine, between = time, moved
@@ -127,16 +128,15 @@ def _trapezoid(force: np.ndarray, path: np.ndarray) -> np.ndarray:
 
 
 def energy_gain(scene: Scene, trace: Trace) -> float:
-    """Largest rise of `energy_balance` over its lowest value so far; such a rise has no physical cause.
+    """Largest rise of `energy_balance` over its lowest earlier value; such a rise has no physical cause.
 
-    In units of m g R (1 - cos gamma), which takes the block from rest to the unstable point, or of the largest
-    kinetic energy where that is more. NaN where the energy overflows. Steps within ``trace.settle`` after a
-    crossing of tilt = 0 are left out.
+    Relative to the larger of m g R (1 - cos gamma), the energy from rest to the unstable point, and the largest kinetic
+    energy. NaN where the energy overflows. Steps within ``trace.settle`` after a crossing of tilt = 0 are left out.
     """
     block = scene.block
     level = low = rise = 0.0
     unit = block.mass * scene.gravity * block.radius * (1 - math.cos(block.slenderness))
-    with np.errstate(over="ignore", invalid="ignore"):  # a state that exploded has no balance: NaN
+    with np.errstate(over="ignore", invalid="ignore"):  # the balance of an unstable run is NaN
         for piece in trace.pieces(_settled(trace)):
             balance, kinetic = energy_balance(scene, piece)
             balance = level + balance
@@ -147,7 +147,7 @@ def energy_gain(scene: Scene, trace: Trace) -> float:
 
 
 def check_energy(scene: Scene, trace: Trace) -> Failure | None:
-    """A `Failure` where a run gained energy beyond `GAIN_LIMIT`, or its energy overflows, else None."""
+    """A `Failure` if a run gains more energy than `GAIN_LIMIT`, or its energy overflows, else None."""
     gain = energy_gain(scene, trace)
     if gain <= GAIN_LIMIT:
         return None
@@ -157,9 +157,9 @@ def check_energy(scene: Scene, trace: Trace) -> Failure | None:
 
 
 def _settled(trace: Trace) -> np.ndarray:
-    """Indices of the steps outside the relaxation of a compliant contact after each crossing of tilt = 0.
+    """Indices of the steps, without those in which a compliant contact relaxes after a crossing of tilt = 0.
 
-    There the block does not pivot about its corner, and the energy of a pivoting block does not describe it.
+    In those the block does not pivot about its corner, so that the energy of a pivoting block does not apply.
     """
     crossings = trace.time[1:][np.diff(np.sign(trace.tilt)) != 0]
     last = np.searchsorted(crossings, trace.time, side="right") - 1

@@ -1,26 +1,28 @@
-"""Is an engine's run right? What it has other than the analytic model of the same scene, as data.
+"""Differences between an engine's run and the analytic model's run of the same scene.
 
-A `Difference` is one beyond its limit:
+A `Difference` is reported where a limit is exceeded:
 
-- outcome: another one, where both are decided.
+- outcome: it differs, and both runs are decided.
 - peak tilt, of a block that stays upright, and peak base displacement: by more than `PEAK` of the model's. A tilt below
-  `LEAST_TILT` of the slenderness is compared as one of that size, a displacement below `LEAST_DISPLACEMENT` of R gamma
-  likewise. Of a block that overturns the displacement is that up to its last passage of the slenderness.
-- of a block that overturns the time of that passage, by more than `FALL` of a rocking period 2 pi/omega_r, and the
-  number of impacts that count before it; one whose rate is within `PEAK` of counting may count or not. And the time of
-  overturning, where the model overturns, by `FALL` of a period and what the model takes from where its contact no
-  longer holds (N <= 0, or more friction than there is): from there on an engine's block slides or flies, by up to a
-  sixth of that time.
-- restitution: an impact's rate after over rate before differs by more than `RESTITUTION` from that of the model's
-  impact that matches it; or, where none does, what is lost, 1 - e^2, by more than `LOSS` of the model's, which tells
-  more of slender blocks. A loss below `LEAST_LOSS` is compared as one of that size.
-- missing or extra impacts: without a match (`engines.matching`), up to where a match is `OUT_OF_PHASE`.
+  `LEAST_TILT` of the slenderness is compared as one of that size, and so is a displacement below `LEAST_DISPLACEMENT`
+  of R gamma. If the block overturns, the displacement is the peak up to its last passage of the slenderness.
+- last passage of the slenderness, of a block that overturns: its time by more than `FALL` of a rocking period
+  2 pi/omega_r, or the number of impacts that count before it. An impact whose rate is within `PEAK` of counting may
+  count or not.
+- time of overturning, where the model overturns: by more than `FALL` of a period plus the time that the model takes
+  from the loss of contact on (N <= 0, or a friction demand above the friction available). From there on the block of an
+  engine slides or flies, and this time differs by up to a sixth.
+- restitution: the ratio of the rates after and before an impact differs by more than `RESTITUTION` from that of the
+  matching impact of the model. Where no impact exceeds this, the loss 1 - e^2 is compared, by `LOSS` of the model's,
+  which is more sensitive for slender blocks. A loss below `LEAST_LOSS` is compared as one of that size.
+- missing or extra impacts: impacts without a match (`engines.matching`), up to the first one that is `OUT_OF_PHASE`.
 
-A run cannot be compared where the model does not hold (N <= 0, a friction demand that no contact gives), or reaches no
-end. The model is run again with start, motion, slenderness and restitution changed by `copies.CHANGE`. Where such a
-copy differs from the model in the outcome, a peak or a time, the scene is "on an edge", for every engine alike: an
-outcome that a copy has is no difference there, nor a number between those of the copies with the run's outcome, widened
-by the limit. Impacts are compared up to the first one that the copies do not share.
+A run cannot be compared where the model does not hold (N <= 0, or a friction demand that no contact provides), or does
+not reach an end. The model is also run with start, motion, slenderness and restitution changed by `copies.CHANGE`.
+Where such a copy differs from the model in the outcome, a peak or a time, the scene is near an outcome boundary, for
+all engines alike; the stored value is "on an edge". There, an outcome that a copy has is not a difference. Neither is a
+number within the range of the copies with the run's outcome, widened by the limit. Impacts are compared up to the first
+one that the copies do not share.
 """
 
 from __future__ import annotations
@@ -46,21 +48,21 @@ if TYPE_CHECKING:
 
 PEAK, RESTITUTION, LOSS, FALL = 0.02, 0.01, 0.1, 0.02
 LEAST_DISPLACEMENT = 1e-5
-LEAST_LOSS = 0.02  # the least of a statue: slenderness .1, inertia about a corner 2 m R^2, rigid ground; eq. (7)
-FRICTION = 5.0  # what a scene without a coefficient has in every tuned variant: no sliding
-OUT_OF_PHASE = 0.1  # of a swing: from an impact on that comes so much earlier or later, none is missed
-LAST = 0.01  # of a rocking period before the end, in which an impact may come in one run and not in the other
+LEAST_LOSS = 0.02  # smallest of the statue range by eq. (7): slenderness .1, J_O = 2 m R^2, rigid ground
+FRICTION = 5.0  # coefficient in every tuned variant where the scene gives none: no sliding
+OUT_OF_PHASE = 0.1  # share of a swing by which an impact is early or late; no later impact counts as missing
+LAST = 0.01  # share of a rocking period before the end in which an impact may occur in one run only
 FALLS = "overturns"
-END = {"outcome", "fall_time", "overturning_time", "impacts_before_fall"}  # quantities that say how the block ends
-FALL_POINTS, MOST_POINTS = 200, 100_000  # at which a last fall is looked at, and of a run up to it at most
+END = {"outcome", "fall_time", "overturning_time", "impacts_before_fall"}  # quantities of the block's end
+FALL_POINTS, MOST_POINTS = 200, 100_000  # samples of the last fall, and at most of the run up to its end
 
 
 @dataclass(frozen=True)
 class Reference:
-    """What runs of a scene are compared with, the same for all solvers.
+    """The reference that all engines' runs of a scene are compared with.
 
-    model: the analytic model's run. copies: those of the near copies, none where nothing can be compared. comparable:
-    as `Response.comparable` says it. near: in what a copy differs from the model, names of `response.DIFFERENCES`.
+    model: the analytic model's run. copies: runs of the near copies, empty where nothing can be compared. comparable:
+    see `Response.comparable`. near: quantities in which a copy differs from the model, keys of `response.DIFFERENCES`.
     until: time [s] of the first impact that the copies do not share; inf where they share all.
     """
 
@@ -72,9 +74,9 @@ class Reference:
 
     @classmethod
     def of(cls, scene: Scene, model: Response | None = None) -> Self:
-        """That of a scene; it costs some ten runs of the model.
+        """The reference of a scene; it takes some ten runs of the model.
 
-        model : its run of the scene itself, where it is known.
+        model : the model's run of the scene itself, if known.
         """
         try:
             model = model or simulate(scene, history=False)
@@ -92,14 +94,14 @@ class Reference:
 
     @property
     def end_comparable(self) -> str:
-        """`comparable` of how the block ends: "on an edge" only where a copy ends otherwise."""
+        """`comparable` for the block's end alone: "on an edge" only where the end of a copy differs."""
         return COMPARED if self.comparable == EDGE and not self.near & END else self.comparable
 
 
 def compare(scene: Scene, response: Response, reference: Reference | None = None) -> Response:
     """An engine's response with its `differences` from the analytic model, and whether it is `comparable`.
 
-    reference : of the scene, where it is known. What has failed is not compared.
+    reference : of the scene, if known. A failed run is not compared.
     """
     if response.failure:
         return response
@@ -108,7 +110,7 @@ def compare(scene: Scene, response: Response, reference: Reference | None = None
 
 
 def differences(scene: Scene, reference: Reference, run: Response) -> tuple[Difference, ...]:
-    """What a run has other than its reference; nothing where it cannot be compared."""
+    """Differences of a run from its reference; none where it cannot be compared."""
     if reference.model is None or reference.comparable not in JUDGED:
         return ()
     known = (reference.model, *reference.copies)
@@ -116,7 +118,7 @@ def differences(scene: Scene, reference: Reference, run: Response) -> tuple[Diff
 
 
 def _numbers(scene: Scene, known: Sequence[Response], run: Response) -> list[Difference]:
-    """Differences of outcome, peaks and times from all of some runs, the first being the model's."""
+    """Differences of outcome, peaks and times from all `known` runs, the first of which is the model's."""
     model, found = known[0], []
     decided = [one for one in known if one.decided]
     if run.decided and model.decided and _outcome(scene, run) not in {_outcome(scene, one) for one in decided}:
@@ -137,17 +139,17 @@ def _numbers(scene: Scene, known: Sequence[Response], run: Response) -> list[Dif
 
 
 def _own(known: Sequence[Response], alike: Sequence[Response], values: Sequence[float]) -> float | None:
-    """Of the values of runs that end `alike` that of the model; None where it ends otherwise."""
+    """The model's value among `values` of the runs that end `alike`; None if the model's end differs."""
     return values[0] if alike[0] is known[0] else None
 
 
 def _span(known: Sequence[Response], low: float, high: float) -> tuple[float, float] | None:
-    """Between which a number lies in the model near the scene; None where that was not asked."""
+    """(lowest, highest) value in the model near the scene; None where no copies were run."""
     return (low, high) if len(known) > 1 else None
 
 
 def _room(scene: Scene, name: str, value: float) -> float:
-    """By how much a number may differ from that of the model, in its unit."""
+    """Limit of the difference of a number from the model's `value`, in its unit."""
     gamma = scene.block.slenderness
     if name == "peak_tilt":
         return PEAK * max(value, LEAST_TILT * gamma)
@@ -159,19 +161,19 @@ def _room(scene: Scene, name: str, value: float) -> float:
 def _overturning(
     scene: Scene, known: Sequence[Response], alike: Sequence[Response], run: Response, found: Sequence[Difference]
 ) -> list[Difference]:
-    """The difference in the time of overturning, of runs whose falls begin alike as the model's own does."""
+    """The difference in the time of overturning, for runs whose fall begins as the model's does."""
     if any(one.quantity == "fall_time" for one in found) or known[0].outcome != FALLS:
         return []
     here, times, room = run.overturning_time, [one.overturning_time for one in alike], _room(scene, "fall_time", 0.0)
     low, high = min(times), max(times)
-    for more in (lambda: 0.0, lambda: times[0] - _released(scene, known[0])):  # the second costs a run
+    for more in (lambda: 0.0, lambda: times[0] - _released(scene, known[0])):  # the second takes a run
         if low - room - (late := more()) <= here <= high + room + late:
             return []
     return [Difference("overturning_time", here, times[0], room + late, _span(known, low, high))]
 
 
 def _released(scene: Scene, model: Response) -> float:
-    """Time [s] from which the model's contact does not hold in its last fall, at most that of overturning."""
+    """Time [s] at which the model loses contact in its last fall, at most that of overturning."""
     over = model.overturning_time
     step = max((over - model.fall_time) / FALL_POINTS, over / MOST_POINTS)
     history = simulate(scene.with_(duration=over), output_step=step).history
@@ -185,7 +187,7 @@ def _before_fall(scene: Scene, known: Sequence[Response], alike: Sequence[Respon
     """The difference in the number of impacts before the last passage of the slenderness."""
 
     def numbers(response: Response) -> list[int]:
-        """At least, as it is, at most."""
+        """(lowest, actual, highest) number of impacts that count."""
         impacts = impacts_of(response)
         shares = COUNTED * (1 + PEAK), COUNTED, COUNTED * (1 - PEAK)
         before = ~(impacts[:, 0] > response.fall_time)
@@ -220,7 +222,7 @@ def _impact_differences(scene: Scene, model: Response, run: Response, until: flo
 
 
 def _restitution_differences(here: np.ndarray, there: np.ndarray) -> list[Difference]:
-    """The restitution e of the matched impact furthest beyond its limit; where all keep it, the loss 1 - e^2."""
+    """Difference of the restitution e at the matched impact furthest beyond its limit, else of the loss 1 - e^2."""
     if not len(here):
         return []
     lost, meant = 1 - here**2, 1 - there**2
@@ -235,13 +237,13 @@ def _restitution_differences(here: np.ndarray, there: np.ndarray) -> list[Differ
 
 
 def _outcome(scene: Scene, response: Response) -> str:
-    """The outcome; a tilt that counts as none stands."""
+    """The outcome; "stands" where the peak tilt is too small to count."""
     none = PEAK * LEAST_TILT * scene.block.slenderness
     return "stands" if response.outcome == "rocks" and response.peak_tilt < none else response.outcome
 
 
 def _outside(scene: Scene, model: Response) -> str | None:
-    """Why no run of a scene can be compared with the model's, or None."""
+    """Why no run of the scene can be compared with the model's, or None."""
     if model.failure:
         return f"the analytic model fails: {model.failure.reason}"
     if not model.min_normal_ratio > 0:

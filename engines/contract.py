@@ -2,14 +2,14 @@
 
 A package that offers an engine holds one `Engine`. The adapter, a module of its own, holds
 
-- ``VARIANTS``: {name: `Variant`}, the default first;
+- ``VARIANTS``: {name: `Variant`}; the first is the main variant, taken where none is named;
 - ``versions()``: {package: version} of what computes;
 - ``run(scene, variant, settings)``: a `Run` of a scene with a duration; `variant` is a name, `settings` an instance of
   that variant's dataclass, both checked. Where the motion has a `vertical` one, the block's weight is m (g + a_v).
 
 All else is the same for every engine and is done in `engines.simulating`: settings are checked, a scene without a
-duration runs until its outcome is decided, events and peaks are found outside the engine, and the response is compared
-with the analytic model.
+duration runs until its outcome is decided, events and peaks are located outside the engine, and the response is
+compared with the analytic model.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ if TYPE_CHECKING:
     from .swings import Trace
     from .tolerance_rows import ToleranceRow
 
-# How far the engine is on its own: "defaults", what a first script gets from the API; "tuned", only the engine moves a
-# body or sets a velocity; "assisted", the adapter sets a velocity, a position or a constraint by the model's event.
-TIERS = ("defaults", "tuned", "assisted")
+# Kinds of a variant. "defaults": the engine as it comes, used as in a first script. "tuned": only the engine moves a
+# body or sets a velocity. "assisted": the adapter sets a velocity, a position or a constraint by the model's event.
+KINDS = ("defaults", "tuned", "assisted")
 EXTRA = 'pip install -e ".[{}]" in a checkout of this project'  # how to install an engine that is an extra
-STEPS = ("step", "largest_step", "longest_step")  # names of a setting that is the longest step [s]
+STEPS = ("step", "largest_step", "longest_step")  # names of the setting that bounds the step [s]
 
 
 class Mismatch(RuntimeError):
@@ -41,44 +41,45 @@ class Mismatch(RuntimeError):
 
 @dataclass(frozen=True)
 class Variant:
-    """One way to set an engine up, and what is known of it.
+    """One engine choice: its settings, its kind, its levels, and what is known of it.
 
     Parameters
     ----------
     settings : object
-        Instance of a frozen dataclass of numbers above 0, the accuracy parameter first. A field ``friction`` yields to
-        the scene's coefficient.
-    tier : str
-        One of `TIERS`.
+        Instance of a frozen dataclass of numbers above 0, the accuracy parameter first. The scene's coefficient of
+        friction, where it has one, replaces a field ``friction``.
+    kind : str
+        One of `KINDS`: what the engine computes on its own. The key "tier" in JSON and in stored rows.
     levels : tuple of float
-        Refinement levels: values of the accuracy parameter from coarse to fine, the default among them.
+        Values of the accuracy parameter from coarse to fine, the default among them.
     computes, imposes : str
-        What the engine computes, and what the adapter imposes on it beside the bearings' force, the ground's
-        acceleration and the settings; in words.
+        What the engine computes, and what the adapter imposes beside the bearing force, the ground acceleration and
+        the settings; in words.
     takes_restitution : bool
-        The adapter, not the engine, applies the impact: a scene may give the restitution.
+        The adapter, not the engine, applies the impact, so that a scene may give the restitution.
     finer : tuple of dict
-        Settings that may cure a run that is not right, tried in turn; without any, the levels beyond the default.
+        Settings to try in turn where a run is not right; by default the levels finer than the default.
     varied : dict
-        {setting: values} of what else, changed alone, tells what the variant's error depends on.
+        {setting: values}: settings, changed one at a time, on which the variant's error may depend.
     constants : dict
-        {name: what it is} of numbers that were chosen, each with its own effect on a run: a setting, or "module:NAME"
-        of a module-level number. What follows by a formula, or only ends a run that has failed, is none.
+        {name: what it is}: numbers that were chosen and that affect a run. A name is a setting, or "module:NAME" of a
+        module-level number. Numbers that follow from a formula, or that only end a failed run, are left out.
     friction : float or None
-        Coefficient of the contact where a scene gives none, if it is so low that a block may slide.
+        Coefficient of friction of the contact where the scene gives none, if it is low enough for a block to slide.
     flight_damping : float or None
-        d [1/s] of a built-in damping in flight: force d m v (1 + |v|), moment d I w (1 + |w|), SI units.
+        Coefficient d [1/s] of a built-in damping in flight: force d m v (1 + |v|), moment d I w (1 + |w|), SI units.
     free_block : str or None
-        ``module:function``, called as a solver with ``step`` [s]: the same with a free block of six degrees of freedom.
+        ``module:function``, called as a solver with ``step`` [s]: the variant with a free block of six degrees of
+        freedom.
 
     Raises
     ------
     ValueError
-        An unknown tier, levels without the default, or a value for a setting that does not exist.
+        The kind is unknown, the levels lack the default, or a value is given for a setting that does not exist.
     """
 
     settings: Any
-    tier: str
+    kind: str
     levels: tuple[float, ...]
     computes: str
     imposes: str
@@ -91,8 +92,8 @@ class Variant:
     free_block: str | None = None
 
     def __post_init__(self) -> None:
-        if self.tier not in TIERS:
-            raise ValueError(f"tier = {self.tier!r}: choose one of {', '.join(TIERS)}")
+        if self.kind not in KINDS:
+            raise ValueError(f"kind = {self.kind!r}: choose one of {', '.join(KINDS)}")
         if self.default not in self.levels:
             raise ValueError(
                 f"levels = {self.levels!r}: it lacks the default, {self.accuracy_parameter} = {self.default!r}"
@@ -118,18 +119,18 @@ class Variant:
 
     @property
     def step(self) -> str | None:
-        """Name of the setting that is the longest step [s], one of `STEPS`; None: it has none."""
+        """Name of the setting that bounds the step [s], one of `STEPS`; None where there is none."""
         names = [setting.name for setting in dataclasses.fields(self.settings)]
         return next((name for name in STEPS if name in names), None)
 
 
 @dataclass(frozen=True)
 class Run:
-    """What an adapter hands back of one run.
+    """What an adapter returns of one run.
 
-    trace: the accepted steps, None where there are fewer than two. steps: how many were made. cpu_seconds: of the
-    stepping alone. failure: what the engine or the adapter found wrong. ended: "overturned" where the run was stopped
-    at overturning. warnings: what is to be said of the run; a sentence is taken as it is.
+    trace: the accepted steps, None if there are fewer than two. steps: their number. cpu_seconds: of the stepping
+    alone. failure: what the engine or the adapter found wrong. ended: "overturned" if the run was stopped at
+    overturning. warnings: `Caution` records, or sentences that are shown as they are.
     """
 
     trace: Trace | None
@@ -142,30 +143,30 @@ class Run:
 
 @dataclass(frozen=True)
 class Engine:
-    """An engine as others know it; its package is imported only when it is asked for more than its record.
+    """The record of an engine. Its package is imported only when more than the record is needed.
 
     Parameters
     ----------
     name : str
-        As users call it.
+        The name in commands and results.
     package : str
-        What must be importable.
+        The Python package that must be importable.
     install : str
         How to install it.
     colour, marker : str
     dashes : str or tuple
-        In every figure; a line style of matplotlib, as (0, (6, 1)) if it is none of the named ones.
+        Style in all figures; `dashes` is a line style of matplotlib, named or as (0, (6, 1)).
     adapter : str
         Name of the module with ``VARIANTS``, ``versions`` and ``run``.
     imported : str or None
-        Name of a module that imports the package, where it wants to be imported in its own way.
+        Name of a module that imports the package, if the import needs preparation.
     tolerances : str or None
-        Name of a module whose ``TOLERANCES``, {variant: tuple of `ToleranceRow`}, are its rows of the tolerance
-        table.
+        Name of a module whose ``TOLERANCES``, {variant: tuple of `ToleranceRow`}, are the engine's rows of the
+        tolerance table.
     subject : bool
-        One of those that the question of the studies is about; the others stand beside them.
+        The studies are about this engine; engines that are no subject are shown for comparison.
     origin : str
-        What declared an engine from outside; "" for those of this project.
+        The entry point that declared an engine of another package; "" for engines of this project.
     """
 
     name: str
@@ -188,8 +189,8 @@ class Engine:
         EngineNotInstalled
             The engine's package cannot be imported; the message says how to install it.
         EngineBroken
-            An adapter from outside cannot be imported, or lacks what the contract asks for. One of this project raises
-            its own error: that must not pass for a package that is absent.
+            The adapter of another package cannot be imported, or lacks what the contract asks for. An adapter of this
+            project raises its own error, which must not be mistaken for an absent package.
         """
         try:
             for name in filter(None, (self.imported, self.package)):
@@ -216,15 +217,15 @@ class Engine:
         return module
 
     def tolerance_rows(self) -> dict[str, tuple[ToleranceRow, ...]]:
-        """Its rows of the tolerance table, by variant; the package need not be installed, but one from outside that is
-        broken has none."""
+        """The engine's rows of the tolerance table, by variant. The package need not be installed; a broken engine of
+        another package has no rows."""
         if not self.tolerances or (self.origin and not self.installed):
             return {}
         return import_module(self.tolerances).TOLERANCES
 
     @property
     def installed(self) -> bool:
-        """Whether it can be used here."""
+        """Whether the engine can be used here."""
         try:
             self.load()
         except EngineNotInstalled:
@@ -233,12 +234,12 @@ class Engine:
 
     @property
     def variants(self) -> dict[str, Variant]:
-        """By name, the default first."""
+        """{name: variant}; the first is taken where none is named."""
         return self.load().VARIANTS
 
     @property
     def default_variant(self) -> str:
-        """Name of the variant taken where none is named."""
+        """Name of the main variant, the first, which is taken where none is named."""
         return next(iter(self.variants))
 
     def versions(self) -> dict[str, str]:
@@ -247,7 +248,7 @@ class Engine:
         Raises
         ------
         EngineBroken
-            An adapter from outside cannot say them.
+            The function ``versions`` of another package's adapter fails.
         """
         adapter = self.load()
         if not self.origin:

@@ -1,4 +1,4 @@
-"""Scenes next to a scene: what a run does there shows how sensitive its result is to the last digits."""
+"""Near copies of a scene: runs of them show how sensitive a result is to small changes of the scene."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from analytic.rocking import restitution
 if TYPE_CHECKING:
     from analytic import Scene
 
-CHANGE = 1e-4  # relative; a good engine's own errors are 1e-5 to 1e-4
+CHANGE = 1e-4  # relative; errors of tuned engines are 1e-5 to 1e-4
 
 
 def near_copies(scene: Scene) -> Iterator[Scene]:
@@ -22,7 +22,7 @@ def near_copies(scene: Scene) -> Iterator[Scene]:
 
 
 def changed_copies(scene: Scene, change: float) -> dict[str, Scene]:
-    """Scenes next to `scene`, by name: restitution, motion and start changed by +-change, relative."""
+    """{name: scene} with restitution, motion and start changed by +-change, relative."""
     copies = {}
     e, start = restitution(scene), scene.start
     for sign, word in ((1, "up"), (-1, "down")):
@@ -38,7 +38,7 @@ def changed_copies(scene: Scene, change: float) -> dict[str, Scene]:
 
 
 def _changed(scene: Scene, **change: dict[str, float]) -> Iterator[Scene]:
-    """The scene changed; none where that is no scene, at the end of a range."""
+    """The changed scene; none where the change leaves the range of a scene."""
     try:
         yield scene.with_(**change)
     except SceneError:

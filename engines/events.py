@@ -1,4 +1,4 @@
-"""Impacts, uplifts and rests of a trace, and the forces at its contact: measured by the model's equations."""
+"""Location of impacts, uplifts and rests in a trace, and its contact forces, by the model's equations."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
 
     from .swings import Swings, Trace
 
-# A landing after which the block stays in flat contact counts as an impact with rate 0 after it where the rate
-# before it is this many times the rate that leads to the edge of contact; a weaker one is the tail of a chatter.
+# A landing after which the block stays in flat contact counts as an impact with rate 0 after it, if the rate before it
+# is at least this many times the rate that just reaches contact_tilt. A weaker one is the end of a chatter.
 LANDING = 10.0
-# Share of a rate that may come from the time between a landing and a lift that should be one.
+# Share of a rate that may come from the time between a landing and a lift that are one impact.
 SURE = 0.1
-# Impacts count as ones that no engine may miss from this share of the largest tilt rate on, and from CLEAR times the
-# rate that leads to the edge of contact: coarse steps step over the smaller ones at the end of a chatter.
+# An engine must not miss impacts above this share of the largest tilt rate and above CLEAR times the rate that just
+# reaches contact_tilt. Coarse steps skip smaller ones at the end of a chatter.
 STRONG, CLEAR = 0.2, 3.0
-# Rate after an impact over that before above which a run counts as failed: no impact gives energy. Tuned variants
-# stay below 1, exact motions read at random steps too; first scripts come to 1.1 by the errors of their steps.
+# Ratio of the rates after and before an impact above which a run counts as failed, as no impact adds energy. Tuned
+# variants and exact motions sampled at random steps stay below 1; first scripts reach 1.1 by their step errors.
 MOST_RESTITUTION = 1.2
 
 
@@ -36,8 +36,8 @@ def find_events(
 ) -> tuple[tuple[Impact, ...], tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
     """(impacts, uplifts, rests, missed) of the swings of a trace; see `observe`.
 
-    missed: times [s] at which a swing ends and the next begins on the other side, with no impact or landing resolved
-    between, though both count by `strong_swings`.
+    missed: times [s] at which a swing ends and the next begins on the other side without a resolved impact or landing
+    between them, although both count by `strong_swings`.
     """
     n = len(swings)
     if n == 0:
@@ -61,14 +61,14 @@ def find_events(
                 )
                 continue
             if swings.side[i + 1] == swings.side[i] and not np.isfinite(land[i]):
-                continue  # it grazed contact without landing
+                continue  # a graze of contact without a landing
         landing = float(land[i]) if np.isfinite(land[i]) else float(trace.time[last])
         limit, pull = _limit_time(model, scene, trace, last, swings.side[i], landing, before[i])
         turned = following is not None and swings.side[i + 1] == -swings.side[i] and counts[i] and counts[i + 1]
         if following is not None and trace.time[following] < limit:
             if turned:
                 missed.append(float(trace.time[last]))
-            continue  # still chattering, below resolution
+            continue  # chatter below the resolution
         strong = pull > 0 and abs(before[i]) > LANDING * math.sqrt(2 * pull * trace.contact_tilt)
         if strong:
             k = min(int(np.searchsorted(trace.time, landing)) + 1, len(trace.time) - 1)
@@ -86,9 +86,9 @@ def find_events(
 
 
 def _passes(trace: Trace, swings: Swings, i: int, apart: float, before: float, after: float, pull: float) -> bool:
-    """Whether swing i goes through contact into the next one, on the other side, without coming to rest between.
+    """Whether swing i passes through contact into the next one, on the other side, without a rest between them.
 
-    apart: from landing to lift [s]; before, after: tilt rates there [rad/s]; pull: see `_pull`.
+    apart: time from landing to lift [s]; before, after: tilt rates there [rad/s]; pull: see `_pull`.
     """
     if swings.side[i + 1] != -swings.side[i]:
         return False
@@ -97,16 +97,16 @@ def _passes(trace: Trace, swings: Swings, i: int, apart: float, before: float, a
         return True
     slack = 2 * max(time[last + 1] - time[last], time[following] - time[following - 1])
     slack += trace.contact_tilt / abs(before) + trace.contact_tilt / abs(after)
-    # A compliant contact's hop after an impact shifts the lift carried back, not the time in contact. A lift so long
-    # before the landing that gravity would have changed its rate says nothing: the block came to rest, and what lifted
-    # it again hides how fast it set out.
+    # A hop of a compliant contact after an impact shifts the extrapolated lift, but not the time in contact. A lift so
+    # long before the landing that gravity would have changed its rate gives no rate after the impact: the block came to
+    # rest, and its new motion has another cause.
     if not -apart * pull <= SURE * abs(after):
         return False
     return min(apart, time[following] - time[last]) <= slack  # False for NaN
 
 
 def strong_swings(model: ArrayModel, trace: Trace, swings: Swings) -> np.ndarray:
-    """Whether the block would, left alone, reach the impact at a speed that counts; shape of `swings`."""
+    """Whether the block, unforced, would reach the impact at a rate that counts; shape of `swings`."""
     bounds = np.column_stack([swings.first, swings.last + 1]).ravel()[:-1]
     speed = np.maximum.reduceat(_speeds(model, trace), bounds)[::2]
     return speed >= _least_speed(model, trace, speed.max())
@@ -123,14 +123,15 @@ def _speeds(model: ArrayModel, trace: Trace) -> np.ndarray:
 
 
 def _least_speed(model: ArrayModel, trace: Trace, fastest: float) -> float:
-    """|Tilt rate| [rad/s] from which on an impact counts."""
+    """|Tilt rate| [rad/s] from which an impact counts."""
     return max(STRONG * fastest, CLEAR * math.sqrt(2 * _pull(model) * trace.contact_tilt))
 
 
 def straddled(scene: Scene, trace: Trace) -> np.ndarray:
-    """Times [s] of steps in flight that last longer than the way to the impact and the whole swing after it.
+    """Times [s] of steps in flight that are longer than the time to the impact plus the whole swing after it.
 
-    By the model's restitution and the acceleration at the step; where what is left of the speed counts.
+    Both follow from the model's restitution and the acceleration at the step. Only impacts after which the rate still
+    counts are considered.
     """
     model = ArrayModel.of(scene)
     flight = np.abs(trace.tilt[:-1]) > trace.contact_tilt
@@ -141,7 +142,7 @@ def straddled(scene: Scene, trace: Trace) -> np.ndarray:
 
 
 def _straddling(scene: Scene, model: ArrayModel, trace: Trace, least: float) -> np.ndarray:
-    """`straddled`, of impacts from |tilt rate| `least` [rad/s] on."""
+    """`straddled` for impacts with a |tilt rate| of at least `least` [rad/s]."""
     k = np.flatnonzero(np.abs(trace.tilt[:-1]) > trace.contact_tilt)
     side, step = np.sign(trace.tilt[k]), np.diff(trace.time)[k]
     ground = scene.motion.acceleration(trace.time[k]) if scene.motion else np.zeros(len(k))
@@ -156,7 +157,7 @@ def _straddling(scene: Scene, model: ArrayModel, trace: Trace, least: float) -> 
 
 
 def check_impacts(scene: Scene, trace: Trace, impacts: Sequence[Impact], missed: Sequence[float]) -> Failure | None:
-    """A `Failure` where an impact added energy or was not resolved, else None; `missed` as of `find_events`."""
+    """A `Failure` where an impact added energy or was not resolved, else None; `missed` as in `find_events`."""
     least = _least_speed(ArrayModel.of(scene), trace, max((abs(each.rate_before) for each in impacts), default=0.0))
     for impact in impacts:
         before, after = abs(impact.rate_before), abs(impact.rate_after)
@@ -185,7 +186,7 @@ def check_impacts(scene: Scene, trace: Trace, impacts: Sequence[Impact], missed:
 def _limit_time(
     model: ArrayModel, scene: Scene, trace: Trace, last: int, side: float, landing: float, rate: float
 ) -> tuple[float, float]:
-    """(time at which the model's impacts after a landing accumulate, |tilt''| toward contact there)."""
+    """(limit time of the model's impacts after a landing, |tilt''| toward contact there)."""
     ground = float(scene.motion.acceleration(landing)) if scene.motion else 0.0
     up = float(vertical_acceleration(scene.motion, landing))
     pull = -side * float(model.accelerations(side, 0.0, 0.0, ground, trace.bearing_force[last], up)[0])
@@ -196,7 +197,7 @@ def _limit_time(
 
 
 def _uplift_time(model: ArrayModel, scene: Scene, trace: Trace, begin: int, first: int) -> float:
-    """Time at which |absolute base acceleration| last rose through (g + a_v) tan(gamma) in steps begin..first, (2)."""
+    """Last time in steps begin..first at which |absolute base acceleration| rose through (g + a_v) tan(gamma), (2)."""
     steps = slice(begin, first + 1)
     limit = model.uplift_limit(vertical_acceleration(scene.motion, trace.time[steps]))
     size = np.abs(_contact_acceleration(model, scene, trace, steps)) - limit
@@ -233,7 +234,7 @@ def at_contact(scene: Scene, trace: Trace) -> tuple[np.ndarray, np.ndarray, np.n
     level = _contact_acceleration(model, scene, trace)
     vertical = vertical_acceleration(scene.motion, trace.time)
     weight = (model.g + vertical) / model.g
-    # In contact above the uplift acceleration the block is off the base already, unseen by the engine's resolution.
+    # In contact above the uplift acceleration the block has already lifted, by less than the engine resolves.
     lifting = np.abs(level) > model.uplift_limit(vertical)
     flight = lifting | (np.abs(trace.tilt) > trace.contact_tilt)
     demand, normal, absolute = np.abs(level) / model.g / weight, weight.copy(), level.copy()

@@ -1,4 +1,4 @@
-"""What a package prints as it is imported, held back; whatever else is printed meanwhile is not."""
+"""Suppression of what a package prints when it is imported; other output passes."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from collections.abc import Iterator
 
 @contextlib.contextmanager
 def without(greeting: bytes) -> Iterator[None]:
-    """Lines on standard error that begin so are left out, also where compiled code prints them.
+    """Remove lines on standard error that begin with `greeting`, also those that compiled code prints.
 
-    For a few milliseconds: what this process prints to standard error meanwhile, in any thread, comes after them.
+    For a few milliseconds only: other output of this process to standard error, from any thread, is delayed until then.
     """
     with contextlib.ExitStack() as closing:
         try:
             kept = os.dup(2)
             closing.callback(os.close, kept)
             held = closing.enter_context(tempfile.TemporaryFile())
-        except OSError:  # there is no standard error, or no room: then it is said
+        except OSError:  # no standard error, or no disk space: the greeting is printed
             yield
             return
         os.dup2(held.fileno(), 2)
@@ -28,5 +28,5 @@ def without(greeting: bytes) -> Iterator[None]:
         finally:
             os.dup2(kept, 2)
             held.seek(0)
-            with contextlib.suppress(OSError):  # nobody reads it
+            with contextlib.suppress(OSError):  # standard error is closed
                 os.write(2, b"".join(line for line in held if not line.startswith(greeting)))

@@ -1,4 +1,4 @@
-"""Ground velocity over time, exact for records and pulses: what the engine's kicks are made of."""
+"""Ground velocity over time, exact for records and pulses; its differences are the impulses of an engine's steps."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 def ground_velocity(motion: Motion | None) -> Callable[[float], float] | None:
     """A function of time [s] giving the integral of the ground acceleration from 0 [m/s].
 
-    A step's mean acceleration is the difference of two values over the time between, whatever happens in it: an
-    engine that samples the acceleration instead loses part of a pulse that starts or ends between its steps.
+    The mean acceleration of a step is the difference of two values over the time between them. An engine that samples
+    the acceleration instead loses part of a pulse that starts or ends within a step.
     """
     if motion is None:
         return None

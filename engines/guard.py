@@ -1,4 +1,4 @@
-"""A run in a process of its own, so that a hang, a crash or Ctrl-C costs that run only."""
+"""A run in a process of its own, so that of a hang, a crash or Ctrl-C only that run is lost."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from typing import IO, Any
 from analytic.errors import EngineNotInstalled, SceneError, SettingError
 from analytic.response import Failure
 
-LONGEST = 1e6  # s; longer time limits overflow the system's timers
-GRACE_SECONDS = 0.3  # beyond the time limit, for the process to write down where it hangs
+LONGEST = 1e6  # s; longer limits overflow the system's timers
+GRACE_SECONDS = 0.3  # after the time limit, for the process to write its traceback
 EVIDENCE_CHARACTERS = 4000
 OUT_OF_TIME = "the run did not end in time"
-MISTAKES = (SettingError, SceneError, EngineNotInstalled)  # the caller's, not the engine's
+MISTAKES = (SettingError, SceneError, EngineNotInstalled)  # errors of the caller, not of the engine
 STOPPING = {signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
 PR_SET_PDEATHSIG = 1
-TRACE = getattr(signal, "SIGUSR1", None)  # tells a process that hangs to write down where
+TRACE = getattr(signal, "SIGUSR1", None)  # asks a process that hangs for its traceback
 
 
 def check_time_limit(time_limit: float) -> None:
@@ -43,30 +43,30 @@ def run_apart(
     time_limit: float,
     meanwhile: AbstractContextManager[Any] | None = None,
 ) -> tuple[Any, Failure | None]:
-    """(what ``function(*arguments)`` returns, None), or (None, the `Failure`) where its process did not get that far.
+    """(result of ``function(*arguments)``, None), or (None, `Failure`) if its process did not return one.
 
     Parameters
     ----------
     function : callable
-        At the top of a module. What it prints goes to standard error.
+        A module-level function. Its output goes to standard error.
     *arguments
-        What can be pickled.
+        Arguments that can be pickled.
     time_limit : float
         Wall-clock time [s] after which the process is killed.
     meanwhile : context manager or None
-        Entered while the process runs, such as a progress bar: its threads are not forked.
+        Entered while the process runs, such as a progress bar, whose threads are not forked.
 
     Raises
     ------
     SettingError, SceneError, EngineNotInstalled
-        As the function raised them.
+        If the function raises them.
     """
-    # Forked where that is safe: starting Python and importing the model anew takes longer than most runs.
+    # Fork where that is safe: starting Python and importing the model takes longer than most runs.
     context = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
     reader, writer = context.Pipe(duplex=False)
     with _evidence() as log:
         process = context.Process(target=_work, args=(writer, _number(context, log), function, arguments, time_limit))  # type: ignore[attr-defined]  # every context has it
-        # Blocked until the process ignores Ctrl-C, which is this one's to handle: an engine would take it for an
+        # Ctrl-C is blocked until the child ignores it: this process handles it, and an engine would take it for an
         # error of its own.
         blocked = signal.pthread_sigmask(signal.SIG_BLOCK, STOPPING) if hasattr(signal, "pthread_sigmask") else None
         try:
@@ -96,7 +96,7 @@ def run_apart(
 
 
 def _answer(reader: Any, process: Any, time_limit: float) -> tuple[str, Any]:
-    """("value", what the function returned), ("mistake", an error) or ("failure", (reason, message))."""
+    """("value", result of the function), ("mistake", error) or ("failure", (reason, message))."""
     if not connection.wait([reader, process.sentinel], time_limit):
         if TRACE is not None:
             os.kill(process.pid, TRACE)
@@ -105,7 +105,7 @@ def _answer(reader: Any, process: Any, time_limit: float) -> tuple[str, Any]:
     try:
         if reader.poll():
             return reader.recv()
-    except (EOFError, OSError):  # closed without a word
+    except (EOFError, OSError):  # closed without an answer
         pass
     process.join()
     return "failure", ("the engine's process died", _last_words(process.exitcode))
@@ -114,7 +114,7 @@ def _answer(reader: Any, process: Any, time_limit: float) -> tuple[str, Any]:
 def _work(
     writer: Any, log: int | None, function: Callable[..., Any], arguments: Sequence[Any], time_limit: float
 ) -> None:
-    """In the process: answers through `writer`; `log` is a file number for what is printed, or None."""
+    """Run the function in the child process and answer through `writer`; log: file number for its output, or None."""
     signal.set_wakeup_fd(-1)
     for number in STOPPING:
         if signal.getsignal(number) != signal.SIG_IGN:
@@ -123,7 +123,7 @@ def _work(
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, STOPPING)
     end_with_parent()
-    if hasattr(signal, "setitimer"):  # and should it outlive it all the same
+    if hasattr(signal, "setitimer"):  # in case the parent does not kill it
         signal.signal(signal.SIGALRM, signal.SIG_DFL)
         signal.setitimer(signal.ITIMER_REAL, time_limit + 10 * GRACE_SECONDS)
     place = 2 if log is None else log
@@ -137,23 +137,23 @@ def _work(
         answer = ForkingPickler.dumps(("value", function(*arguments)))
     except MISTAKES as error:
         answer = ForkingPickler.dumps(("mistake", error))
-    except BaseException as error:  # whatever an engine raises, its message is the evidence
+    except BaseException as error:  # any error of an engine is a failed run with its message
         message = f"{raised(error)}\n{traceback.format_exc()}"[:EVIDENCE_CHARACTERS]
         answer = ForkingPickler.dumps(("failure", ("the run raised an error", message)))
     sys.stdout.flush(), sys.stderr.flush()
     writer.send_bytes(answer)
-    os._exit(0)  # no engine gets a chance to fail at its end
+    os._exit(0)  # without exit handlers, in which an engine could fail
 
 
 def raised(error: BaseException) -> str:
-    """What was raised, in words: its kind, its message and, in the first line, its notes."""
+    """An error in words: its type and message, with its notes in the first line."""
     first, end, rest = f"{type(error).__name__}: {error}".partition("\n")
     notes = "".join(f" ({note})" for note in getattr(error, "__notes__", ()))
     return f"{first}{notes}{end}{rest}"
 
 
 def end_with_parent() -> None:
-    """Let this process end when its parent does, whatever compiled code it is in, where the system can do that."""
+    """Let this process end when its parent ends, even in compiled code, where the system supports that."""
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
 
@@ -161,7 +161,7 @@ def end_with_parent() -> None:
 def _evidence() -> IO[bytes]:
     try:
         return tempfile.TemporaryFile()
-    except OSError:  # no room: the run goes on, without evidence
+    except OSError:  # no disk space: the run goes on without a log
         return open(os.devnull, "r+b")
 
 
@@ -171,7 +171,7 @@ def _number(context: Any, log: IO[bytes]) -> int | None:
 
 
 def _ends(text: str) -> str:
-    """Beginning and end of what was printed: the engine's words come first, where it was comes last."""
+    """Beginning and end of the output: the engine's message comes first, the traceback last."""
     half = EVIDENCE_CHARACTERS // 2
     return text if len(text) <= 2 * half else f"{text[:half]}\n[...]\n{text[-half:]}"
 

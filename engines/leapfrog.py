@@ -1,8 +1,8 @@
-"""Rows of a leapfrog engine: how many there may be, how they can end, and what they say as a `Trace`.
+"""Rows of a leapfrog engine: their largest number, failures at their end, and their conversion to a `Trace`.
 
 A row is (time [s], length of the step that led there [s], tilt [rad], its rate [rad/s], base displacement [m] and
-velocity [m/s], hysteretic force of one bearing [N], total force without viscous part [N]), and where they were read the
-block's centre x, z [m] and x', z' [m/s], as `Trace.centre`. Rates are half a step early, but for the start's.
+velocity [m/s], hysteretic force of one bearing [N], total force without viscous part [N]) and, where read, the block's
+centre x, z [m] and x', z' [m/s] as in `Trace.centre`. Rates are half a step early, except at the start.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ ROWS_PER_STEP, RESERVE, MOST_ROWS = 50, 100_000, 20_000_000
 
 
 def row_limit(duration: float, largest: float) -> int:
-    """Most steps of a run of this duration at this largest step [same unit of time]."""
+    """Largest number of steps of a run, from its duration and largest step [same unit of time]."""
     return int(min(MOST_ROWS, ROWS_PER_STEP * duration / largest + RESERVE))
 
 
@@ -42,11 +42,11 @@ def failure_of(scene: Scene, rows: Sequence[Sequence[float]] | np.ndarray, ended
 def trace_of(
     rows: Sequence[Sequence[float]] | np.ndarray, scene: Scene, contact_tilt: float, smeared: int | None = None
 ) -> Trace:
-    """The `Trace` of rows, velocities brought to the time of the displacements.
+    """The `Trace` of rows, with velocities interpolated to the times of the displacements.
 
     A velocity at t_n is the mean of its neighbours, weighted by their distance. Contact solvers spread an impact over
-    the steps that reach contact and leave it: there only the neighbour in flight is used, and the gain beyond it.
-    smeared: number of steps on each side of tilt = 0 for which that can be; None: any at the edge of contact.
+    the steps that reach contact and leave it; there the velocity is extrapolated from the neighbours in flight.
+    smeared: number of steps on each side of tilt = 0 to which this applies; None: all steps at the contact tilt.
     """
     t, h, tilt, rate, x, v, _, force, *centre = np.array(rows).T
     law = RockingModel.of(scene).bearing
@@ -77,9 +77,9 @@ def trace_of(
 
 
 def _synchronised(value: np.ndarray, h: np.ndarray, from_before: np.ndarray, from_after: np.ndarray) -> np.ndarray:
-    """`value`, known half a step early, at the steps' ends."""
+    """`value`, known half a step early, interpolated to the steps' ends."""
     gain = np.diff(value) / (0.5 * (h[1:] + h[:-1]))  # per second, at t_0 .. t_(n-2)
-    result = value.copy()  # the first is the start, not half a step early
+    result = value.copy()  # the start is not half a step early
     result[1:-1] = (value[1:-1] * h[2:] + value[2:] * h[1:-1]) / (h[1:-1] + h[2:])
     result[-1] = value[-1] + 0.5 * h[-1] * gain[-1]
     i = np.flatnonzero(from_before[2:]) + 2
@@ -90,7 +90,7 @@ def _synchronised(value: np.ndarray, h: np.ndarray, from_before: np.ndarray, fro
 
 
 def raw_trace_of(rows: Sequence[Sequence[float]] | np.ndarray, scene: Scene, contact_tilt: float) -> Trace:
-    """The `Trace` of rows taken as they are, as a first script takes them; it does not look where the block is."""
+    """The `Trace` of uncorrected rows, as in a first script; the block's position is not read."""
     t, _, tilt, rate, x, v, _, force = np.array(rows).T[:8]
     law = RockingModel.of(scene).bearing
     return Trace(t, tilt, rate, x, v, force + law.count * law.damping * v, contact_tilt, first_script=True)

@@ -1,8 +1,8 @@
-"""Impacts of two runs of one scene, matched: which count, which belong together, which have no match.
+"""Matching of the impacts of two runs of one scene: which count, which match, which have no match.
 
-Two impacts match that lie on one side, nearer to each other than to the next ones on that side. Impacts count from
-`COUNTED` of the largest rate of their run on, and from swings on of a tenth of `LEAST_TILT`: smaller ones an engine
-does not tell from the compliance of its contact.
+Two impacts on the same side match if they are closer to each other than to the next ones on that side. An impact counts
+if its rate is at least `COUNTED` of the largest of its run, and at least that of a swing of a tenth of `LEAST_TILT`: an
+engine cannot tell smaller ones from the compliance of its contact.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ def impacts_of(response: Response) -> np.ndarray:
 
 
 def matched(scene: Scene, impacts: np.ndarray, others: np.ndarray, until: float) -> tuple[np.ndarray, np.ndarray]:
-    """(those of `impacts` that count up to `until`, the index in `others` of each one's match, -1 without)."""
+    """(`impacts` that count up to `until`, index in `others` of the match of each, -1 without one)."""
     partner = np.full(len(impacts), -1)
     for side in (-1.0, 1.0):
         mine, theirs = (np.flatnonzero(np.sign(rows[:, 1]) == side) for rows in (impacts, others))
@@ -44,7 +44,7 @@ def matched(scene: Scene, impacts: np.ndarray, others: np.ndarray, until: float)
 
 
 def counts(scene: Scene, impacts: np.ndarray, share: float = COUNTED) -> np.ndarray:
-    """Whether each impact counts, from `share` of the largest rate on. A NaN does: it must be found."""
+    """Whether each impact counts, at `share` of the largest rate. A NaN counts, so that it is found."""
     model = RockingModel.of(scene)
     before, after = np.abs(impacts[:, 1:]).T
     pull = abs(model.accelerations(1.0, 0.0, 0.0, 0.0, 0.0)[0])

@@ -1,4 +1,4 @@
-"""The momentum that an engine's own motion shows, against the impulse of the bearings' law: did they push so?"""
+"""Momentum of an engine's motion compared with the impulse of the bearing law on that motion."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ if TYPE_CHECKING:
 
     from .swings import Trace
 
-# `impulse_error` above which a run counts as failed. A doubled or missing force gives 1. Exact motions read at random
-# steps of 1/60 s on average show up to .03, the tuned variants at their steps at most 2e-3.
+# `impulse_error` above which a run counts as failed. A doubled or missing force gives 1. Exact motions sampled at
+# random steps of 1/60 s on average give up to .03, tuned variants at most 2e-3.
 IMPULSE_LIMIT = 0.1
-# Share of the momentum below which an impulse of the bearings does not matter, and is not asked for.
+# Share of the momentum below which the impulse of the bearings is not checked.
 LEAST_IMPULSE = 0.1
-# Share of a rocking block's momentum below which nothing moves but round-off.
+# Share of a rocking block's momentum below which the motion is round-off.
 LEAST_MOMENTUM = 1e-3
 
 
 def bearing_impulse(scene: Scene, trace: Trace) -> np.ndarray:
-    """Impulse of the bearings from the start to each step [N s], by their law on the trace's displacements.
+    """Impulse of the bearings from the start to each step [N s], by their law on the trace's displacements; shape (n,).
 
-    Exact for the viscous part (it is damping times the way); for the others Simpson's rule, the displacement between
-    two steps being the cubic through both. Shape (n,).
+    The viscous part is exact: damping times displacement. The others are integrated by Simpson's rule, with cubic
+    interpolation of the displacement between steps.
     """
     law = BearingLaw.of(scene.bearings)
     h, x, v = np.diff(trace.time), trace.base_displacement, trace.base_velocity
@@ -52,10 +52,10 @@ def momentum(scene: Scene, trace: Trace) -> np.ndarray:
 
 
 def missing_impulse(scene: Scene, trace: Trace) -> tuple[np.ndarray, np.ndarray]:
-    """(steps' impulse that neither the law nor the ground explains [N s], the law's impulse [N s]), shapes (n,).
+    """(unexplained impulse up to each step [N s], the law's impulse [N s]), shapes (n,).
 
-    The first is constant for an exact solution, whatever the impacts: momentum + impulse of the bearings + total mass
-    times ground velocity, less its value at the start.
+    The first is momentum + impulse of the bearings + total mass times ground velocity, less its value at the start. It
+    is constant for an exact solution, whatever the impacts.
     """
     law = bearing_impulse(scene, trace)
     velocity = ground_velocity(scene.motion)
@@ -67,12 +67,12 @@ def missing_impulse(scene: Scene, trace: Trace) -> tuple[np.ndarray, np.ndarray]
 def impulse_error(scene: Scene, trace: Trace) -> float:
     """Largest range of `missing_impulse` within a window, over that of the law's impulse; 0 without bearings.
 
-    A window lasts a rocking period 2 pi/omega_r and begins half a one after the window before. A force that is doubled
-    or left out gives 1, one that is late by dt about dt times the base's frequency.
+    A window lasts a rocking period 2 pi/omega_r, and windows overlap by half. A doubled or missing force gives 1; a
+    force delayed by dt gives about dt times the base's frequency.
     """
     if scene.bearings is None:
         return 0.0
-    if trace.centre is None:  # a block that falls need not turn about its corner
+    if trace.centre is None:  # a falling block need not pivot about its corner
         over = np.flatnonzero(np.abs(trace.tilt) >= scene.block.slenderness)
         trace = trace.upto(max(2, over[0])) if len(over) else trace
     missing, law = missing_impulse(scene, trace)
@@ -92,7 +92,7 @@ def impulse_error(scene: Scene, trace: Trace) -> float:
 
 
 def check_impulse(scene: Scene, trace: Trace) -> Failure | None:
-    """A `Failure` where the engine's motion is not that of its bearings' force, else None."""
+    """A `Failure` if the engine's motion does not match the bearing force, else None."""
     error = impulse_error(scene, trace)
     if error <= IMPULSE_LIMIT:
         return None

@@ -1,7 +1,7 @@
-"""What an engine's step history says, as a `Response`: one piece of code for all engines.
+"""The `Response` of an engine's run, derived from its accepted steps by the same code for all engines.
 
-An engine hands over its accepted steps as a `Trace`; the events, peaks and contact forces are found here, outside
-the engine, so that no engine is judged by its own measure. The time this takes is not part of ``cpu_seconds``.
+An engine returns its accepted steps as a `Trace`. Events, peaks and contact forces are determined here, outside the
+engine, so that all engines are measured alike. The time this takes is not part of ``cpu_seconds``.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 HISTORY_POINTS = 2000
 
 
-@np.errstate(all="ignore")  # what overflows shows in the numbers, and these are looked at
+@np.errstate(all="ignore")  # an overflow gives numbers that are not finite, which are checked
 def observe(
     scene: Scene,
     trace: Trace,
@@ -50,32 +50,32 @@ def observe(
     ----------
     scene : Scene
     trace : Trace
-        Accepted steps from the start on; a step past overturning is used to find its time, what follows is not.
+        Accepted steps from the start on. The first step past overturning is used to find its time; later ones are not.
     beyond : Trace or None
-        Of the same run, longer: events up to the end of `trace` are read from it, so that the end cuts none short.
+        A longer trace of the same run, from which events up to the end of `trace` are read, so that none is cut short.
     history : bool
-        Keep it, on the motion's own grid for a sampled motion, else on 2000 equal intervals.
+        Keep the history: on the motion's own grid for a sampled motion, else on 2000 equal intervals.
     failure : Failure or None
-        The engine's own: the outcome is "failed", and the last finite state is filled in.
+        The engine's own failure: the outcome is "failed", and the last finite state is filled in.
     ended : str or None
-        "overturned" where the adapter stopped the run: if the last step lies before |tilt| = pi/2, the block is taken
-        to fall on at the model's acceleration.
+        "overturned" if the adapter stopped the run. If the last step lies before |tilt| = pi/2, the rest of the fall is
+        taken at the model's acceleration.
     warnings : iterable of Caution or str
-        The engine's; those of the motion's record, and where the run is outside the model
+        Warnings of the engine. Those of the motion's record, and of a run outside the model
         (`analytic.decision.model_warnings`), are added.
     **run
-        engine, variant, cpu_seconds, steps, settings, versions: kept as they are in the response.
+        engine, variant, cpu_seconds, steps, settings, versions: copied to the response.
 
     Returns
     -------
     Response
-        stands: |tilt| never exceeded ``trace.contact_tilt``. A trace with states that are not finite is
-        "failed", and so is what `_judged` finds.
+        The outcome is "stands" where |tilt| never exceeded ``trace.contact_tilt``, and "failed" where states are not
+        finite or `_judged` finds a failure.
 
-    An impact is reported where the swings before and after it are both resolved, that is exceed contact_tilt; its rates
-    and base velocities are carried to tilt = 0 by the model's equations of flight. Where no such swing follows, the
-    block came to rest: at the limit of the model's impacts after the last landing. Friction demand and normal force
-    follow from the states and the model's accelerations.
+    An impact is reported where the swings before and after it are both resolved, that is, exceed contact_tilt. Its tilt
+    rates and base velocities are extrapolated to tilt = 0 by the model's equations of flight. If no such swing follows,
+    the block came to rest, at the limit time of the model's impacts after the last landing. Friction demand and normal
+    force follow from the states and the model's accelerations.
     """
     finite, failure = finite_part(trace, failure)
     if finite is None:
@@ -101,7 +101,7 @@ def observe(
 def _measured(
     scene: Scene, trace: Trace, beyond: Trace, overturning_time: float | None
 ) -> tuple[dict[str, Any], Any, bool]:
-    """(numbers and events of a `Response` by their names there, times of missed impacts, whether the block lifted)."""
+    """({field of `Response`: number or events}, times of missed impacts, whether the block lifted)."""
     end = trace.time[-1]
     swings = find_swings(beyond)
     impacts, *times = find_events(scene, beyond, swings)
@@ -134,12 +134,11 @@ def _judged(
     failure: Failure | None,
     warnings: Iterable[Caution | str],
 ) -> tuple[Failure | None, Iterable[Caution | str]]:
-    """(failure or None, warnings) of a run: its own failure first, then what its numbers say of it.
+    """(failure or None, warnings) of a run: the engine's own failure, or the first check that is not met.
 
-    That is an end before the scene's duration, a block off its place (`check_place`), a gain of energy
-    (`check_energy`), an impact that gives energy, that cannot be resolved or that the steps leap over
-    (`check_impacts`), a measure that is not finite, a motion that is not the bearings' (`check_impulse`; of a first
-    script a warning).
+    The checks are: the scene's duration is reached; the block is where it should be (`check_place`); no energy is
+    gained (`check_energy`); impacts gain no energy, are resolved and are not skipped by the steps (`check_impacts`);
+    all measures are finite; the motion matches the bearing force (`check_impulse`; for a first script a warning).
     """
     falls = seen["overturning_time"] is not None
     failure = (
@@ -151,7 +150,7 @@ def _judged(
         or _check_finite(seen)
     )
     if failure is not None:
-        return failure, warnings  # the forces of a failed run say nothing about the scene
+        return failure, warnings  # without warnings on forces, which are meaningless in a failed run
     failure = check_impulse(scene, trace)
     if failure and not trace.first_script:
         return failure, warnings
@@ -164,22 +163,22 @@ def _judged(
 def failed_response(
     scene: Scene, failure: Failure | None, *, warnings: Iterable[Caution | str] = (), **run: Any
 ) -> Response:
-    """A response of outcome "failed" for a run that left no states: every number is NaN, the evidence is kept.
+    """A response of outcome "failed" for a run without states: all numbers are NaN, and the failure is kept.
 
-    run: as of `observe`; cpu_seconds and steps may be left out.
+    run: as in `observe`; cpu_seconds and steps may be left out.
     """
     said = _warnings(scene, warnings)
     return Response.unmeasured(outcome="failed", decided=False, scene=scene.name, failure=failure, warnings=said, **run)
 
 
 def _warnings(scene: Scene, warnings: Iterable[Caution | str]) -> tuple[Caution, ...]:
-    """The engine's, a sentence as a `Caution`, and those about the record of the motion; each once."""
+    """The engine's warnings, sentences as `Caution`, and those about the motion's record, without repetition."""
     own = (Caution("engine", one) if isinstance(one, str) else one for one in warnings)
     return tuple(dict.fromkeys((*about_record(scene.motion), *own)))
 
 
 def _check_finite(seen: Mapping[str, Any]) -> Failure | None:
-    """A `Failure` where what was measured, as `_measured` has it, is not finite, else None."""
+    """A `Failure` where a number of `_measured` is not finite, else None."""
     peaks = [seen[name] for name in ("peak_tilt", "peak_base_displacement", "peak_base_acceleration")]
     numbers = {
         "a peak": peaks,
@@ -193,7 +192,7 @@ def _check_finite(seen: Mapping[str, Any]) -> Failure | None:
 
 
 def _peak(time: np.ndarray, value: np.ndarray, rate: np.ndarray) -> float:
-    """Largest |value|, between the steps by the cubic through both ends of a step."""
+    """Largest |value|, with cubic (Hermite) interpolation between the steps."""
     i = int(np.abs(value).argmax())
     side, best = math.copysign(1.0, value[i]), abs(value[i])
     for k in (i - 1, i):
@@ -205,7 +204,7 @@ def _peak(time: np.ndarray, value: np.ndarray, rate: np.ndarray) -> float:
 
 
 def _history(scene: Scene, trace: Trace) -> History:
-    """The steps on an equal grid: tilt and displacement by cubics through the steps, the others linear."""
+    """The trace on an equidistant grid: tilt and displacement by cubic, the others by linear interpolation."""
     end = trace.time[-1]
     dt = scene.motion.dt if isinstance(scene.motion, SampledMotion) else scene.end / HISTORY_POINTS
     time = trace.time[0] + dt * np.arange(math.floor((end - trace.time[0]) / dt * (1 + 1e-12)) + 1)
@@ -219,7 +218,7 @@ def _history(scene: Scene, trace: Trace) -> History:
 
 
 def _cubic(trace: Trace, value: str, rate: str, time: np.ndarray) -> np.ndarray:
-    """A column of the trace at other times, increasing ones within it, by the cubics through its steps."""
+    """A column of the trace at other times, by cubic interpolation; the times increase and lie within the trace."""
     values = np.empty_like(time)
     for piece in trace.pieces():
         begin = np.searchsorted(time, piece.time[0])

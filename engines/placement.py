@@ -1,4 +1,4 @@
-"""Where a scene puts the block at the start: the same for every engine."""
+"""Initial position and velocity of the block, the same for every engine."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 def placement(scene: Scene) -> tuple[float, float, float, float]:
     """Centre of the block and its velocity at the start: (x, z [m], x', z' [m/s]), z from its standing height.
 
-    The block turns about its lower corner on a base at the start's displacement and velocity.
+    The block pivots about its lower corner on a base with the start's displacement and velocity.
     """
     start, block = scene.start, scene.block
     s = math.copysign(1.0, start.tilt or start.tilt_rate)

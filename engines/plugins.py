@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
 GROUP = "rocking.engines"
-RESERVED = ("analytic",)  # the model's own name where a solver is asked for
+RESERVED = ("analytic",)  # the model's name among the solvers
 
 
 def find_engines(taken: Collection[str]) -> tuple[dict[str, Engine], dict[str, EngineBroken]]:
@@ -24,7 +24,7 @@ def find_engines(taken: Collection[str]) -> tuple[dict[str, Engine], dict[str, E
     Parameters
     ----------
     taken : collection of str
-        Names that are given away.
+        Names that are already in use.
     """
     engines: dict[str, Engine] = {}
     broken: dict[str, EngineBroken] = {}
@@ -45,7 +45,7 @@ def find_engines(taken: Collection[str]) -> tuple[dict[str, Engine], dict[str, E
 def _resolve(entry: EntryPoint, origin: str, taken: Collection[str]) -> Engine:
     try:
         engine = entry.load()
-    except Exception as error:  # whatever another package raises as it is imported
+    except Exception as error:  # any error while another package is imported
         raise EngineBroken(origin, f"it cannot be imported ({type(error).__name__}: {error})") from error
     if not isinstance(engine, Engine):
         raise EngineBroken(origin, f"it is a {type(engine).__name__}, no engines.contract.Engine")

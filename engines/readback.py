@@ -1,4 +1,4 @@
-"""What an engine reports back of what it was given: nothing runs with other values."""
+"""Check that an engine holds the values it was given; no run uses other values."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -16,7 +16,7 @@ def require(values: Iterable[tuple[str, Any, Any]]) -> None:
     Parameters
     ----------
     values : iterable of (name, used, wanted)
-        Numbers or arrays of them; a single number may be wanted of all.
+        Numbers or arrays; one number may be wanted for all entries of an array.
     """
     wrong = [
         f"{name} is {np.asarray(used).tolist()}, not {np.asarray(wanted).tolist()}"

@@ -1,4 +1,4 @@
-"""Times that go with the size of the block."""
+"""Scaling of times with the size of the block."""
 
 from __future__ import annotations
 
@@ -12,5 +12,5 @@ UNIT_RADIUS = 1.0884  # m, of the Caryatid, for which the variants' times are gi
 
 
 def size_scale(scene: Scene) -> float:
-    """What times set for a block of `UNIT_RADIUS` are multiplied with: rocking goes with sqrt(R/g)."""
+    """Factor on times that are set for a block of `UNIT_RADIUS`: rocking scales with sqrt(R/g)."""
     return math.sqrt(scene.block.radius / UNIT_RADIUS)

@@ -1,4 +1,4 @@
-"""What a caller may ask of an engine: one of its variants with other settings, and no restitution."""
+"""Choice of a variant and check of what is asked of it: its settings, and no given restitution."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ def choose(engine: Engine, variant: str | None, changes: Mapping[str, Any]) -> t
     ----------
     engine : Engine
     variant : str or None
-        None is the default one.
+        None: the main one.
     changes : dict
         {field: number}
 
     Raises
     ------
     SettingError
-        Unknown variant or setting, or a value that is no finite number above 0.
+        The variant or the setting is unknown, or a value is not a finite number above 0.
     """
     name, variants = engine.default_variant if variant is None else variant, engine.variants
     if name not in variants:
@@ -45,13 +45,13 @@ def choose(engine: Engine, variant: str | None, changes: Mapping[str, Any]) -> t
 
 
 def refuse_restitution(engine: Engine, scene: Scene) -> None:
-    """Raise `SceneError` where a scene gives the restitution, which a contact engine decides itself."""
+    """Raise `SceneError` where a scene gives the restitution and the engine computes the impact itself."""
     if scene.block.restitution is not None:
         able = [name for name, variant in engine.variants.items() if variant.takes_restitution]
         remedy = f"use the variant {able[0]}" if able else "use the analytic model"
         raise SceneError(
             "block.restitution",
             scene.block.restitution,
-            "a contact engine decides the impact itself",
+            "a contact engine computes the impact itself",
             f"leave it out, or {remedy}",
         )

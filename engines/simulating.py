@@ -1,4 +1,4 @@
-"""From a scene and an engine to a response: what is the same for all engines."""
+"""From a scene and an engine to a response: the code that all engines share."""
 
 from __future__ import annotations
 
@@ -29,8 +29,9 @@ if TYPE_CHECKING:
 
     from .swings import Trace
 
-# A run that ends this many times a contact's settling time, or this many steps, after a landing or a lift ends in it:
-# an engine that switches within a step, as MuJoCo, has the block on both corners then, and its e would be read as 0.
+# A run that ends within this many settling times of the contact, or this many steps, after a landing or an uplift ends
+# during the impact. With an engine that switches corners within a step, as MuJoCo does, the block is then on both
+# corners, and e would be read as 0.
 SETTLED, STEPS = 2.0, 4
 
 
@@ -39,13 +40,13 @@ class Simulator(Engine):
 
     @classmethod
     def of(cls, engine: Engine) -> Self:
-        """That of a record."""
+        """The simulator of an engine's record."""
         return cls(**{part.name: getattr(engine, part.name) for part in dataclasses.fields(engine)})
 
     def run(self, scene: Scene, variant: str, settings: object) -> Run:
-        """The bare run of a scene that has a duration; settings: of the variant's dataclass, taken as they are.
+        """The adapter's run of a scene that has a duration; settings: of the variant's dataclass, not checked again.
 
-        What the adapter raises says where that was.
+        An error of the adapter gets a note with the place where it was raised.
         """
         adapter = self.load()
         try:
@@ -60,29 +61,30 @@ class Simulator(Engine):
     def simulate(
         self, scene: Scene, *, variant: str | None = None, history: bool = True, compare: bool = True, **settings: float
     ) -> Response:
-        """The response of a scene; a run that went wrong has the outcome "failed" with its evidence.
+        """The response of a scene; a run that fails has the outcome "failed" and says why.
 
         Parameters
         ----------
         scene : Scene
-            Without a duration it runs until its outcome is decided.
+            A scene without a duration runs until its outcome is decided.
         variant : str or None
-            One of `variants`; None is the default one.
+            One of `variants`; None: the main one.
         history : bool
             Keep the history in the response.
         compare : bool
-            Run the analytic model, too, and keep what differs (`engines.comparison`); not part of ``cpu_seconds``.
+            Run the analytic model, too, and keep the differences (`engines.comparison`). This is not part of
+            ``cpu_seconds``.
         **settings
             Fields of the variant's settings, in place of their defaults.
 
         Raises
         ------
         SettingError
-            Unknown variant or setting, or a setting that is not a positive number.
+            The variant or the setting is unknown, or a setting is not a positive number.
         SceneError
-            The scene gives the restitution, and the variant decides it.
+            The scene gives the restitution, but the variant computes it.
         Mismatch
-            exudyn alone: it holds other values than the scene asks for; nothing was run.
+            Of exudyn only: it holds other values than the scene asks for; nothing was run.
         """
         model = self._model(scene)
         response, _ = self._traced(scene, variant, history, settings, model)
@@ -94,22 +96,22 @@ class Simulator(Engine):
     def traced(
         self, scene: Scene, *, variant: str | None = None, history: bool = True, **settings: float
     ) -> tuple[Response, Trace | None]:
-        """(response, the steps it was read from or None) of `simulate`, not compared.
+        """(response, trace or None) of `simulate`, without the comparison.
 
-        A scene without a duration is first run to where the analytic model's run ends, as engines end alike; an engine
-        whose own end state is not decided there goes on for longer (`analytic.termination.until_decided`).
+        A scene without a duration is first run to the end of the analytic model's run, where most engines end, too. If
+        the engine's own end state is not decided there, it runs longer (`analytic.termination.until_decided`).
         """
         return self._traced(scene, variant, history, settings, self._model(scene))
 
     def _model(self, scene: Scene) -> Response | None:
-        """The analytic model's run where its end is needed: of a scene without a duration."""
+        """The analytic model's run of a scene without a duration, whose end is needed; else None."""
         compile_kernels()
         return analytic.simulate(scene, history=False) if scene.duration is None else None
 
     def _traced(
         self, scene: Scene, variant: str | None, history: bool, settings: Mapping[str, float], model: Response | None
     ) -> tuple[Response, Trace | None]:
-        """`traced`, with what is known of the analytic model."""
+        """`traced`, given the analytic model's run."""
         name, chosen = choose(self, variant, settings)
         if not self.variants[name].takes_restitution:
             refuse_restitution(self, scene)
@@ -130,7 +132,7 @@ class Simulator(Engine):
         return response, traces[0]
 
     def _once(self, scene: Scene, name: str, chosen: Any, history: bool) -> tuple[Response, Trace | None]:
-        from .observe import failed_response, observe  # a third of a second of scipy, at every start
+        from .observe import failed_response, observe  # here, as it loads scipy: .3 s at every start
 
         run = self.run(scene, name, chosen)
         on = self._run_on(scene, name, chosen, run)
@@ -151,12 +153,12 @@ class Simulator(Engine):
         return seen, run.trace
 
     def _run_on(self, scene: Scene, name: str, chosen: Any, run: Run) -> Run | None:
-        """The same run for longer, where the scene's end cuts a change of contact short; else None."""
+        """The same run for longer, if the scene ends during a change of contact; else None."""
         if run.trace is None or run.failure or run.ended:
             return None
         time, swings = run.trace.time, find_swings(run.trace)
         changes = np.append(swings.first[1:], swings.last)
-        changes = changes[changes < len(time) - 1]  # one in flight has not landed
+        changes = changes[changes < len(time) - 1]  # without a landing to come
         after = max(SETTLED * run.trace.settle, STEPS * float(np.diff(time).max()))
         if not len(changes) or time[-1] - time[changes.max()] >= after:
             return None
@@ -165,7 +167,7 @@ class Simulator(Engine):
 
 
 def _place(error: Exception, adapter: ModuleType) -> str:
-    """The innermost line of an adapter's package that an error passed, else where its `run` begins."""
+    """The innermost line of the adapter's package in the error's traceback, else the first line of its `run`."""
     package = adapter.__name__.partition(".")[0]
     passed = [(frame.f_globals.get("__name__", ""), line) for frame, line in traceback.walk_tb(error.__traceback__)]
     found = [place for place in passed[1:] if place[0].partition(".")[0] == package]
@@ -174,14 +176,14 @@ def _place(error: Exception, adapter: ModuleType) -> str:
 
 
 def _beyond(scene: Scene, on: Run) -> tuple[Trace | None, tuple[Caution, ...]]:
-    """(its sound trace, what is to be said) of a run that went on beyond the scene's end."""
+    """(finite part of the trace, warnings) of a run that went on beyond the scene's end."""
     from .truncation import finite_part  # as above
 
     trace, failure = finite_part(on.trace, on.failure) if on.trace else (None, on.failure)
     if trace is not None and failure is None:
         return trace, ()
     words = (
-        f"the run ends at {scene.duration:.6g} s in an impact, and fails where it goes on, so that the impact's end is "
-        "not seen: do not trust its restitution"
+        f"the run ends at {scene.duration:.6g} s during an impact, and fails if it goes on: the end of the impact is "
+        "not known, do not trust its restitution"
     )
     return None, (Caution("engine", words),)

@@ -1,4 +1,4 @@
-"""The range of a statue: scenes for which the tuned variants are tested, and outside which nothing is promised."""
+"""The statue range: scenes for which the tuned variants are tested. Nothing is promised outside it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from analytic.response import Caution
 if TYPE_CHECKING:
     from analytic import Response, Scene
 
-ROUNDING = 1e-9  # a value that was computed may lie so much beyond a limit
+ROUNDING = 1e-9  # tolerance of a computed value at a limit
 # {quantity: (lowest value, highest value, in words)}
 RANGE = {
     "slenderness": (0.1, 0.5, "slenderness {low:g} to {high:g} rad"),
@@ -22,7 +22,7 @@ RANGE = {
     "damping": (0.0, 1.0, "damping up to critical"),
     "tilt": (0.01, math.inf, "a peak tilt of at least {low:g} slendernesses"),
 }
-NAMES = {"base_mass": "base mass over block mass", "tilt": "peak tilt over slenderness"}  # where it is another
+NAMES = {"base_mass": "base mass over block mass", "tilt": "peak tilt over slenderness"}  # where not the key
 
 
 def in_words() -> str:
@@ -31,7 +31,7 @@ def in_words() -> str:
 
 
 def outside(scene: Scene, response: Response) -> tuple[Caution, ...]:
-    """A warning for each quantity of a scene, or of a run's peak tilt, that lies outside the range."""
+    """A warning for each quantity of the scene, and for the run's peak tilt, that lies outside the range."""
     found = []
     for name, value in _values(scene, response).items():
         low, high, _ = RANGE[name]

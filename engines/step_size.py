@@ -1,10 +1,10 @@
-"""Length of the next step of a simulation with contacts, from gaps and closing speeds alone.
+"""Length of the next step of a simulation with contacts, from gaps and closing speeds only.
 
     h = clamp(min((1 + growth) h, share * gap/closing over contact points on their way to a landing), h_min, h_max)
 
-held for 4 steps where a contact point's speed jumped by more than 10 g h, or where one is landing just now. On its way
-is a point that closes and is higher than g h^2/4, or closes faster than 2 g h. The rule serves any scene in which
-gravity g sets the pace of free motion: it knows no shape, and nothing of how bodies rock.
+The step does not grow for 4 steps after the speed of a contact point has jumped by more than 10 g h, or while a point
+lands. A point is on its way to a landing if it closes with a gap above g h^2/4, or faster than 2 g h. The rule holds
+for any scene in which gravity g sets the time scale of free motion: it uses neither shapes nor the theory of rocking.
 """
 
 from __future__ import annotations
@@ -12,25 +12,24 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 
-# Insensitive: share .1 to .45, growth .2 to 1 and hold 1 to 10 leave the error of e between .9 and 1.5 times itself in
-# four engines. From a share of .7 on points land in steps that are too long.
+# Insensitive: a share of .1 to .45, growth of .2 to 1 and hold of 1 to 10 change the error of e by factors of .9 to 1.5
+# in four engines. With a share of .7 or more, points land in steps that are too long.
 SHARE, GROWTH, HOLD = 0.3, 0.5, 4
-# A body that pivots at the rate w about a held point hops along the tangent, by w^2 R h^2/2, which is at most .1 g h^2
-# for a block that does not overturn, and falls back at g h or less: that is no landing. Insensitive: NEAR .02 to 1,
-# SLOW 1 to 4.
+# A body that pivots at the rate w about a held point moves along the tangent in a step and rises by w^2 R h^2/2, at
+# most .1 g h^2 for a block that does not overturn. It falls back at g h or less, which does not count as a landing.
+# Insensitive: NEAR .02 to 1, SLOW 1 to 4.
 NEAR, SLOW = 0.25, 2.0
-# What a moving ground and forces of a few weights give in a step is less, what an impact gives is more. Insensitive: 5
-# to 20.
+# Ground motion and forces of a few weights change the speed in a step by less, an impact by more. Insensitive: 5 to 20.
 JUMP = 10.0
 
-LEAST_AHEAD = 1e-3  # of a step: a jump that is nearer is not worth a step of its own
-ROUNDING = 1e-9  # of a step, by which the steps' sum may miss the duration
+LEAST_AHEAD = 1e-3  # of a step: a jump that is closer does not get its own step
+ROUNDING = 1e-9  # of a step: tolerated difference of the steps' sum from the duration
 
 Rule = Callable[[Sequence[tuple[float, float]]], float]  # from (gap, closing speed) of each contact point to a step
 
 
 def gap_rule(largest: float, smallest: float, gravity: float) -> Rule:
-    """The rule above; it starts with the smallest step.
+    """The rule in the module's docstring; the first step is the smallest one.
 
     Parameters
     ----------
@@ -42,8 +41,8 @@ def gap_rule(largest: float, smallest: float, gravity: float) -> Rule:
     Returns
     -------
     function
-        From the (gap [m], closing speed [m/s]) of each contact point, always the same ones in the same order, to the
-        length of the next step [s].
+        From the (gap [m], closing speed [m/s]) of each contact point, always in the same order, to the length of the
+        next step [s].
     """
     step, held, before = smallest, 0, ()
 
@@ -72,17 +71,17 @@ def gap_rule(largest: float, smallest: float, gravity: float) -> Rule:
 
 
 def fixed_rule(step: float) -> Rule:
-    """The same step [s] always."""
+    """A constant step [s]."""
     return lambda points: step
 
 
 def limits(
     duration: float, largest: float, jumps: Iterable[float] = ()
 ) -> tuple[float, Callable[[float, float], tuple[float, float]]]:
-    """(first time that a step may not pass unseen, a function (t, step) -> step and the next such time).
+    """(first time that the steps must meet, a function (t, step) -> adjusted step and the next such time).
 
-    Such times are the `jumps` of the ground's acceleration, in their order, and the end of the run; `largest`: the
-    longest step; all in the same unit.
+    These times are the `jumps` of the ground acceleration, in ascending order, and the end of the run. `largest` is the
+    longest step. All are in the same unit.
     """
     ahead = iter(jumps)
     jump, gate = next(ahead, math.inf), duration - ROUNDING * largest + 2 * ROUNDING * largest
@@ -99,8 +98,9 @@ def limits(
 
 
 def aligned(step: float, ahead: float) -> float:
-    """The step [s], or a shorter one, of a leapfrog so that a jump of the ground's acceleration `ahead` [s] away falls
-    between two kicks, which act over half of the steps before and after. A kick that holds the jump lifts a block late.
+    """The step [s] of a leapfrog, shortened if needed so that a jump of the ground acceleration `ahead` [s] from now
+    falls between two impulses, each of which covers half of the steps before and after it. An impulse that contains the
+    jump delays the uplift of a block.
     """
     if not LEAST_AHEAD * step < ahead <= step:
         return step

@@ -1,10 +1,10 @@
-"""The loop that steps a leapfrog engine: lengths and loads of the steps, rows, how a run ends.
+"""The stepping loop of a leapfrog engine: step lengths, loads, stored rows, and the end of a run.
 
-Leapfrog: displacements live at the steps' ends t_n, velocities half a step earlier. Between velocities at t_n - h/2
-and t_n + h'/2 lie (h + h')/2 seconds, but an engine multiplies the loads of a step by its h' alone. Loads scaled by
-(h + h')/(2 h') make the scheme of second order for any sequence of steps, the start included (h = 0).
+Leapfrog: displacements are known at the steps' ends t_n, velocities half a step earlier. The time between the
+velocities at t_n - h/2 and t_n + h'/2 is (h + h')/2, but an engine multiplies the loads of a step by its own h'. Loads
+scaled by (h + h')/(2 h') make the scheme second order for any sequence of steps, the start included (h = 0).
 
-Only the engine moves a body or sets a velocity: it is given loads and the length of the step.
+Only the engine moves a body or sets a velocity. The adapter gives it the loads and the length of the step.
 """
 
 from __future__ import annotations
@@ -36,53 +36,53 @@ if TYPE_CHECKING:
 
     from .swings import Trace
 
-# s, at `scale.UNIT_RADIUS`, of the default settings. On a light base the error of e is in proportion to it.
+# s, at `scale.UNIT_RADIUS` and the default level. On a light base the error of e is proportional to it.
 SMALLEST_STEP = 1e-6
-SMEARED = 3  # steps beside an impact over which a contact solver may spread it, as `leapfrog.trace_of` reads it
-LANDING = 1.0  # most speed of a corner that lands, over the slenderness, the width 2 b and sqrt(g/R)
+SMEARED = 3  # steps before and after an impact over which a contact solver may spread it; see `leapfrog.trace_of`
+LANDING = 1.0  # largest landing speed of a corner, over the slenderness, the width 2 b and sqrt(g/R)
 # Numbers that were chosen in impact-aware steps, for `engines.contract.Variant.constants`.
 CONSTANTS = {
     "largest_step": "longest step in flight and at rest [s], the accuracy parameter",
     "engines.stepping:SMALLEST_STEP": "step while a corner lands [s]",
     "engines.step_size:SHARE": "step over the time to a landing",
     "engines.step_size:GROWTH": "largest growth of a step over the one before",
-    "engines.step_size:HOLD": "steps for which it does not grow after a landing",
-    "engines.step_size:NEAR": "gap from which a corner is on its way to a landing, over g h^2",
-    "engines.step_size:SLOW": "closing speed from which it is, whatever the gap, over g h",
-    "engines.step_size:JUMP": "jump of its speed that is an impact, over g h",
-    "engines.step_size:LEAST_AHEAD": "time to a jump of the ground that is worth a step of its own, over the step",
-    "engines.step_size:ROUNDING": "of a step, by which the steps' sum may miss the duration",
+    "engines.step_size:HOLD": "steps after a landing for which the step does not grow",
+    "engines.step_size:NEAR": "least gap of a closing corner that counts as landing, over g h^2",
+    "engines.step_size:SLOW": "closing speed above which a corner counts as landing at any gap, over g h",
+    "engines.step_size:JUMP": "jump of a corner's speed that counts as an impact, over g h",
+    "engines.step_size:LEAST_AHEAD": "least time to a jump of the ground motion that gets its own step, over the step",
+    "engines.step_size:ROUNDING": "tolerated difference of the steps' sum from the duration, over the step",
     "engines.stepping:LANDING": "largest speed of a landing corner at which contact counts as flat",
-    "engines.stepping:SMEARED": "steps beside an impact over which it may be spread, as a run is read",
+    "engines.stepping:SMEARED": "steps before and after an impact over which it may be spread in the trace",
     "engines.vibration:VIBRATION": "step over the time in which the bearings' vibration advances by 1 rad",
-    "engines.vibration:STIFF": "the same, from which leapfrog's vibration is corrected",
+    "engines.vibration:STIFF": "the same ratio, above which the leapfrog's period error is corrected",
 }
-ENDS = ("done", "overturned", "not finite", "too many steps")  # all others are an engine's words, "what: why"
+ENDS = ("done", "overturned", "not finite", "too many steps")  # any other end is the engine's message, "what: why"
 
-# tilt [rad], its rate; x, z of the block's centre [m] from the place of a block standing at the origin, x', z'; x, x'
-# of the base
+# Tilt [rad] and its rate; x, z [m] and x', z' of the block's centre, measured from its position when standing at the
+# origin; x, x' of the base.
 State = tuple[float, float, float, float, float, float, float, float]
 Loads = Callable[[float, float, float, float, float], tuple[float, float, float]]
 
 
 class NoSolution(RuntimeError):
-    """The engine finds no velocities for a step; "what: why", in its own words."""
+    """The engine finds no velocities for a step; the message is the engine's, "what: why"."""
 
 
 class Bodies(Protocol):
     """The block and the base of a scene as an engine holds them."""
 
     def step(self, step: float, before: float, across: float, up: float, impulse: float) -> State:
-        """Let the engine make a step, and read where its bodies are.
+        """Advance the engine by one step and return the state of its bodies.
 
         Parameters
         ----------
         step, before : float
-            Length of the step and of the one before it (0: none) [s].
+            Length of the step and of the one before it (0 at the start) [s].
         across, up : float
-            What gravity and ground give every body in the step [m/s].
+            Velocity that gravity and ground motion add to every body in the step [m/s].
         impulse : float
-            Of the bearings on the base [N s].
+            Impulse of the bearings on the base [N s].
 
         Raises
         ------
@@ -90,7 +90,7 @@ class Bodies(Protocol):
         """
 
     def weigh(self, added: float) -> None:
-        """Give the base its mass and so much more [kg]."""
+        """Set the mass of the base to its own plus `added` [kg]."""
 
 
 def march(
@@ -104,21 +104,21 @@ def march(
         At the scene's start.
     scene : Scene
     duration : float
-        In place of the scene's [s].
+        Duration of the run [s], in place of the scene's.
     rule : function
-        Of `engines.step_size`; its contact points are the bottom corners.
+        A rule of `engines.step_size`; its contact points are the bottom corners.
     loads : function
-        (time, step, step before, base velocity, bearings' force without viscous part) -> what `Bodies.step` takes.
+        (time, step, step before, base velocity, bearing force without viscous part) -> the arguments of `Bodies.step`.
     largest : float
         Longest step [s].
     jumps : iterable of float
-        Times [s] of jumps of the ground's acceleration that the steps are to meet.
+        Times [s] of jumps of the ground acceleration, with which the steps are aligned.
 
     Returns
     -------
     rows, ended
-        Rows as `engines.leapfrog` has them, the start first; "done", "overturned", "not finite", "too many steps", or
-        the words of a `NoSolution`.
+        Rows as in `engines.leapfrog`, the start first; and "done", "overturned", "not finite", "too many steps", or the
+        message of a `NoSolution`.
     """
     law, start, loaded = BearingLaw.of(scene.bearings), scene.start, scene.bearings is not None
     half, high, fallen = scene.block.half_width, scene.block.half_height, 0.5 * math.pi
@@ -137,7 +137,7 @@ def march(
         if t + step >= limit:
             step, limit = fitted(t, step)
         across, up, impulse = loads(t, step, h, v, force)
-        if not isfinite(across + up + impulse):  # an engine may go on without a load
+        if not isfinite(across + up + impulse):  # an engine may ignore such a load
             ended = "not finite"
             break
         before = base
@@ -161,7 +161,7 @@ def march(
 
 
 def mean_loads(scene: Scene, bodies: Bodies, largest: float) -> Loads:
-    """Loads as `march` asks for them, for the mean of two steps; the ground's impulse is exact."""
+    """The `loads` of `march` for the mean of two steps; the impulse of the ground motion is exact."""
     law, model = BearingLaw.of(scene.bearings), RockingModel.of(scene)
     damping, mass, g = law.count * law.damping, driven_mass(model), model.g
     heavier = leapfrog_stiffness(law, largest, mass)
@@ -189,7 +189,7 @@ def mean_loads(scene: Scene, bodies: Bodies, largest: float) -> Loads:
 
 
 def sampled_loads(scene: Scene) -> Loads:
-    """Loads as `march` asks for them, taken as they are at the start of the step, as a first script takes them."""
+    """The `loads` of `march` sampled at the start of the step, as in a first script."""
     law, g, motion = BearingLaw.of(scene.bearings), scene.gravity, scene.motion
     damping = law.count * law.damping
 
@@ -205,9 +205,10 @@ def sampled_loads(scene: Scene) -> Loads:
 class ImpactAware:
     """Steps by the rule of `engines.step_size`: small where a corner lands, at most `largest_step` [s] elsewhere.
 
-    `largest_step` is the accuracy parameter. What flight adds to the error goes as its square, what landings add as the
-    smallest step; so the smallest is `SMALLEST_STEP` where the largest is `balanced_step` [s], and goes as its square:
-    both parts fall together. Steps are given for the Caryatid's R; times go with sqrt(R/g).
+    `largest_step` is the accuracy parameter. The error from flight is proportional to its square, the error from
+    landings to the smallest step. The smallest step is therefore `SMALLEST_STEP` at a largest step of `balanced_step`
+    [s], and proportional to the square of the largest. Steps are given for the Caryatid's R; times scale with
+    sqrt(R/g).
     """
 
     largest_step: float = 2e-4
@@ -216,14 +217,14 @@ class ImpactAware:
 
 @dataclass(frozen=True)
 class FixedStep:
-    """The same at one step: `step` [s], given for the Caryatid's R, is the accuracy parameter."""
+    """Steps of equal length: `step` [s], given for the Caryatid's R, is the accuracy parameter."""
 
     step: float
 
 
 @dataclass(frozen=True)
 class FirstScript:
-    """Defaults of the engine, loads and states as they come: `step` [s] is the accuracy parameter."""
+    """The engine's defaults, with loads and states not corrected: `step` [s] is the accuracy parameter."""
 
     step: float
 
@@ -249,10 +250,10 @@ def run_of(
     raw : function
         From rows to the trace of a first script.
     depth : float
-        To which a corner may sink that closes too slowly for the rule, over g h^2.
+        Largest penetration of a corner that closes too slowly for the rule, over g h^2.
     """
     largest, smallest = step_limits(scene, settings)
-    duration = scene.duration or 0.0  # a run has one
+    duration = scene.duration or 0.0  # never None in a run
     if duration / largest > MOST_ROWS:
         count = f"{duration / largest:.3g} for {duration:.6g} s; at most {MOST_ROWS}"
         return Run(None, 0, math.nan, Failure("too many steps", f"steps of {largest:.3g} s: {count}"))
@@ -282,7 +283,7 @@ def run_of(
 
 
 def step_limits(scene: Scene, settings: Settings) -> tuple[float, float]:
-    """(largest, smallest) step [s] of a scene; stiff bearings may ask for less than the settings say."""
+    """(largest, smallest) step [s] of a scene; stiff bearings may need shorter steps than the settings ask for."""
     if isinstance(settings, FirstScript):
         return settings.step, settings.step
     scale = size_scale(scene)
@@ -295,9 +296,10 @@ def step_limits(scene: Scene, settings: Settings) -> tuple[float, float]:
 
 
 def contact_tilt(scene: Scene, largest: float, smallest: float, depth: float) -> float:
-    """Tilt [rad] below which the block counts as in flat contact: twice the depth to which a corner may sink, over 2 b.
+    """Tilt [rad] below which the block counts as in flat contact: twice the largest penetration of a corner, over 2 b.
 
-    Where the rule sees it coming it lands at its speed times the smallest step, else at SLOW g h times h or less.
+    A corner whose landing the rule anticipates sinks by its speed times the smallest step, any other by SLOW g h times
+    h at most.
     """
     block, g = scene.block, scene.gravity
     landing = LANDING * block.slenderness * math.sqrt(g / block.radius) * smallest

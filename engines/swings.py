@@ -1,8 +1,8 @@
-"""Swings of the block in an engine's step history, and its states carried to the impact by the model's equations.
+"""Swings of the block in an engine's trace, and its states extrapolated to the impact by the model's equations.
 
-Contact compliance and the phase of the steps smear the jump at an impact over several steps. The steps near
-contact are therefore not trusted: the last state in clean flight is carried forward to tilt = 0, and the first one
-after the impact backward to it.
+Contact compliance and the phase of the steps spread the jump at an impact over several steps. The steps near contact
+are therefore not used: the last state in clean flight is integrated forward to tilt = 0, and the first one after the
+impact backward to it.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ if TYPE_CHECKING:
     from analytic.bearing import BearingLaw
     from analytic.types import Values
 
-# Carrying one step of an engine to tilt = 0: classical Runge-Kutta steps, and corrections of the end time.
-# 4 steps over 1/60 s leave 1e-11 rad/s; each correction cubes the error of the end time. A base that moves fast on
-# its bearings takes more: each step lasts at most PACE of its time constant, well inside the limit of stability of 2.8.
+# Extrapolation of one step of an engine to tilt = 0: classical Runge-Kutta steps, and corrections of the end time.
+# 4 steps over 1/60 s leave 1e-11 rad/s; each correction cubes the error of the end time. A fast base on its bearings
+# takes more steps: each is at most PACE of its time constant, well inside the stability limit of 2.8.
 RK_STEPS, CORRECTIONS = 4, 3
 PACE, MOST_STEPS = 0.5, 256
-# Backward in time viscous damping grows: by more than e to this power it would carry nothing but the steps' errors.
+# Backward in time viscous damping amplifies errors: beyond e to this power only the steps' errors would remain.
 GROWTH = 1.0
-# Ends of the steps back to the edge of contact, over the time since: the sooner after an impact, the more goes on.
+# Ends of the backward steps, as shares of the time since contact: denser close to the impact, where changes are fast.
 CARRY = (np.arange(31, -1, -1) / 32) ** 3
-# Steps measured at a time: a long run costs the memory of its steps, not that of a dozen arrays derived from them.
+# Steps processed at a time, so that a long run does not need a dozen derived arrays of its full length.
 PIECE = 100_000
 
 
@@ -57,16 +57,17 @@ class Trace:
     base_displacement, base_velocity : array
         Relative to the ground [m], [m/s]; zeros on rigid ground.
     bearing_force : array
-        All bearings together, viscous part included [N]; zeros without bearings.
+        Force of all bearings together, viscous part included [N]; zeros without bearings.
     contact_tilt : float
-        Tilt [rad] below which the engine counts as in flat contact: just above its contact noise.
+        Tilt [rad] below which the block counts as in flat contact: just above the engine's contact noise.
     settle : float
-        Time [s] a compliant contact takes to relax after an impact; flight counts as clean after it.
+        Time [s] that a compliant contact takes to relax after an impact; flight after it counts as clean.
     centre : array, shape (n, 4), or None
-        Of the block, as the engine has it: x and z [m] from the place of a block standing at the origin, x' and z'
-        [m/s], relative to the ground. None: not read, taken to pivot about its corner.
+        Position x, z [m] and velocity x', z' [m/s] of the block's centre in the engine, relative to the ground and to
+        its position when standing at the origin. None: not read; the block is taken to pivot about its corner.
     first_script : bool
-        The engine's own motors and dampers are left on: that the motion is not the bearings' is a warning, no failure.
+        The engine's own motors and dampers are left on. A motion that does not match the bearing force is then a
+        warning, not a failure.
 
     Raises
     ------
@@ -114,7 +115,7 @@ class Trace:
         )
 
     def pieces(self, steps: np.ndarray | None = None) -> Iterator[Trace]:
-        """The steps, or those of an array of indices, in pieces of `PIECE`; each begins with the last one's last."""
+        """The steps, or those of an array of indices, in pieces of `PIECE` that overlap by one step."""
         for begin in range(0, len(self.time if steps is None else steps) - 1, PIECE):
             part = slice(begin, begin + PIECE + 1)
             yield self.at(part if steps is None else steps[part])
@@ -126,10 +127,10 @@ class Trace:
 
 @dataclass(frozen=True)
 class Swings:
-    """The times the block is off flat contact; arrays of shape (n,).
+    """Intervals in which the block is out of flat contact; arrays of shape (n,).
 
-    first, last : indices of the first and last step with |tilt| > contact_tilt; clean: of the first step in clean
-    flight, ``settle`` after the first (at most half-way through the swing); side : +1 or -1.
+    first, last : indices of the first and last step with |tilt| > contact_tilt; clean : index of the first step in
+    clean flight, ``settle`` after the first (at most half-way through the swing); side : +1 or -1.
     """
 
     first: np.ndarray
@@ -159,12 +160,12 @@ def find_swings(trace: Trace) -> Swings:
 
 
 def to_contact(scene: Scene, trace: Trace, swings: Swings, direction: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """States of a trace carried to tilt = 0 by the model's equations of flight.
+    """States of a trace extrapolated to tilt = 0 by the model's equations of flight.
 
     Parameters
     ----------
     swings : Swings
-        Of n swings.
+        n swings.
     direction : int
         +1: from each swing's last step forward to its landing; -1: from its first clean step back to its start.
 
@@ -173,9 +174,9 @@ def to_contact(scene: Scene, trace: Trace, swings: Swings, direction: int) -> tu
     time, rate, velocity : arrays, shape (n,)
         Time [s], tilt rate [rad/s] and base velocity [m/s] at tilt = 0; NaN where the flight does not reach it.
 
-    Back to the edge of contact the bearings give the impulse that they gave in the trace; from there on, or from the
-    last step, their force follows the law, or, where the base is too fast for that (forward: `MOST_STEPS`, backward:
-    `GROWTH`), the trace's two steps there. What dampers took before the step that reached the edge stays with contact.
+    Back to contact_tilt, the bearings' impulse is that of the trace. Beyond it, or beyond the last step, their force
+    follows the law; where the base is too fast for that (forward: `MOST_STEPS`, backward: `GROWTH`), it is extrapolated
+    from the two steps there. Damping before the step that reached contact_tilt is attributed to contact.
     """
     model = ArrayModel.of(scene)
     law, side = model.bearing, swings.side
@@ -217,7 +218,7 @@ def to_contact(scene: Scene, trace: Trace, swings: Swings, direction: int) -> tu
         least = RK_STEPS if correction == 0 else 1
         steps = int(np.clip(math.ceil(min(pace * longest.max() / PACE, MOST_STEPS)), least, MOST_STEPS))
         t, state = _runge_kutta(slope, t, state, wanted / steps, steps)
-    # moving out of contact where it should move in, or not there at all
+    # The block moves out of contact where it should move in, or does not reach contact.
     missed = (side * state[1] * direction > 0) | ~(np.abs(state[0]) <= trace.contact_tilt)
     at, rate, velocity = np.where(missed, np.nan, (t, state[1], state[3]))
     return at, rate, velocity
@@ -240,15 +241,15 @@ def _paces(model: ArrayModel) -> tuple[float, float]:
     if not model.on_base:
         return 0.0, 0.0
     law, height = model.bearing, model.R * math.cos(model.gamma)
-    mass = model.M - (model.m * height) ** 2 / model.J  # what a force on the base has to move
+    mass = model.M - (model.m * height) ** 2 / model.J  # effective mass of the base
     decay = law.count * law.damping / mass
     return max(decay, math.sqrt(law.count * (law.kb + law.dk) / mass)), decay
 
 
 def _impulse(trace: Trace, lasting: np.ndarray, viscous: float) -> Callable[[np.ndarray], np.ndarray]:
-    """Impulse of the bearings' force since the start [N s], as function of time [s].
+    """Impulse of the bearing force since the start [N s], as a function of time [s].
 
-    What dampers take from a base that stops within a step follows from how far it came.
+    The impulse of the dampers on a base that stops within a step follows from its displacement.
     """
     steps = 0.5 * np.diff(trace.time) * (lasting[1:] + lasting[:-1])
     since = viscous * trace.base_displacement + np.concatenate(([0.0], np.cumsum(steps)))
@@ -256,7 +257,7 @@ def _impulse(trace: Trace, lasting: np.ndarray, viscous: float) -> Callable[[np.
 
 
 def _tangent(trace: Trace, swings: Swings, direction: int) -> Callable[[np.ndarray], np.ndarray]:
-    """The bearings' force as function of time [s], along the last (or first) two steps of each swing."""
+    """Bearing force as a function of time [s], linear through the last (or first) two steps of each swing."""
     end = swings.last if direction > 0 else swings.first
     inner = np.maximum(swings.last - 1, swings.first) if direction > 0 else np.minimum(swings.first + 1, swings.last)
     span = trace.time[inner] - trace.time[end]
@@ -267,7 +268,7 @@ def _tangent(trace: Trace, swings: Swings, direction: int) -> Callable[[np.ndarr
 def _time_to_zero(p: np.ndarray, q: np.ndarray, a: np.ndarray, direction: np.ndarray) -> np.ndarray:
     """Root of p + q h + a h^2/2 on the side of `direction`, the nearer one for 0; NaN where there is none.
 
-    Where a alone leaves none, as a stiff bearing's may that swings to and fro, that of p + q h.
+    Where only the term in a prevents a root, as with an oscillating stiff bearing, the root of p + q h.
     """
     with np.errstate(invalid="ignore", divide="ignore"):
         square = q * q - 2 * a * p
@@ -276,15 +277,15 @@ def _time_to_zero(p: np.ndarray, q: np.ndarray, a: np.ndarray, direction: np.nda
         return np.where(p == 0, 0.0, np.where(root * direction >= 0, root, np.nan))
 
 
-# Exponent beyond which the bearing is on its limit force, whatever the number [-].
+# Exponent beyond which the bearing is at its limit force to rounding [-].
 FAR = 100.0
 
 
 def _branch(law: BearingLaw, x: np.ndarray, lasting: np.ndarray, v: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
-    """Elastic and hysteretic force of all bearings [N] as function of displacement, on the path through (x, force).
+    """Elastic and hysteretic force of all bearings [N] as a function of displacement, on the path through (x, force).
 
-    The law is taken in the direction of v as it is at two points, and between and behind them by the exponential
-    through these, which is exact for a Bouc-Wen law and good to (alpha dx)^2/(2 alpha) for the algebraic one.
+    The law is evaluated at two points in the direction of v. An exponential through them gives the force elsewhere: it
+    is exact for a Bouc-Wen law and accurate to (alpha dx)^2/(2 alpha) for the algebraic one.
     """
     z = np.clip(lasting / max(law.count, 1) - law.kb * x, -law.f0, law.f0)  # an engine's rounding may exceed f0
     step = np.where(v < 0, -1e-4, 1e-4)

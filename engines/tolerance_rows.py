@@ -1,8 +1,8 @@
-"""Rows of the table of agreement tolerances, as an engine states them beside its adapter."""
+"""Rows of the table of agreement tolerances; each engine defines its own beside its adapter."""
 
 from dataclasses import dataclass
 
-# What errors come from, where engines share it.
+# Sources of error that several engines share.
 STEP = "step; first order, by the phase of the impact in it"
 LARGE_STEP = "steps in flight and at rest"
 HELD = "what the contact gives at rest"
@@ -12,10 +12,10 @@ ROUNDING = "history committed once per accepted step; round-off"
 
 @dataclass(frozen=True)
 class ToleranceRow:
-    """`quantity` over `scenes` is at most `bound`; `measured` is the worst found when that was set, `source` says what
-    the error comes from.
+    """The error of `quantity` over `scenes` is at most `bound`. `measured`: the worst value found when the bound was
+    set; `source`: the cause of the error.
 
-    Where the source is `ROUNDING` the bound is what is asked for, and the measured value far below.
+    Where the source is `ROUNDING`, the bound is a requirement, and the measured value is far below it.
     """
 
     quantity: str

@@ -1,4 +1,4 @@
-"""How a trace ends: at a state that is not finite, at overturning, or before its time."""
+"""The end of a trace: a state that is not finite, overturning, or an end before the scene's duration."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def finite_part(trace: Trace, failure: Failure | None) -> tuple[Trace | None, Failure | None]:
-    """(the steps before the first non-finite one or None, the failure with its last finite state)."""
+    """(steps before the first non-finite one, or None; failure with the last finite state)."""
     finite = np.isfinite(trace.time)
     for name in Trace.COLUMNS[1:]:
         finite &= np.isfinite(getattr(trace, name))
@@ -37,7 +37,7 @@ def finite_part(trace: Trace, failure: Failure | None) -> tuple[Trace | None, Fa
 
 
 def upto_overturning(scene: Scene, trace: Trace, ended: str | None) -> tuple[Trace, float | None]:
-    """The trace up to |tilt| = pi/2 with that state as its last step, and its time; or the whole trace and None."""
+    """(trace up to |tilt| = pi/2, with that state as its last step; its time), or (the whole trace, None)."""
     limit = math.pi / 2
     over = np.flatnonzero(np.abs(trace.tilt) >= limit)
     if len(over) and over[0] > 0:
@@ -56,7 +56,7 @@ def upto_overturning(scene: Scene, trace: Trace, ended: str | None) -> tuple[Tra
 
 
 def upright_part(scene: Scene, trace: Trace, falls: bool) -> Trace:
-    """The trace of a block that `falls` up to its last passage of the slenderness; else, and without one, all of it."""
+    """The trace up to the last passage of the slenderness if the block `falls`; all of it otherwise or without one."""
     if not falls:
         return trace
     slenderness = scene.block.slenderness
@@ -68,14 +68,14 @@ def upright_part(scene: Scene, trace: Trace, falls: bool) -> Trace:
 
 
 def _upto_crossing(trace: Trace, last: int, level: float) -> Trace:
-    """The steps before step `last`, within whose interval |tilt| passes `level`, and the state there as the last."""
+    """The steps before step `last`, in whose interval |tilt| passes `level`, then the state at the passage."""
     pair = slice(last - 1, last + 1)
     tilt = math.copysign(level, trace.tilt[last])
     t = _crossing(trace.time[pair], trace.tilt[pair], trace.tilt_rate[pair], tilt)
     weight = (t - trace.time[last - 1]) / (trace.time[last] - trace.time[last - 1])
 
     def closed(values, end=None):
-        """The steps before it, and the state at it."""
+        """The values before the passage, then the value at it."""
         if end is None:
             end = (1 - weight) * values[last - 1] + weight * values[last]
         return np.append(values[: last if weight > 0 else last - 1], [end], axis=0)
@@ -114,9 +114,9 @@ def last_state(trace: Trace, step: int = -1) -> State:
 
 
 def ended_early(scene: Scene, trace: Trace) -> Failure | None:
-    """A `Failure` where a trace ends before the scene's duration by more than one of its steps, else None."""
+    """A `Failure` if a trace ends more than one of its steps before the scene's duration, else None."""
     end = last_state(trace)
-    short = scene.end * (1 - 1e-9) - end.time  # the last of equal steps need not end at the duration
+    short = scene.end * (1 - 1e-9) - end.time  # equal steps need not end at the duration
     if short > np.diff(trace.time).max():
         return Failure("the run ended early", f"last step at {end.time:.9g} s of {scene.duration:.9g} s", end)
     return None

@@ -327,7 +327,10 @@ BAD = {
         replaced("count = 4", "count = 10000000"),
         "bearings.count = 10000000: out of range; give a number up to 1e+06",
     ),
-    "NUL in a path": (motion('record = "a\\u0000b"'), "motion.record = 'a\\x00b': cannot be read (no path has such"),
+    "NUL in a path": (
+        motion('record = "a\\u0000b"'),
+        "motion.record = 'a\\x00b': cannot be read (a path cannot contain such",
+    ),
     "path too long": (
         motion('record = "' + "a" * 300 + '"'),
         f"motion.record = '{'a' * 80}' ... (300 characters): cannot be read",

@@ -38,7 +38,7 @@ default_variant = pytest.mark.parametrize(
 def accurate(name, variant):
     """Whether a variant is held to the analytic model: a default one that is tuned, or one of `ALSO_ACCURATE`."""
     engine = get_engine(name)
-    tuned = variant == engine.default_variant and engine.variants[variant].tier == "tuned"
+    tuned = variant == engine.default_variant and engine.variants[variant].kind == "tuned"
     return tuned or (name, variant) in ALSO_ACCURATE
 
 

@@ -35,7 +35,7 @@ class Euler:
 VARIANTS = {
     "euler": Variant(
         Euler(),
-        tier="assisted",
+        kind="assisted",
         levels=(2e-3, 5e-4),
         takes_restitution=True,
         computes="motion and uplift",

@@ -1,6 +1,6 @@
-"""The bearing laws, one file each; a new one is its file and a name in the first import. See `Law` for what it offers.
+"""The bearing laws, one file each. A new law is a file and a name in the first import; `Law` describes its contents.
 
-Compiled code knows a law by its number, its place in `LAWS`.
+Compiled code identifies a law by its index in `LAWS`.
 """
 
 from collections import namedtuple
@@ -8,7 +8,7 @@ from types import ModuleType
 from typing import Any
 
 from ..compiled import chosen
-from . import algebraic, bilinear, bouc_wen, linear  # noqa: F401 a new law joins this line, and is in LAWS by it
+from . import algebraic, bilinear, bouc_wen, linear  # noqa: F401 a law named here is in LAWS
 from .law import Law
 
 __all__ = ["LAWS", "NUMBERS", "Constants", "Law", "law_function"]
@@ -21,7 +21,7 @@ def _record(names: tuple[str, ...]) -> Any:
     return namedtuple("Constants", names, defaults=[0.0] * len(names))
 
 
-# Constants of any law: dk, f0, and all laws' own, of which each fills its own.
+# Constants of all laws: dk, f0, and those of each law; a law fills its own only.
 Constants = _record(("dk", "f0", *dict.fromkeys(name for law in LAWS for name in law.own)))
 
 

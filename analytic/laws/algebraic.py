@@ -1,7 +1,7 @@
 """The algebraic hysteretic law of the paper, eqs (9)-(14).
 
-From any point (x_c, z_c) of its path it gives z after monotonic travel in closed form, so the pair (x, z) is its whole
-memory: no list of reversal points is needed.
+It gives z after monotonic travel from any point (x_c, z_c) of the path in closed form. The pair (x, z) is therefore the
+complete memory: no list of reversal points is needed.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ def constants(bearings: Given) -> dict[str, float]:
 
 @inner
 def virtual_travel(s: float, z: float, c: Constants) -> float:
-    """D_c: where the point with hysteretic force z stands on the limit curve of direction s [m].
+    """D_c: position on the limit curve of direction s [m] at which the hysteretic force is z.
 
-    The literal x_j of eqs (10) and (12) raises a negative number to a power beyond 1.33 m of travel; this form
-    of the same history does not. (The bracket of eq. (12) is misprinted; it must read 1 - x + x_j + 2 x0.)
+    With x_j as in eqs (10) and (12), a negative number would be raised to a power beyond 1.33 m of travel; this form is
+    equivalent and avoids it. (The bracket of eq. (12) is misprinted; it must read 1 - x + x_j + 2 x0.)
     """
     power = c.d0 + (1 - c.alpha) * (s * z - c.f0) / c.dk  # D_c^(1 - alpha)
     return max(c.d0, power) ** (1 / (1 - c.alpha))
@@ -68,7 +68,7 @@ def recoverable(z: float, c: Constants) -> float:
     begin, end = -math.log(d0 + a * (f0 + z) / dk) / a, -math.log(d0 + a * f0 / dk) / a  # log D
     length = end - begin
     if end > 600:
-        return math.inf  # alpha near 1: a tail without end
+        return math.inf  # alpha near 1: unbounded
     power = length if abs((1 - a) * length) < 1e-8 else math.expm1((1 - a) * length) / (1 - a)
     travel = math.exp(begin) * math.expm1(length)
     return dk / a * math.exp((1 - a) * begin) * power - (f0 + dk * d0 / a) * travel
@@ -100,7 +100,7 @@ def reached(s: float, z: float, q: np.ndarray, order: int, h: float, travel: flo
 
 @inner
 def sides(z: float, c: Constants) -> tuple[float, float]:
-    """D_c forth and back."""
+    """D_c in both directions."""
     return virtual_travel(1.0, z, c), virtual_travel(-1.0, z, c)
 
 

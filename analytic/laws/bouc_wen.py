@@ -27,7 +27,7 @@ def work(z: float, dx: float, c: Constants) -> float:
 
 @inner
 def recoverable(z: float, c: Constants) -> float:
-    """dz/dx = (ka - kb)/2 (1 + z/f0) on the way back."""
+    """Unloading follows dz/dx = (ka - kb)/2 (1 + z/f0)."""
     return 2 / c.dk * c.f0 * (z - c.f0 * math.log1p(z / c.f0))
 
 

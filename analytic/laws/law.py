@@ -1,7 +1,7 @@
-"""What a bearing law offers: the hysteretic part z of the force f = kb x + z + c v of one bearing.
+"""Protocol of a bearing law: the hysteretic part z of the force f = kb x + z + c v of one bearing.
 
-A law is one file of this folder with one `Law`. Its functions get its constants as the last argument, a record c with
-dk = ka - kb [N/m], f0 the limit of |z| [N], and the law's own; s is the sign of the travel, 0 at standstill.
+A law is one file of this folder with one `Law`. The last argument of its functions is the record c of its constants:
+dk = ka - kb [N/m], f0, the limit of |z| [N], and the law's own. s is the sign of the velocity, 0 at rest.
 """
 
 from collections.abc import Callable
@@ -13,11 +13,11 @@ import numpy as np
 from ..compiled import inner
 from ..polynomial import value
 
-Constants = Any  # `laws.Constants`, which has those of all laws
+Constants = Any  # `laws.Constants`, with the constants of all laws
 
 
 class Given(Protocol):
-    """What a law is made of: the numbers of [bearings], see `scene.Bearings`."""
+    """The numbers of [bearings] from which a law is made, see `scene.Bearings`."""
 
     ka: float
 
@@ -41,26 +41,26 @@ def only_z(z: float, c: Constants) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class Law:
-    """One law of a bearing; what has a default a law without it does not need.
+    """One bearing law. Fields with a default are needed by some laws only.
 
-    name : its name in scene files.
-    needs, ignores : keys of [bearings] beside ka that it asks for, and that may stand there unused; others are errors.
+    name : name in scene files.
+    needs, ignores : keys of [bearings] beside ka that are required, and that may be there unused; others are errors.
     own : names of its constants beside dk and f0.
-    constants(bearings) : dict of kb, dk, f0 and its own.
-    memory : whether z depends on the path; then every reversal matters.
+    constants(bearings) : dict of kb, dk, f0 and its own constants.
+    memory : whether z depends on the path; then every reversal is an event.
     after_travel(z, dx, c) : z after monotonic travel dx [m].
     work(z, dx, c) : integral of z over that travel [J]; not compiled.
-    recoverable(z, c) : what a bearing with z > 0 gives back on its way to z = 0 [J].
-    begin(s, z, travel, c) : (q_0, factors, corner) at the start of a Taylor step: three numbers for its terms, and the
-        next s z at which the stiffness jumps, an event; inf where there is none.
+    recoverable(z, c) : energy [J] that a bearing with z > 0 returns while unloading to z = 0.
+    begin(s, z, travel, c) : (q_0, factors, corner) at the start of a Taylor step: q_0, three numbers for the terms, and
+        the next s z at which the stiffness jumps, an event; inf without one.
     term(k, factors, x, v, q) : z_k for k >= 1, with q_k filled in; x up to k, v and q up to k - 1 are given.
-    mark(s, z, c) : where z stands on the branch of direction s, remembered at a reversal [m]; travel counts from it.
+    mark(s, z, c) : position of z on the branch of direction s [m], stored at a reversal; travel is counted from it.
     reached(s, z, q, order, h, travel, c) : z at the end of a step.
     sides(z, c) : two numbers of `expression`, committed after each step of an engine.
-    expression(ops, dx, first, second, c) : `after_travel` for engines with formulas of their own, with
+    expression(ops, dx, first, second, c) : `after_travel` for engines with symbolic expressions, with
         where(condition, a, b), power(a, b) and exp(a) of `ops`.
-    branch(z, direction, c) : function (z, v) -> z' [N/s] from z on, up to the next reversal or corner. Where there is
-        one the second implementation integrates z as a state, else it uses `after_travel`; not compiled.
+    branch(z, direction, c) : function (z, v) -> z' [N/s] from z to the next reversal or corner. If given, the second
+        implementation integrates z as a state, otherwise it uses `after_travel`; not compiled.
     """
 
     name: str

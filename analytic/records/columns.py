@@ -1,9 +1,10 @@
 """Columns of numbers: times [s] and accelerations, or accelerations alone at a step that is stated or given.
 
-Parted by blanks, tabs, semicolons or commas, in quotes or not, with a header or without; so do loggers and programs
-write them, and the networks of Taiwan (CWA), Japan (JMA) and Turkey (AFAD). A line may hold several pairs of time and
-acceleration. Accelerations alone may stand several a line, one after the other, as OpenSees and other programs read
-them and China's network (CSMNC) writes them; the header, or a first line as eqsig's, may state their number.
+The columns are separated by blanks, tabs, semicolons or commas, with or without quotes and header. Loggers and programs
+write such files, and so do the networks of Taiwan (CWA), Japan (JMA) and Turkey (AFAD). A line may hold several pairs
+of time and acceleration. Accelerations without times may stand several per line in sequence, as OpenSees and other
+programs read them and China's network (CSMNC) writes them; the header, or a first line as eqsig's, may state their
+number.
 """
 
 import itertools
@@ -43,16 +44,16 @@ REMEDY = "write time [s] and acceleration, two numbers a line"
 OF_TIMES = (
     "give the accelerations over time of this record; if these are, title their columns time [s] and acceleration"
 )
-# Of numbers one after the other, neighbours in a line are no rougher than those a line apart, wherever in the line they
-# stand; in columns of their own they are, or some of them are.
+# In a sequence of numbers, differences between neighbours in a line are no larger than those between lines, at every
+# position in the line. In separate columns they are larger, at some positions at least.
 SMOOTHER, ALIKE = 0.7, 1.6
 
 
 @dataclass(frozen=True)
 class Sheet:
-    """What a file of columns holds: its rows, the titles of its columns and what kinds these are, the other words of
-    the header, what they and the first title state, the number of samples stated, the line that says that they are a
-    spectrum, the sign between fields (None: blanks), and whether the rows hold numbers one after the other."""
+    """Content of a file of columns: its rows, the titles and kinds of its columns, the other words of the header, the
+    statements in them and in the first title, the number of samples stated, the line that names a spectrum, the
+    separator (None: blanks), and whether the rows hold one sequence of numbers."""
 
     lines: Sequence[str]
     table: Table
@@ -101,7 +102,7 @@ class Sheet:
 
 
 def recognises(lines: Sequence[str]) -> bool:
-    """Columns are what is left when no other format is recognised."""
+    """Always: columns are the last format tried."""
     return True
 
 
@@ -134,7 +135,7 @@ def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
 
 
 def _sheet(lines: Sequence[str], alone: bool) -> Sheet:
-    """The `Sheet` of the lines of a file; `alone`: no column of it is asked for."""
+    """The `Sheet` of the lines of a file; `alone`: no column is asked for."""
     header, rows = split(lines)
     separator, table = parted(rows)
     if lines[-1].strip():
@@ -147,9 +148,9 @@ def _sheet(lines: Sequence[str], alone: bool) -> Sheet:
     runs_on = alone and separator is None and _runs_on(table, bool(titles.words), count)
     titles = Titles() if runs_on else Titles(titles.at, titles.words[:width])
     words = [*leading, *((at, line) for at, line in header if at != titles.at)]
-    # What the other titles say of their columns is not said of the times.
+    # Statements in the other titles do not apply to the times.
     stated = read_statements([*words, (titles.at, titles.words[0])] if titles.words else words)
-    # Nothing of a spectrum is negative; of a motion that fits one, much is.
+    # A spectrum has no negative values; a motion with the same columns has many.
     positive = not any(field.startswith("-") for _, fields in table for field in fields[1:])
     spectrum = spectrum_in(words) if positive else None
     kinds = kinds_of(titles, bool(spectrum)) or [UNKNOWN] * width
@@ -160,8 +161,8 @@ def _sheet(lines: Sequence[str], alone: bool) -> Sheet:
 
 
 def _runs_on(table: Table, titled: bool, count: int | None) -> bool:
-    """Whether rows parted by blanks hold numbers one after the other, of which the header states `count`: some touch,
-    or they are no columns."""
+    """Whether rows separated by blanks hold one sequence of numbers, of which the header states `count`: some numbers
+    touch, or there are no columns."""
     if count in (None, len(table)):
         return False
     if any(numbers_in(field) > 1 for _, fields in table for field in fields):
@@ -170,7 +171,7 @@ def _runs_on(table: Table, titled: bool, count: int | None) -> bool:
 
 
 def _check_header(sheet: Sheet) -> None:
-    """Refuse a header whose last line may be a damaged row, or that is one of PEER's, damaged."""
+    """Refuse a header whose last line may be a damaged row, or that is a damaged PEER header."""
     numbers = sum(len(fields) for _, fields in sheet.table)
     whole = sheet.stated.step is not None and sheet.count in (len(sheet.table), numbers)
     for at, line in (*sheet.words, (sheet.titles.at, " ".join(sheet.titles.words))):
@@ -190,8 +191,8 @@ def _check_header(sheet: Sheet) -> None:
 
 
 def _times(sheet: Sheet, known: bool) -> list[int]:
-    """The columns of times: those with such a title, or else the first one that does not number the rows, if it rises;
-    `known`: the step is known without."""
+    """The columns of times: those with such a title, else the first one that does not number the rows, if it increases;
+    `known`: the step is known without them."""
     named = [place for place, kind in enumerate(sheet.kinds) if kind == TIME]
     if named or sheet.width == 1:
         return named
@@ -204,7 +205,7 @@ def _times(sheet: Sheet, known: bool) -> list[int]:
     if rising and sheet.spectrum:
         at, line = sheet.spectrum
         raise SceneError(f"line {at}", line, "names a spectrum, not an acceleration over time", OF_TIMES)
-    if rising and sheet.kinds[first] in (UNKNOWN, ACCELERATED):  # no acceleration only rises
+    if rising and sheet.kinds[first] in (UNKNOWN, ACCELERATED):  # accelerations do not increase monotonically
         return [first]
     if sheet.titles.words or known:
         return []
@@ -216,7 +217,7 @@ def _times(sheet: Sheet, known: bool) -> list[int]:
 
 
 def _only_rises(sheet: Sheet, place: int) -> bool:
-    """Whether a column only rises; refused if it holds what is no number, as a damaged time is."""
+    """Whether a column increases monotonically; an entry that is not a number, as a damaged time, is refused."""
     values = [number(f"line {at}", fields[min(place, len(fields) - 1)]) for at, fields in sheet.table]
     return len(values) > 1 and all(before < after for before, after in itertools.pairwise(values))
 
@@ -274,9 +275,9 @@ def _place(sheet: Sheet, wanted: int | str) -> int | None:
 
 
 def _one_after_the_other(sheet: Sheet, known: bool) -> list[float]:
-    """All numbers, shape (n,): one a line, or as many in each line but the last.
+    """All numbers, shape (n,): one per line, or equally many in each line except the last.
 
-    Numbers of channels side by side are refused: read along the lines they jump.
+    Channels side by side are refused: in sequence their numbers jump.
     """
     if not known:
         problem = "missing; the file holds one column of numbers, no times"
@@ -295,7 +296,7 @@ def _one_after_the_other(sheet: Sheet, known: bool) -> list[float]:
 
 
 def _smooth(values: Sequence[float], width: int) -> bool:
-    """Whether numbers, `width` a line, run on from line to line."""
+    """Whether numbers, `width` per line, continue smoothly from line to line."""
     if not 1 < width < len(values):
         return True
     along, across = np.abs(np.diff(values)), np.abs(np.array(values[width:]) - values[:-width])
@@ -304,7 +305,7 @@ def _smooth(values: Sequence[float], width: int) -> bool:
 
 
 def _step(sheet: Sheet, place: int) -> float:
-    """The step [s] of a column of times, or that which the header states where the two agree."""
+    """The step [s] of a column of times, or the stated one if the two agree."""
     tokens = [fields[place] for _, fields in sheet.table]
     for at, fields in sheet.table:
         number(f"line {at}", fields[place])

@@ -1,4 +1,4 @@
-"""What every reader of a record starts from and hands back: lines of text; step, values and their unit."""
+"""Input and output of every reader of records: lines of text; step, values and their unit."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -15,7 +15,7 @@ from .packed import unpacked
 from .units import Unit
 
 LARGEST = 200_000_000  # bytes: some 1e7 samples
-HEADER_WIDTH = 400  # characters of a header line that are looked at
+HEADER_WIDTH = 400  # characters of a header line that are read
 UNKNOWN = (
     "not a known record format",
     "give PEER AT2 (a line NPTS= ..., DT= ...), ESM/DYNA 1.2, CSMIP volume 2, COSMOS, K-NET, SMC or columns of numbers",
@@ -25,7 +25,7 @@ CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 
 @dataclass(frozen=True)
 class Asked:
-    """What the user says of a record. None: nothing, and the file itself must say it.
+    """What the user states of a record. None: not stated, so that the file must state it.
 
     dt : float or None
         Sampling interval [s].
@@ -39,9 +39,9 @@ class Asked:
 
 @dataclass(frozen=True)
 class Content:
-    """One channel of a record as read: sampling interval dt [s] and unit as its own words state them (None: they do
-    not), values as printed, shape (n,), what to say of a missing unit, sentences on what is odd, number and direction
-    of the channel, what was done to the values, and sentences on words about the sampling that are not understood."""
+    """One channel of a record as read: sampling interval dt [s] and unit as stated in the file (None: not stated),
+    values as printed, shape (n,), message for a missing unit, warnings, number and direction of the channel, processing
+    of the values, and sentences on words about the sampling that are not understood."""
 
     dt: float | None
     values: np.ndarray

@@ -1,7 +1,7 @@
 """Numbers in columns of equal width, as a Fortran format such as 8F10.5 prints them: cut by position, not by blanks.
 
-Numbers that fill their columns touch each other, so that blanks do not part them; and a sign that is lost or slips in
-moves what is behind it, which shows.
+Numbers that fill their columns touch each other, so that blanks do not separate them. A missing or an additional
+character shifts all that follows, which is detected.
 """
 
 import re

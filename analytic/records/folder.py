@@ -1,4 +1,4 @@
-"""The records of a folder as motions of a scene, and two horizontal components turned into other directions."""
+"""The records of a folder as motions of a scene, and two horizontal components rotated into other directions."""
 
 import math
 import re
@@ -18,8 +18,8 @@ VERTICAL = ("up", "u-d", "ud", "vertical", "vert", "dwn", "ver", "v", "z", "u") 
 # and the two horizontal components
 PAIRS = (("e", "n"), ("ew", "ns"), ("e-w", "n-s"), ("x", "y"), ("1", "2"), ("a", "b"))
 RUN_STEPS = 5000  # what a run costs beside a step for each sample, in steps: .3 ms
-# The component in a file's name: a word of its own, after the letters of an instrument (HNE), a number after such
-# letters (H1, HN2; of itself it counts files), or an azimuth.
+# The component in a file's name: a separate word, letters after those of an instrument (HNE), a number after such
+# letters (H1, HN2; a number alone counts files), or an azimuth.
 _WORD = re.compile(
     r"(?<![A-Za-z])(?:(?:[BEHS][HNLG])?(E-?W|N-?S|U-?D|UP|VERT|VER|DWN|[ENZXYUV])|[BEHS][HNLG]?([12]))(?![A-Za-z0-9])",
     re.I,
@@ -66,7 +66,7 @@ def same_reversed(scene: Scene) -> bool:
 def folder_motions(
     folder: str | PathLike[str], *, directions: int | None = None, own: Motion | None = None, **said: object
 ) -> tuple[dict[str, list[SampledMotion]], list[str]]:
-    """The horizontal motions of the records in a folder, and what was left out.
+    """The horizontal motions of the records in a folder, and the files and channels left out.
 
     Parameters
     ----------
@@ -78,10 +78,10 @@ def folder_motions(
         are. A pair is two horizontal channels of one file, or two files whose names differ in the component alone:
         E and N, EW and NS, H1 and H2, X and Y, azimuths 90 degrees apart.
     own : SampledMotion, PulseMotion or None
-        A motion that is run besides: where it is a component of a record here, that record is the first one, and this
-        motion the first in it.
+        The scene's own motion. If it is a component of a record in the folder, that record comes first, and this motion
+        is the first in it.
     said : units, dt
-        Of records that do not say, as `read_record` takes them.
+        For records that do not state them, see `read_record`.
 
     Returns
     -------
@@ -133,7 +133,7 @@ def _check_cost(directions: int, groups: Iterable[Sequence[tuple[str, SampledMot
 
 
 def _components(folder: Path, said: dict) -> tuple[dict[str, list[tuple[str, SampledMotion]]], list[str]]:
-    """{record: [(component, its horizontal motion)]}, and what was left out."""
+    """{record: [(component, its horizontal motion)]}, and sentences on what was left out."""
     from . import read_channels
 
     found: dict[str, list[tuple[str, SampledMotion]]] = {}

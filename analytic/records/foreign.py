@@ -1,4 +1,4 @@
-"""Formats that are known and not read: each is refused by its name, with what to do."""
+"""Known formats that are not read: each is refused by name, with a remedy."""
 
 import re
 from collections.abc import Sequence

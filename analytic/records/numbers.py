@@ -1,4 +1,4 @@
-"""Numbers as records print them, read strictly: what is not surely a number is refused, never mended."""
+"""Strict reading of printed numbers: an ambiguous one is refused, never corrected."""
 
 import math
 import re
@@ -53,7 +53,7 @@ def fortran_values(lines: Sequence[str], begin: int) -> np.ndarray:
     Raises
     ------
     SceneError
-        What is not a number, or one of another form or in a line of another width than all others: damage.
+        A token that is not a number, or a number of another form, or in a line of another width, than all others.
     """
     rows = [(f"line {at}", line.rstrip()) for at, line in enumerate(lines[begin:], begin + 1) if line.strip()]
     tokens = [(where, token) for where, line in rows for part in line.split() for token in _parted(where, part)]
@@ -82,7 +82,7 @@ def check_last(where: str, table: Sequence[Sequence[str]]) -> None:
 
 
 def _parted(where: str, text: str) -> list[str]:
-    """Numbers that blanks do not part, because a sign fills the column: "-.1230E+00-.4560E+00".
+    """Numbers that blanks do not separate, because a sign fills the column: "-.1230E+00-.4560E+00".
 
     "-.10-100" may be an exponent without its letter: numbers in a row have points.
     """

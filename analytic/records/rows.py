@@ -1,4 +1,4 @@
-"""Rows of numbers below a header: the lines of a file taken apart into fields."""
+"""Rows of numbers below a header: the lines of a file split into fields."""
 
 import itertools
 import math
@@ -11,7 +11,7 @@ from .numbers import form_of, value_of
 from .statements import read_statements, stated_count, stated_unit
 from .times import in_seconds
 
-# A line that begins like a number is data and must be read, or else damage would pass as a header.
+# A line that begins like a number is data, so that a damaged row is not taken for a header.
 DATA = re.compile(r"\s*(?:[-+.0-9]|[,;](?!\s*(?!nan|inf)[^\W\d_])|(?:nan|inf|infinity)\b)", re.I)
 COMMENT = ("#", "%", "!", "//")
 HEADER_LINES = 200
@@ -24,8 +24,8 @@ Table = Sequence[tuple[int, list[str]]]  # line numbers and fields of the rows
 
 
 def unquoted(lines: Sequence[str]) -> Sequence[str]:
-    """The lines without the quotes around their fields; where numbers in quotes have decimal commas, semicolons part
-    the fields."""
+    """The lines without quotes around the fields; if quoted numbers have decimal commas, the separator becomes a
+    semicolon."""
     parts = {at: line.split('"') for at, line in enumerate(lines) if '"' in line and QUOTED.fullmatch(line.strip())}
     if not parts:
         return lines

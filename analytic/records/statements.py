@@ -1,4 +1,4 @@
-"""What the header of a record states: sampling interval, number of samples, unit of its values, unit of its times.
+"""Statements in the header of a record: sampling interval, number of samples, unit of its values, unit of its times.
 
 A step is stated by a word for it, in English, Spanish, German, French or Turkish, with accents or without, then a
 number with a point or a comma, its unit before or behind: "Sampling rate: 100 Hz", "INTERVALO DE MUESTREO (s): 0,01",
@@ -119,8 +119,8 @@ _OTHER = re.compile(rf"(?<![a-z])(?:{OTHER})(?![a-z])")
 
 @dataclass(frozen=True)
 class Statements:
-    """Of a header: sampling interval [s], None where not stated; units of its times in a second; sentences on words
-    about sampling that are not understood; and its lines without what was read, for `stated_unit`."""
+    """Statements of a header: sampling interval [s], None if not stated; its units of time per second; sentences on
+    words about sampling that are not understood; and its lines without the words read, for `stated_unit`."""
 
     step: float | None
     per_second: int

@@ -17,11 +17,11 @@ _MILLISECONDS = (
 )
 PER_SECOND = dict.fromkeys(("", *_SECONDS.split()), 1) | dict.fromkeys(_MILLISECONDS.split(), 1000)
 OTHER_TIMES = set("us µs usec ns min mins minute minutes h hr hrs hour hours day days samples".split())
-USABLE = (1e-7, 1e3)  # s: beyond it no step is one of a ground motion
+USABLE = (1e-7, 1e3)  # s: range of the step of a ground motion
 SAME = 1e-6  # of a step: two that differ by less are one, printed twice
 JITTER = 0.01  # of the step: clocks and single precision
 _STEP = re.compile(rf"({NUMBER})([A-Za-zµ]*)")
-# A time stamp, 2030-01-02T03:04:15.020; a comma is of its decimals where none parts the fields.
+# A time stamp, 2030-01-02T03:04:15.020; a comma is a decimal sign unless it separates the fields.
 _DATE = r"([0-9]{4})([-/])([0-9]{1,2})\2([0-9]{1,2})(?:T| +)"
 _CLOCK = r"([0-9]{1,2}):([0-9]{2}):([0-9]{2})(\.[0-9]{1,9}|,[0-9]{1,9}(?=[;\s]))?"
 _STAMP = re.compile(rf"(?<![^\s;,])(?:{_DATE})?{_CLOCK}(?:Z|[+-][0-9]{{2}}:?[0-9]{{2}})?(?=[\s;,]|$)")
@@ -72,7 +72,7 @@ def in_seconds(where: str, row: str) -> str:
 
 
 def usable(where: str, dt: float) -> float:
-    """The interval dt [s] itself, refused where no record can have it."""
+    """The interval dt [s], refused outside the range of records."""
     if dt <= 0:
         raise SceneError(where, dt, "not a sampling interval", "give a step above 0 s")
     if not USABLE[0] <= dt <= USABLE[1]:

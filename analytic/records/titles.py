@@ -1,4 +1,4 @@
-"""Titles of columns: where they stand, what each of them names, and its unit."""
+"""Titles of columns: their position, the quantity that each names, and its unit."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -11,7 +11,7 @@ from .times import OTHER_TIMES, PER_SECOND
 from .units import END, LENGTHS, NOT_ACCELERATIONS, START, UNITS, WORDS, plain
 
 SEQUENCE = re.compile(r"datasequence:", re.I)  # Taiwan's line of titles
-# Kinds of columns. Where a title has words of two of them, the upper one counts.
+# Kinds of columns. If a title has words of two kinds, the upper one counts.
 TIME, PERIOD, FREQUENCY, DEPTH = "the time", "a period", "a frequency", "a place"
 SPECTRUM, ACCELERATED = "of a spectrum or an intensity", "an acceleration"
 OTHER_QUANTITY = "a velocity, a displacement or another quantity"
@@ -39,7 +39,7 @@ _BEGINS_WITH_PERIODS = re.compile(rf"(?:t|{_WORDS[PERIOD]}|{_WORDS[FREQUENCY]}){
 _SPECTRUM = re.compile(rf"{START}(?:spectr(?:um|a)|e?spectros?|spektr(?:um|en)|spectres?){END}")
 _BRACKETS = re.compile(r"[(\[]([^)\]]*)[)\]]?")
 _GLUED = re.compile(rf"({'|'.join(LENGTHS)})[ _]?(p|per)?[ _]?s(?:ec)?[ _]?(2?)")  # cms2, m_per_s2, mps
-# What stands in brackets and is no unit: numbers, directions and what was done to the values.
+# Words in brackets that are no unit: numbers, directions and processing of the values.
 _REMARK = re.compile(
     "[^a-z%µ°]*|[nsew]?[0-9]+-?[nsew]|[new]|[nsew]-?[nsew]|u-?d|[xyzuhrtl][0-9]?|[behs][hnlg][enz12]|north|south|east|west|up|down"
     "|vert(?:ical)?|horiz(?:ontal)?|raw|(?:un)?(?:corrected|filtered|processed)|matched|scaled"

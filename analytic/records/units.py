@@ -1,4 +1,4 @@
-"""Units of acceleration as records spell them, and that of a record from its own words and the scene file."""
+"""Spellings of units of acceleration, and the unit of a record from the file and the scene file."""
 
 import re
 from dataclasses import dataclass

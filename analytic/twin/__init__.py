@@ -1,9 +1,9 @@
-"""The readable twin: the equations of rocking.py in plain scipy `solve_ivp` with events, slow and clear.
+"""The second implementation: the equations of rocking.py solved by scipy's `solve_ivp` with events; slow and simple.
 
-An implementation of its own, kept apart from the compiled kernel to check it and to stand for what a careful user
-would write. One stretch of smooth motion is one call of `solve_ivp`: it ends at the next corner of the ground
-motion, at an impact, an uplift, a reversal of the base (where the bearing's history is fixed), a corner of the
-bearing's law or at overturning.
+It is independent of the compiled kernel, which it verifies, and is what a careful user would write. One call of
+`solve_ivp` covers one interval of smooth motion. It ends at the next corner of the ground motion, at an impact, an
+uplift, a reversal of the base (where the bearing's history is committed), a corner of the bearing law, or at
+overturning.
 """
 
 from __future__ import annotations
@@ -55,20 +55,21 @@ def simulate_twin(
     max_step : float, optional
         Longest step [s]; default the least of half a sampling interval and, on bearings, half of 1/omega at ka.
     rest_rate : float
-        Impacts count as accumulated when |phi'+| < rest_rate omega_r and the block is held down. It then rests.
+        Impacts count as accumulated if |phi'+| < rest_rate omega_r and the contact force is compressive; the block then
+        rests.
 
     Returns
     -------
     Response
-        engine "twin". Extremes of forces and accelerations are those at the steps; peaks of tilt and
-        displacement are located as events.
+        engine "twin". Extremes of forces and accelerations are taken at the steps; peaks of tilt and displacement are
+        located as events.
 
     Raises
     ------
     SettingError
         The method is unknown, a tolerance is not positive, or `max_step` too short for the run.
     SceneError
-        The bearings are so stiff, or the run so long, that its steps exceed those of `budget`; names the part.
+        Stiff bearings or a long run need more steps than `budget` allows; the message names the part.
     """
     settings: dict[str, Any] = {
         "method": method,
@@ -82,7 +83,7 @@ def simulate_twin(
         return until_decided(functools.partial(simulate_twin, history=history, energy=energy, **settings), scene)
     run = Run(scene, {**settings, "atol": rtol if atol is None else atol}, history, energy)
     _check_cost(run, max_step)
-    run.model.bearing.hysteretic(0.0, 1e-6)  # compiled before the clock starts
+    run.model.bearing.hysteretic(0.0, 1e-6)  # compiled before the time is taken
     started = time.process_time()
     failure = run.go()
     response = run.response(time.process_time() - started, failure)
@@ -90,7 +91,7 @@ def simulate_twin(
 
 
 def _check_cost(run: Run, max_step: float | None) -> None:
-    """Refuse a run of more steps, were each the longest, than the model itself may take."""
+    """Refuse a run that needs more steps of the largest length than the model itself may take."""
     end, most = run.scene.end, most_steps(run.scene)
     if end <= most * run.max_step:
         return

@@ -1,4 +1,4 @@
-"""The equations of rocking.py for a solver of ordinary differential equations, with the state they are solved for."""
+"""The equations of rocking.py as a system of ordinary differential equations, with its state."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 
 class Equations:
-    """The state y = [tilt, rate], on a base x, v and z if integrated, then the ledger's quadratures; its derivative.
+    """The state y and its derivative. y = [tilt, rate], on a base also x, v and z if integrated, then energy terms.
 
-    t [s]; side of the corner that the block rocks about, 0 in full contact; scale of each part of y; max_step: longest
-    step [s] that the bearings allow.
+    t [s]; side of the pivot, 0 in full contact; scale of each component of y; max_step: longest step [s] for the
+    bearings.
     """
 
     vertical: Callable[[float], float]  # a_v(t) [m/s2] of the segment
@@ -90,14 +90,14 @@ class Equations:
         return block_on_base
 
     def hysteretic_force(self, y: np.ndarray) -> float:
-        """z of one bearing [N]: the state, or exact from the last reversal."""
+        """z of one bearing [N]: from the state, or in closed form from the last reversal."""
         return float(y[4]) if self.law.unit.branch else self.law.hysteretic(self.z_c, float(y[2]) - self.x_c)
 
     def bearing_force(self, y: np.ndarray) -> float:
         return self.law.force(float(y[2]), self.hysteretic_force(y), float(y[3])) if self.model.on_base else 0.0
 
     def fix_history(self) -> None:
-        """The bearing's memory is the point it turned at."""
+        """Store the point of reversal, the memory of the bearing."""
         if self.model.on_base:
             self.z_c, self.x_c = self.hysteretic_force(self.y), float(self.y[2])
 

@@ -1,4 +1,4 @@
-"""A run of the second implementation: stretches of smooth motion, and the events between them."""
+"""A run of the second implementation: intervals of smooth motion, and the events between them."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ if TYPE_CHECKING:
     from ..scene import Scene
     from ..types import GroundFunction
 
-IMPACT_LIMIT = 50_000  # more in one run means impacts that never accumulate (restitution of 1)
-STALL_LIMIT = 50  # events in a row without progress in time
-STAND_POINTS = 33  # of a segment, at which a block that stands is looked at under two motions
+IMPACT_LIMIT = 50_000  # more impacts in one run never accumulate (restitution of 1)
+STALL_LIMIT = 50  # guard against an endless loop of events at one time
+STAND_POINTS = 33  # points of a segment at which uplift is checked under two motions
 REST_HORIZON = 0.1  # a block rests only if its impacts end within this share of 1/omega_r
 
 
 @dataclass(frozen=True)
 class Event:
-    """A root of function(t, y) as `solve_ivp` reads it: terminal ends the stretch, direction is the slope's sign."""
+    """An event of `solve_ivp`, a root of function(t, y). terminal: ends the interval. direction: sign of the slope."""
 
     function: Callable[..., float]
     terminal: bool = True
@@ -44,17 +44,17 @@ class Event:
 
 
 class Run(Equations):
-    """One run: where it stands, what has happened, and what is kept of it."""
+    """One run: its current state, its events so far, and the results that are kept."""
 
     def __init__(self, scene: Scene, settings: Mapping[str, Any], history: bool, energy: bool) -> None:
         super().__init__(scene, energy)
         self.settings, start = settings, scene.start
-        if isinstance(scene.motion, SampledMotion):  # two steps a sample: a whole one can hide a hop
+        if isinstance(scene.motion, SampledMotion):  # two steps a sample, as one could skip a hop
             self.max_step = min(self.max_step, 0.5 * scene.motion.dt)
         self.max_step = settings["max_step"] or self.max_step
         self.atol = settings["atol"] * self.scale
-        self.lifted = 0.0 if start.tilt == 0 else -1.0  # when tilt was last 0
-        self.turned, self.corner = -1.0, math.inf  # when the base last stood still; the bearing's next corner, z [N]
+        self.lifted = 0.0 if start.tilt == 0 else -1.0  # last time of tilt 0
+        self.turned, self.corner = -1.0, math.inf  # last reversal of the base; next corner of the bearing law, z [N]
         self.flight: float | None = None  # a guess of the next step [s]
         self.overturning: float | None = None
         self.unstable: float | None = 0.0 if abs(start.tilt) >= self.model.gamma else None
@@ -85,7 +85,7 @@ class Run(Equations):
         return None
 
     def advance(self, end: float, ground: GroundFunction) -> Failure | None:
-        """One stretch of smooth motion from self.t, at most to `end`."""
+        """One interval of smooth motion from self.t, at most to `end`."""
         if self.side == 0:
             a = self.contact_acceleration(self.y, ground(self.t))
             if abs(a) > self.model.uplift_limit(self.vertical(self.t)):
@@ -97,12 +97,12 @@ class Run(Equations):
         return self.integrate(end, ground)
 
     def lift(self, acceleration: float) -> None:
-        """Uplift: the block tips against the acceleration; tilt, rate (and phi'') are 0, so that decides the side."""
+        """Uplift: tilt, rate and phi'' are 0, so that the side follows from the acceleration, which it opposes."""
         self.side, self.lifted, self.rocked = -math.copysign(1.0, acceleration), self.t, True
         self.uplifts.append(self.t)
 
     def stand(self, end: float, ground: GroundFunction) -> None:
-        """Full contact on rigid ground: nothing moves until |a_g| exceeds (g + a_v) tan(gamma)."""
+        """Full contact on rigid ground: the block stands until |a_g| exceeds (g + a_v) tan(gamma)."""
 
         def excess(t):
             return abs(ground(t)) - self.model.uplift_limit(self.vertical(t))
@@ -143,7 +143,7 @@ class Run(Equations):
         self.steps += len(solution.t) - 1
         missed = self.stepped_over(events, solution)
         if missed is not None and self.t < missed < solution.t[-1]:
-            return self.integrate(missed, ground)  # its end now shows the crossing
+            return self.integrate(missed, ground)  # its end is now beyond the crossing
         self.flight = None
         for t, y in self.states(events, solution):
             self.record(t, y, ground(t))
@@ -154,7 +154,7 @@ class Run(Equations):
         for (name, event), times in zip(events, solution.t_events, strict=True):
             if name == "unstable" and self.unstable is None and len(times):
                 self.unstable = float(times[0])
-            if event.terminal and len(times):  # scipy reports the first terminal event of a stretch only
+            if event.terminal and len(times):  # scipy reports only the first terminal event
                 terminal = name
         if terminal:
             getattr(self, "at_" + terminal)(ground(self.t))
@@ -162,7 +162,7 @@ class Run(Equations):
 
     @staticmethod
     def states(events: Sequence[tuple[str, Event]], solution: Any) -> list[tuple[float, np.ndarray]]:
-        """(t, y) in order of time: the steps, and between them turns of block and base, passages of the slenderness."""
+        """(t, y) in order of time: the steps, the reversals of block and base, and the passages of the slenderness."""
         found = list(zip(solution.t, solution.y.T, strict=True))
         for (_, event), times, states in zip(events, solution.t_events, solution.y_events, strict=True):
             if not event.terminal:
@@ -194,19 +194,19 @@ class Run(Equations):
             return 0.0
         if self.y[3] != 0:
             return math.copysign(1.0, self.y[3])
-        for t in (self.t, self.t + 1e-3 * (end - self.t)):  # at the start of a motion a_g may only begin to grow
+        for t in (self.t, self.t + 1e-3 * (end - self.t)):  # at the start of a motion a_g may still be 0
             acceleration = self.derivative(ground, 0.0)(t, self.y)[3]
             if acceleration != 0:
                 return math.copysign(1.0, acceleration)
         return 0.0
 
-    # events of the integration; "terminal" ones end a stretch and have an at_ method
+    # events of the integration; "terminal" ones end an interval and have an at_ method
 
     def events(self, direction: float) -> list[tuple[str, Event]]:
         side, model, lifted, turned = self.side, self.model, self.lifted, self.turned
         found = []
         if side:
-            # phi = 0 at take-off is a root too: it is divided out
+            # the root phi = 0 at uplift is divided out
             found.append(("impact", Event(lambda t, y: side * y[0] / (t - lifted) if t > lifted else 1.0)))
             found.append(("overturning", Event(lambda t, y: side * y[0] - math.pi / 2, direction=1)))
             found.append(("apex", Event(lambda t, y: side * y[1], terminal=False, direction=0)))
@@ -239,7 +239,7 @@ class Run(Equations):
         self.y[4] = self.corner
 
     def at_impact(self, ground: float) -> None:
-        """Eqs (7), (8); then the other corner, or rest if impacts accumulate and the block is held down."""
+        """Eqs (7), (8); then the other corner, or rest if impacts accumulate under a compressive contact force."""
         y, model = self.y, self.model
         before, kinetic = y[1], self.energies()[0]
         y[0] = 0.0
@@ -250,19 +250,19 @@ class Run(Equations):
         self.impacts.append(Impact(self.t, float(before), float(y[1]), float(jump)))
         self.side, self.lifted = math.copysign(1.0, y[1]), self.t
         force, e = self.bearing_force(y), model.restitution
-        # how hard either corner is pressed down: sides alternate, and a force makes them unequal
+        # deceleration toward contact on either corner: sides alternate, and a load makes them unequal
         here, there = (
             -side * model.accelerations(side, 0.0, y[1], ground, force, self.vertical(self.t))[0]
             for side in (self.side, -self.side)
         )
         held, remaining = min(here, there) > 0, math.inf
-        if held and e < 1:  # two geometric sums
+        if held and e < 1:  # two geometric series
             remaining = 2 * abs(y[1]) / (1 - e * e) * (1 / here + e / there)
         if here > 0:
             self.flight = 2.2 * abs(y[1]) / here or None
         resting = abs(y[1]) < self.settings["rest_rate"] * self.omega_r
         if y[1] == 0 or (resting and remaining * self.omega_r < REST_HORIZON):
-            if model.on_base:  # what is left goes to the base, as at an impact with restitution 0
+            if model.on_base:  # the remaining momentum goes to the base, as at an impact with restitution 0
                 y[3] += model.mass_share * model.R * math.cos(model.gamma) * y[1]
             y[1], self.side, self.flight = 0.0, 0.0, None
             if held:

@@ -1,4 +1,4 @@
-"""Advice on one's own scene: which setting of which engine suffices, and what need not be modelled."""
+"""Advice on a scene: the variant and level that are accurate enough, and what need not be modelled."""
 
 from .choose import choose
 from .criteria import Choice

@@ -1,8 +1,8 @@
-"""Which setting of which engine meets an error on this very scene, and on its neighbours, at the least cost?
+"""Search for the cheapest variant and level that meet an error on a scene and on its neighbours.
 
-Each variant's accuracy parameter is run at its levels, from coarse to fine, on the scene; where that passes from some
-level on to the finest, those levels are run on the neighbours, the cheapest first, until one passes. A level passes if
-it and all finer ones do, everywhere, with `criteria.safety` to spare: none passes by luck.
+Each variant is run at its levels, from coarse to fine, on the scene. The levels that pass there with all finer ones are
+run on the neighbours, the cheapest first, until one passes. A level passes if it and all finer ones do in all scenes,
+with a margin of `criteria.safety`, so that none passes by chance.
 """
 
 import math
@@ -47,7 +47,7 @@ def problem(rows: Mapping[float, Row], limit: float, criterion: str) -> tuple[fl
     """(error over these runs, why they do not pass or None)."""
     for factor, row in rows.items():
         if row.failed:
-            return None, f"failed at {factor:g} of the scene: {row.failure['reason']}"  # type: ignore[index]  # it has one
+            return None, f"failed at {factor:g} of the scene: {row.failure['reason']}"  # type: ignore[index]  # a failed run has one
         if row.values["error"] is None or not math.isfinite(row.values["error"]):
             return None, f"shows no {criterion} at {factor:g} of the scene"
     errors = [row.values["error"] for row in rows.values()]
@@ -58,11 +58,10 @@ def problem(rows: Mapping[float, Row], limit: float, criterion: str) -> tuple[fl
 
 
 class Search:
-    """Runs levels on a scene and its neighbours, files the rows, and looks for the cheapest level that passes.
+    """Runs levels on a scene and its neighbours, stores the rows, and finds the cheapest level that passes.
 
-    family: the scene and its neighbours by their factor, as long as they are looked at. error: asked for, in the sense
-    of `criterion`. options: of the sweeps, whose stores are in `folder`. rows: {level: {factor: `Row`}}, of all that
-    was run.
+    family: {factor: scene or neighbour}, with the duration that is compared. error: the one asked for, in the sense of
+    `criterion`. options: for the sweeps, whose stores are in `folder`. rows: {level: {factor: `Row`}} of all runs.
     """
 
     def __init__(
@@ -73,14 +72,14 @@ class Search:
         self.rows: dict[LevelKey, dict[float, Row]] = {}
 
     def run(self, levels: Sequence[LevelKey], factors: Sequence[float], label: str) -> None:
-        """Run levels on the scene and neighbours of these factors."""
+        """Run levels on the scene or neighbours of these factors."""
         wanted = [(level, factor) for factor in factors for level in levels]
         found = self._sweep([(level, self.family[factor]) for level, factor in wanted], self.criterion, label)
         for (level, factor), row in zip(wanted, found, strict=True):
             self.rows.setdefault(level, {})[factor] = row
 
     def whole(self, level: LevelKey) -> float | None:
-        """CPU seconds of the whole scene, None where it fails."""
+        """CPU seconds of the whole scene, None if the run fails."""
         (row,) = self._sweep([(level, self.scene)], "outcome", "the whole scene")
         return None if row.failed else row.cost["cpu_seconds"]
 
@@ -94,12 +93,14 @@ class Search:
         return run_sweep(cases, store=store, measure=Measure(criterion), label=label, **self.options)
 
     def cheapest(self, levels: Sequence[LevelKey]) -> tuple[LevelKey | None, float | None]:
-        """(the level, CPU seconds of the whole scene with it), None where none passes; of levels run on the scene,
-        neighbours are run of hopeful ones only, the cheapest first."""
+        """(the cheapest level that passes, its CPU seconds for the whole scene), None if none passes.
+
+        Neighbours are run only at levels that can still pass, the cheapest first.
+        """
         for level in sorted(filter(self._hopeful, levels), key=self._cost):
             suffix = self._suffix(level)
             missing = [factor for factor in self.family if any(factor not in self.rows[one] for one in suffix)]
-            if self._hopeful(level):  # what was run meanwhile may tell
+            if self._hopeful(level):  # may have changed by runs made meanwhile
                 self.run(suffix, missing, f"{level[0]}, {level[1]}: neighbours")
             if self._pass(suffix):
                 spent = self.whole(level)
@@ -117,9 +118,9 @@ class Search:
         return all(problem(self.rows[one], self.error, self.criterion)[1] is None for one in levels)
 
     def _hopeful(self, level):
-        """Whether a level and all finer ones of its variant pass on what they have run."""
+        """Whether a level and all finer ones of its variant pass in all scenes run so far."""
         suffix = self._suffix(level)
-        if self.criterion == "outcome":  # one run that differs does not tell a share
+        if self.criterion == "outcome":  # one run with another outcome does not determine a share
             return not any(row.failed for one in suffix for row in self.rows[one].values())
         return self._pass(suffix)
 
@@ -143,29 +144,29 @@ def choose(
 ) -> Choice:
     """The `Choice` for a scene.
 
-    Its runs are made in processes of their own: a script calls it under ``if __name__ == "__main__":``.
+    The runs are made in processes of their own, so that a script must call it under ``if __name__ == "__main__":``.
 
     Parameters
     ----------
     scene : Scene
     error : float
-        Largest error asked for: of restitution (rms) [-]; of the tilt over the slenderness, or of the displacement over
-        its peak, at any time up to the sensitivity horizon; of outcomes the share of neighbours that differ.
+        Largest error: of restitution (rms) [-]; of the tilt over the slenderness, or of the displacement over its peak,
+        at any time up to the sensitivity horizon; or the share of neighbours whose outcomes differ.
     criterion : str or None
-        One of `criteria.CRITERIA`; None: what the scene shows, see `criteria.fitting`.
+        One of `criteria.CRITERIA`; None: one that suits the scene, see `criteria.fitting`.
     engines : iterable of str or None
-        Those to try; None: all that are installed; none of them is run where, without a criterion, the block never
-        lifts: then the analytic model is the answer.
+        Engines to try; None: all that are installed. Without a criterion, none is run if the block never lifts; the
+        analytic model is then the answer.
     time_limit : float
-        Of one run [s].
+        Limit of one run [s].
     progress : bool
     source : str
-        Name of the scene's file, for the command and the snippet.
+        Name of the scene file, for the command and the snippet.
 
     Raises
     ------
     SettingError
-        The error or the criterion is out of range, or the scene does not show what is asked for.
+        The error or the criterion is out of range, or the criterion does not apply to the scene.
     EngineNotInstalled
 
     Examples
@@ -224,14 +225,14 @@ def _shown(progress, words):
 
 
 def _family(scene, criterion):
-    """(scene and neighbours by their factor, as long as they are looked at; that time of the scene itself [s])."""
+    """({factor: scene or neighbour, with the duration that is compared}; that duration of the scene itself [s])."""
     family = neighbours(scene, criterion)
     span = until(family[1.0], criterion)
 
     def cut(factor, one):
         try:
             return one.with_(duration=span if factor == 1.0 else until(one, criterion))
-        except SettingError:  # a neighbour that does not lift: as long as the scene itself
+        except SettingError:  # a neighbour without uplift gets the duration of the scene
             return one.with_(duration=span)
 
     if criterion != "outcome":
@@ -240,12 +241,12 @@ def _family(scene, criterion):
 
 
 def _stands(scene):
-    """Whether the block never leaves full contact, however long the run."""
+    """Whether the block never leaves full contact."""
     return simulate(scene.with_(duration=None), history=False).outcome == "stands"
 
 
 def _analytic(family: Mapping[float, Scene]) -> Level:
-    """The analytic model as a level that is without error."""
+    """The analytic model as a level without error."""
     return Level(
         engine=ANALYTIC,
         variant="kernel",
@@ -262,7 +263,7 @@ def _analytic(family: Mapping[float, Scene]) -> Level:
 
 
 def _searched(scene, family, names, error, criterion, **options):
-    """(key of the level chosen or None, CPU seconds of the whole scene, all variants); options: of the sweeps."""
+    """(key of the level chosen or None, CPU seconds of the whole scene, all variants); options: for the sweeps."""
     kinds = _kinds(names, scene)
     levels = [(name, variant, value) for name, variant, kind in kinds for value in kind.levels]
     with TemporaryFolder("choose-") as folder, Processes(None, ("analytic", *names)) as executor:
@@ -275,20 +276,20 @@ def _searched(scene, family, names, error, criterion, **options):
 
 
 def _kinds(names: Iterable[str], scene: Scene) -> list[tuple[str, str, Variant]]:
-    """(engine, variant, its record) of those that may be chosen: not default settings, and able to run the scene."""
+    """(engine, name, `Variant`) of those that may be chosen: not of the kind "defaults", able to run the scene."""
     return [
-        (name, variant, kind)
+        (name, variant, spec)
         for name in names
-        for variant, kind in get_engine(name).variants.items()
-        if kind.tier != "defaults" and (scene.block.restitution is None or kind.takes_restitution)
+        for variant, spec in get_engine(name).variants.items()
+        if spec.kind != "defaults" and (scene.block.restitution is None or spec.takes_restitution)
     ]
 
 
-def _variant(name, variant, kind, search):
-    """The `VariantLevels` of a variant from what was run."""
+def _variant(name, variant, spec, search):
+    """The `VariantLevels` of a variant from its runs."""
     levels: list[Level] = []
     finer = True
-    for value in reversed(kind.levels):
+    for value in reversed(spec.levels):
         rows = search.rows[name, variant, value]
         found, why = problem(rows, search.error, search.criterion)
         if why is None and not finer:
@@ -302,9 +303,9 @@ def _variant(name, variant, kind, search):
             Level(
                 engine=name,
                 variant=variant,
-                parameter=kind.accuracy_parameter,
+                parameter=spec.accuracy_parameter,
                 value=value,
-                default=value == kind.default,
+                default=value == spec.default,
                 runs=len(rows),
                 error=found,
                 cpu_per_second=spent / simulated if sound else None,
@@ -316,15 +317,15 @@ def _variant(name, variant, kind, search):
     return VariantLevels(
         engine=name,
         variant=variant,
-        tier=kind.tier,
-        applies_impact=kind.takes_restitution,
+        tier=spec.kind,
+        applies_impact=spec.takes_restitution,
         order=_order(levels) if search.criterion != "outcome" else None,
         levels=levels,
     )
 
 
 def _order(levels):
-    """Slope of log error over log parameter; None where fewer than three levels show one."""
+    """Slope of log error over log parameter; None for fewer than three levels with an error."""
     shown = [(one.value, one.error) for one in levels if one.error]
     if len(shown) < 3:
         return None

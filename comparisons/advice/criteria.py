@@ -22,10 +22,9 @@ from ..schemas.form import Form, Part
 
 
 class Level(Part):
-    """One value of a variant's accuracy parameter. error: the worst over the scene and its neighbours, of outcomes the
-    share that differs; None if unknown. untried: it passes the scene, but was not run on the neighbours,
-    as a cheaper one passes there. why: in words, why it does not pass. cpu_per_second: CPU seconds for a simulated
-    second."""
+    """One value of a variant's accuracy parameter. error: the worst over the scene and its neighbours, for outcomes the
+    share that differs; None if unknown. untried: it passes the scene, but was not run on the neighbours, as a cheaper
+    one passes there. why: the reason why it does not pass. cpu_per_second: CPU seconds per simulated second."""
 
     engine: str
     variant: str
@@ -41,8 +40,9 @@ class Level(Part):
 
 
 class VariantLevels(Part):
-    """A variant's levels from coarse to fine. order: the error goes as the parameter to this power, where that shows.
-    applies_impact: the adapter, not the engine, applies eqs (7) and (8)."""
+    """A variant's levels from coarse to fine. `tier`: the kind of the variant. order: the error is proportional to the
+    parameter to this power, if it can be determined. applies_impact: the adapter, not the engine, applies eqs (7) and
+    (8)."""
 
     engine: str
     variant: str
@@ -52,7 +52,7 @@ class VariantLevels(Part):
     levels: list[Level]
 
     def cheapest(self) -> Level:
-        """The cheapest level that passes; else of those untried; else the finest."""
+        """The cheapest level that passes; else the cheapest untried one; else the finest."""
         for kind in ("passes", "untried"):
             if own := [one for one in self.levels if getattr(one, kind)]:
                 return min(own, key=lambda one: one.cpu_per_second or 0.0)
@@ -60,8 +60,8 @@ class VariantLevels(Part):
 
 
 class ModelPart(Part):
-    """A part of a model. needed: whether this scene asks for it; cost: times the CPU time that modelling it all the
-    same takes, as measured on this scene; None where that was not measured."""
+    """A part of a model. needed: whether this scene needs it. cost: factor on the CPU time if it is modelled
+    nevertheless, measured on this scene; None if not measured."""
 
     part: str
     needed: bool
@@ -70,8 +70,8 @@ class ModelPart(Part):
 
 
 class Choice(Form):
-    """The answer. chosen: the cheapest level at which it and all finer ones pass; None where none does, and `best` is
-    then the one of least error of all. safety_factor: of the error asked for over the largest that passes. neighbours:
+    """The answer. chosen: the cheapest level that passes with all finer ones; None if there is none, and `best` is then
+    the level with the least error. safety_factor: the error asked for over the largest one that passes. neighbours:
     factors of start and motion. until: time [s] up to which histories were compared, or were run for their impacts.
     cpu_seconds: of the chosen level on the whole scene; of the analytic model."""
 
@@ -94,12 +94,12 @@ class Choice(Form):
 
 
 CRITERIA = ("restitution", "tilt", "displacement", "outcome")
-IMPACTS = 8  # strong ones of the model up to which a scene is run for its restitution
-AFTER = 0.25  # of a rocking period that a run goes on after them
-PERIODS = 1.0  # rocking periods beyond its peak up to which tilt or displacement is compared
+IMPACTS = 8  # strong impacts of the model up to which a scene is run for its restitution
+AFTER = 0.25  # of a rocking period, by which a run is longer
+PERIODS = 1.0  # rocking periods after its peak up to which tilt or displacement is compared
 FACTORS = (0.95, 0.975, 1.025, 1.05)  # of start and motion together: the neighbours
-MORE_FACTORS = (0.9625, 0.9875, 1.0125, 1.0375)  # beside them where outcomes are counted
-SAFETY = 2.0  # error asked for over the worst that a level may show: neighbours not looked at pass, too
+MORE_FACTORS = (0.9625, 0.9875, 1.0125, 1.0375)  # further ones where outcomes are counted
+SAFETY = 2.0  # error asked for over the worst one of a level, so that other neighbours pass, too
 
 
 def safety(criterion: str) -> float:
@@ -110,12 +110,12 @@ def safety(criterion: str) -> float:
 def neighbours(scene: Scene, criterion: str) -> dict[float, Scene]:
     """{factor: the scene with its start and its motion times that}, the scene itself with 1 first.
 
-    Where outcomes count they have no duration: a run that is cut before its outcome is decided shows none.
+    For outcomes they have no duration, as a run that ends before its outcome is decided has none.
 
     Raises
     ------
     SettingError
-        Nothing moves: there is neither a start nor a motion.
+        Neither a start nor a motion is given.
     """
     if scene.motion is None and not any(scene.start.model_dump().values()):
         raise SettingError(f"{scene.name}: nothing moves; give the scene a [start] or a [motion]")
@@ -131,7 +131,7 @@ def neighbours(scene: Scene, criterion: str) -> dict[float, Scene]:
 
 
 def fitting(scene: Scene) -> str:
-    """Where none is named: restitution where the block hits, else its base's displacement, else the outcome."""
+    """The default: restitution if there are impacts, else displacement if there is a base, else outcome."""
     if strong_impacts(simulate(scene, history=False)):
         return "restitution"
     return "displacement" if scene.base else "outcome"
@@ -143,7 +143,7 @@ def until(scene: Scene, criterion: str) -> float:
     Raises
     ------
     SettingError
-        The scene does not show what is asked for.
+        The criterion does not apply to the scene.
     """
     reference = simulate(scene, history=False)
     if criterion == "displacement" and scene.base is None:
@@ -183,7 +183,7 @@ class Measure:
 
 
 def error(criterion: str, scene: Scene, response: Response, reference: Response) -> float | None:
-    """How far off a run is; None where it does not show what is asked for."""
+    """The error of a run; None if the criterion does not apply to it."""
     if criterion == "outcome":
         return float(response.outcome != reference.outcome)
     if criterion == "restitution":
@@ -205,16 +205,16 @@ def _restitution(scene, response, reference):
     if not response.impacts or np.isnan(impact_time_errors(response, reference)[0]):
         return None
     errors = [rms(impact_errors(scene, response)["state"])]
-    if scene.motion is None and scene.bearings is None:  # what a swing loses counts, too
+    if scene.motion is None and scene.bearings is None:  # the loss between impacts counts, too
         rates = np.array([impact.rate_before for impact in strong_impacts(response)])
         if (rates[:-1] * rates[1:] >= 0).any():
-            return None  # sides alternate: an impact was lost
+            return None  # sides do not alternate: an impact was missed
         swings = rate_restitution(response)
         errors += [rms(swings - restitution(scene))] if len(swings) else []
     return max(errors)
 
 
-REPEATS = 7  # of a timing, of which the least counts
+REPEATS = 7  # of a timing; the least counts
 
 
 def cpu_seconds(scene: Scene) -> float:
@@ -225,8 +225,8 @@ def cpu_seconds(scene: Scene) -> float:
 def model_parts(
     scene: Scene, family: Mapping[float, Scene], error: float, found: Level | None, engines: Iterable[str], own: float
 ) -> list[ModelPart]:
-    """Which parts of a model the scene needs; family: its neighbours; found: the level chosen, or the best; own:
-    `cpu_seconds` of the scene."""
+    """The parts of a model, and whether the scene needs them. family: its neighbours; found: the level chosen, or the
+    best; own: `cpu_seconds` of the scene."""
     runs = [simulate(one, history=False) for one in family.values()]
     engine = None if found is None or found.cpu_per_second is None else found.cpu_per_second * runs[0].end.time / own
     parts = {
@@ -244,8 +244,8 @@ def model_parts(
 def _rocking(runs, engine):
     lifted = sum(run.outcome != "stands" for run in runs)
     if lifted:
-        return True, f"the block lifts in {lifted} of {len(runs)} scenes looked at", None
-    why = "the block never lifts, nor in any neighbour: block and base are one mass on the bearings"
+        return True, f"the block lifts in {lifted} of {len(runs)} scenes", None
+    why = "the block lifts neither here nor in any neighbour: block and base are one mass on the bearings"
     return False, f"{why}; an engine's contact model is not needed", engine
 
 
@@ -273,7 +273,7 @@ def _vertical(scene, reference, own, error):
 
 
 def _space(scene, engines):
-    """A free block of six degrees of freedom against the planar one, at one step."""
+    """A free block of six degrees of freedom compared with the planar one, at one step."""
     why = "nothing acts out of the plane"
     able = [] if scene.bearings is not None else [get_engine(name) for name in engines]
     scene = scene.with_(duration=simulate(scene, history=False).end.time)

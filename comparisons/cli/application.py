@@ -18,7 +18,7 @@ class _LazyGroup(TyperGroup):
         return sorted(module.name for module in pkgutil.iter_modules(commands.__path__))
 
     def format_commands(self, ctx, formatter):
-        """The commands by who asks for them."""
+        """The commands in their groups."""
         for title, names in commands.GROUPS.items():
             with formatter.section(title):
                 found = [(name, self.get_command(ctx, name)) for name in names]

@@ -1,4 +1,4 @@
-"""What a command gives: result files, and what the terminal shows unless a result goes there."""
+"""Output of a command: result files, and the terminal unless a result is written there."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ def write_output(
     plot: str | None = None,
     draw: Callable[[], Figure] | None = None,
 ) -> None:
-    """Write each result to its file (None: it is not wanted) and the picture that `draw` makes to `plot`, then show.
+    """Write each result to its file (None: not wanted) and the figure of `draw` to `plot`, then call `show`.
 
     Raises
     ------
     PlaceError
-        Something could not be written; the rest is written and shown all the same.
+        A file could not be written; the others are written and shown nevertheless.
     """
     files = {path: content for path, content in results.items() if path}
     writers = [

@@ -3,7 +3,7 @@
 Heavy modules (engines, scipy, matplotlib) are imported inside the functions, so that ``rocking --help`` is quick.
 """
 
-# By who asks, in the order of ``rocking --help``; a command stands in one group.
+# Groups of commands in the order of ``rocking --help``; each command is in one group.
 GROUPS = {
     "To run and compare": ("run", "compare", "engines"),
     "To read and learn": ("report", "lessons"),

@@ -1,4 +1,4 @@
-"""``rocking choose``: the cheapest setting that is good enough for one's own scene."""
+"""``rocking choose``: the cheapest variant and level that are accurate enough for a scene."""
 
 from typing import Annotated
 
@@ -11,7 +11,7 @@ from ..running.solving import check_time_limit
 def command(
     scene: Annotated[str, typer.Argument(help="Scene file (TOML), or the name of a shipped scene.")],
     error: Annotated[
-        float, typer.Option(help="Largest error; of outcomes the share of neighbours that differ.")
+        float, typer.Option(help="Largest error; for outcomes the share of neighbours that differ.")
     ] = 1e-3,
     criterion: Annotated[
         str | None,
@@ -32,13 +32,14 @@ def command(
         str | None, typer.Option("--json", metavar="FILE", help="Write the choice; - prints it.")
     ] = None,
     time_limit: Annotated[
-        float, typer.Option(metavar="SECONDS", help="A setting whose run takes longer does not pass.")
+        float, typer.Option(metavar="SECONDS", help="A level whose run takes longer does not pass.")
     ] = 60.0,
 ) -> None:
-    """Which setting of which engine is good enough for a scene, at what cost, and what need not be modelled.
+    """Find the cheapest variant and level that are accurate enough for a scene, and what need not be modelled.
 
-    The engines' settings are run on the scene and on neighbours of it, with start and motion scaled by up to 5 %, and
-    compared with the analytic model; tilt and displacement up to the sensitivity horizon only. Status 1: none passes.
+    The variants are run at their levels on the scene and on neighbours of it, with start and motion scaled by up to
+    5 %, and compared with the analytic model; tilt and displacement only up to the sensitivity horizon. Status 1: none
+    passes.
     Example: rocking choose caryatid-isolated --for displacement --error 1e-3
     """
     from analytic.limits import scene_warnings
@@ -57,8 +58,8 @@ def command(
         say(str(caution))
     compile_kernels()
     if criterion is None and engine and (shown := fitting(what)) != "restitution":
-        say(f"the block of {what.name} never hits what it stands on: there is no restitution; judged by its {shown}")
-    with stdout_to_stderr():  # engines greet on standard output
+        say(f"the block of {what.name} never has an impact: there is no restitution; the criterion is {shown}")
+    with stdout_to_stderr():  # engines print on import
         choice = choose(
             what,
             error=error,

@@ -32,9 +32,9 @@ def command(
     ] = None,
     time_limit: Annotated[float, typer.Option(metavar="SECONDS", help=TIME_LIMIT_HELP)] = TIME_LIMIT,
 ) -> None:
-    """Simulate one scene with the analytic model and the engines: outcomes, errors and CPU time side by side.
+    """Simulate one scene with the analytic model and the engines: outcomes, errors and CPU times.
 
-    An engine that fails costs its own row. Status 1: the analytic model failed.
+    If an engine fails, only its row is lost. Status 1: the analytic model failed.
     Example: rocking compare free-rocking-rigid --plot compared.svg
     """
     from analytic.limits import scene_warnings
@@ -72,7 +72,7 @@ def command(
 
 
 def _responses(scene, asked, time_limit):
-    """Of the analytic model and the engines asked for, by default all: one that is not installed only if named."""
+    """Responses of the analytic model and the engines asked for; by default of all that are installed."""
     from analytic.errors import EngineNotInstalled, SceneError
     from analytic.response import Failure
     from engines import ENGINES, get_engine
@@ -89,17 +89,17 @@ def _responses(scene, asked, time_limit):
         except EngineNotInstalled:
             if asked:
                 raise
-        except SceneError as error:  # what this engine alone cannot take, a given restitution say, costs its row
+        except SceneError as error:  # not possible in this engine, such as a given restitution: only its row is lost
             if name == ANALYTIC:
                 raise
-            refusal = Failure("it cannot take this scene", str(error))
+            refusal = Failure("it cannot run this scene", str(error))
             known: dict[str, Any] = {"variant": get_engine(name).default_variant, "settings": {}, "cpu_seconds": nan}
             responses.append(failed_response(scene, refusal, engine=name, **known, versions=versions(name)))
     return responses
 
 
 def _sensitivity(scene, responses, time_limit):
-    """`_horizons` in a process of its own; none where that does not end, which is said."""
+    """`_horizons` in a process of its own; none, with a message, if that does not end."""
     from engines.guard import run_apart
 
     words = spinner(f"{scene.name}: sensitivity horizons")
@@ -111,7 +111,7 @@ def _sensitivity(scene, responses, time_limit):
 
 
 def _form(scene, responses, horizons, horizon):
-    """What the JSON file holds."""
+    """Content of the JSON file."""
     from ..schemas.runs import Comparison, Run, Sensitivity
 
     return Comparison(
@@ -126,7 +126,7 @@ def _form(scene, responses, horizons, horizon):
 
 
 def _horizons(scene, responses):
-    """{solver: its `Horizon`} of all that did not fail; the first is the reference."""
+    """{solver: its `Horizon`} of all runs that did not fail; the first is the reference."""
     from ..measuring.horizon import solver_horizon
 
     return {

@@ -1,4 +1,4 @@
-"""``rocking design``: bearings from target period, damping and displacement, or those that a scene needs."""
+"""``rocking design``: bearings from target period, damping and displacement, or bearings for a scene."""
 
 import dataclasses
 import math
@@ -26,8 +26,8 @@ from ..running.progress import bar, compile_kernels
 from ..running.solving import scene_of
 
 LEAST, SOFTEST = "least-stroke", "softest"
-WRITTEN = ("ka", "kb", "alpha")  # numbers that a file holds to six digits
-OF_SCENE = {  # what the search of a scene names otherwise than its option
+WRITTEN = ("ka", "kb", "alpha")  # numbers written with six digits
+OF_SCENE = {  # names in errors of the search, and their options
     **{"stroke": "--stroke", "x_max": "--stroke", "tilt": "--tilt"},
     **{name: OPTIONS[name] for name in ("count", "stiffness_ratio", "definition")},
 }
@@ -35,11 +35,11 @@ OF_SCENE = {  # what the search of a scene names otherwise than its option
 
 def command(
     scene: Annotated[
-        str | None, typer.Argument(help="Scene file: finds the bearings that it needs. Without one, give four targets.")
+        str | None, typer.Argument(help="Scene file for which bearings are found. Without one, give four targets.")
     ] = None,
     stroke: Annotated[float | None, typer.Option(help="Scene: largest displacement of the base [m].")] = None,
     base_mass: Annotated[
-        float | None, typer.Option(help="Scene of a block on the ground: mass of a base to put it on [kg].")
+        float | None, typer.Option(help="Scene of a block on the ground: mass of the base to add [kg].")
     ] = None,
     tilt: Annotated[
         float, typer.Option(help="Scene: largest peak tilt over the slenderness; 0: the block must not lift.")
@@ -48,7 +48,7 @@ def command(
         Literal["least-stroke", "softest"] | None, typer.Option(help="Write these bearings into the scene file.")
     ] = None,
     plot: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Scene: draw the bearings that hold (.png, .svg or .pdf).")
+        str | None, typer.Option(metavar="FILE", help="Scene: draw the suitable bearings (.png, .svg or .pdf).")
     ] = None,
     records: Records = None,
     both_signs: BothSigns = False,
@@ -65,9 +65,9 @@ def command(
         str | None, typer.Option("--json", metavar="FILE", help="Write the design; - prints it.")
     ] = None,
 ) -> None:
-    """Which bearings? Those that a scene needs within a stroke, or the constants for a period and damping.
+    """Design bearings: those with which a scene's block does not lift within a stroke, or constants from targets.
 
-    A block on the ground needs the mass of a base, which --write puts into the file as well.
+    For a block on the ground, give the mass of a base, which --write adds to the file, too.
     Example: rocking design bust.toml --stroke 0.25 --plot bearings.svg --write least-stroke
     Example: rocking design --period 2 --damping 0.30 --definition paper --xmax 0.30 --mass 3384.05
     """
@@ -85,7 +85,7 @@ def command(
             raise SettingError(f"{missing} is missing; give all four targets, or a scene and --stroke")
         return _by_targets(targets, made, json_file)
     if given:
-        raise SettingError(f"{given[0]}: a target, which a scene leaves open; give --stroke alone")
+        raise SettingError(f"{given[0]}: a target, which does not go with a scene; give --stroke only")
     if stroke is None:
         raise SettingError("--stroke is missing: give the largest displacement of the base [m]")
     many = {"records": records, "both_signs": both_signs, "directions": directions, "units": units}
@@ -122,7 +122,7 @@ def _by_targets(targets, made, json_file):
 
 
 def _for_scene(place, base_mass, stroke, tilt, made, many, write, plot, json_file):
-    """The bearings that hold, found by a scan; shown, drawn, written."""
+    """Find suitable bearings by a scan; show, draw and write them."""
     from analytic.bearing_scan import scan_bearings
     from analytic.scene_file import load_scene, shipped_scenes
 
@@ -137,7 +137,7 @@ def _for_scene(place, base_mass, stroke, tilt, made, many, write, plot, json_fil
     compile_kernels(any(motion.vertical for motion in motions))
     with bar(f"{scene.name}: bearings") as progress, named_by_options(OF_SCENE):
         scan = scan_bearings(scene, motions, stroke, tilt=tilt, **made, progress=progress)
-    points = {LEAST: scan.least_stroke, SOFTEST: scan.softest}  # (period, damping), None where none hold
+    points = {LEAST: scan.least_stroke, SOFTEST: scan.softest}  # (period, damping), None without any
     chosen = {name: _chosen(scene, scan, point, motions) for name, point in points.items() if point is not None}
     if write and write not in chosen:
         raise SettingError(f"--write: {nothing_holds(scan, stroke)}")
@@ -155,7 +155,7 @@ def _for_scene(place, base_mass, stroke, tilt, made, many, write, plot, json_fil
 
 
 def _on_base(scene, mass, place):
-    """The scene with a base under its block, of this mass [kg] where it has none."""
+    """The scene with a base under its block; mass [kg]: of the base of a scene without one."""
     from analytic.scene import Base
 
     if mass is None and scene.base is None:
@@ -165,11 +165,11 @@ def _on_base(scene, mass, place):
     if mass is not None and scene.base is not None:
         raise SettingError(f"--base-mass {mass:g}: {place} has a base, of {scene.base.mass:g} kg; leave it out")
     with named_by_options(OPTIONS):
-        return scene if mass is None else scene.with_(base=Base(mass=float(f"{mass:.6g}")))  # as a file holds it
+        return scene if mass is None else scene.with_(base=Base(mass=float(f"{mass:.6g}")))  # rounded as in the file
 
 
 def _chosen(scene, scan, point, motions):
-    """The bearings at a point, as they are written into a file, and what they do under the worst motion; run anew."""
+    """The bearings at a point, rounded as in a file, and their result under the worst motion, from new runs."""
     from analytic import simulate_many
     from analytic.scene import Bearings
 
@@ -191,7 +191,7 @@ def _chosen(scene, scan, point, motions):
 
 
 def _written(place, bearings, base):
-    """The text of the scene file with these bearings, and a base where it has none; refused where the file holds them
+    """The text of the scene file with these bearings, and a base if it has none; an error if the file has its bearings
     in another form."""
     from analytic.new_scene import with_bearings
 
@@ -207,7 +207,7 @@ def _written(place, bearings, base):
 
 
 def _form(scene, stroke, tilt, motions, scan, chosen):
-    """What the JSON file holds."""
+    """Content of the JSON file."""
     from ..schemas.advice import BearingProposal, BearingSearch, Constants
 
     return BearingSearch(

@@ -1,4 +1,4 @@
-"""``rocking engines``: what can be used here, and how it can be set."""
+"""``rocking engines``: the engines that can be used here, and their variants."""
 
 from typing import Annotated
 
@@ -6,9 +6,9 @@ import typer
 
 
 def command(name: Annotated[str | None, typer.Argument(help="Engine to describe in full.")] = None) -> None:
-    """List the engines and their variants: tier, what the engine computes, and what our adapter imposes on it.
+    """List the engines and their variants: kind, what the engine computes, and what our adapter imposes on it.
 
-    With a name: its versions, settings and refinement levels, too.
+    With a name: its versions, and the settings and levels of each variant, too.
 
     Example: rocking engines exudyn
     """
@@ -18,7 +18,7 @@ def command(name: Annotated[str | None, typer.Argument(help="Engine to describe 
     from ..running.solving import named_engines
     from ..showing.terminal import echo, engine_text, engines_table
 
-    with stdout_to_stderr():  # engines greet on standard output
+    with stdout_to_stderr():  # engines print on import
         names, missing = ((), {}) if name else available_engines()
         shown = [get_engine(one) for one in (named_engines([name]) if name else names)]
         for engine in shown:

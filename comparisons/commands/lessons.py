@@ -31,10 +31,10 @@ def _listed(context: typer.Context) -> None:
 def open_(
     name: Annotated[str, typer.Argument(help="Lesson: see rocking lessons.")],
     to: Annotated[
-        str | None, typer.Option(metavar="FOLDER", help="Keep the notebook, and your work in it, here.")
+        str | None, typer.Option(metavar="FOLDER", help="Folder in which the notebook, with your work, is kept.")
     ] = None,
 ) -> None:
-    """Open a lesson as a notebook in the browser, a copy whose code one can change. Ctrl-C ends it."""
+    """Open a lesson as a notebook in the browser, a copy whose code can be changed. Ctrl-C ends it."""
     from ..lessons.export import open_notebook
     from ..running.files import check_folder
 
@@ -51,6 +51,6 @@ def export(output: Annotated[str, typer.Option(metavar="DIR", help="Folder for t
     from ..running.progress import bar, stdout_to_stderr
 
     check_folder(output)
-    with stdout_to_stderr(), bar("lessons") as progress:  # engines greet on standard output
+    with stdout_to_stderr(), bar("lessons") as progress:  # engines print on import
         paths = export_pages(Path(output), progress=progress)
     print(next(path for path in paths if path.name == "index.html"))

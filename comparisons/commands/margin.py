@@ -1,4 +1,4 @@
-"""``rocking margin``: how far a scene is from other limit states and another outcome."""
+"""``rocking margin``: the margins of a scene against other limit states and another outcome."""
 
 import dataclasses
 from typing import Annotated
@@ -31,12 +31,14 @@ def command(
         str | None, typer.Option("--json", metavar="FILE", help="Write the margins; - prints them.")
     ] = None,
 ) -> None:
-    """By how much must slenderness, restitution, motion, bearings ... change until the block lifts or overturns?
+    """Find the changes of slenderness, restitution, motion, bearings ... at which the block lifts or overturns.
 
-    Two limit states beside these are a peak tilt above --tilt, and a base beyond the x_max of its bearings.
-    Each quantity is changed alone, in steps of a four-hundredth of the span, by the analytic model. Changes that give
-    no scene (a restitution above 1, ka below kb) end its range. The vertical stiffness of bearings is taken as
-    infinite. Example: rocking margin caryatid-isolated --plot margins.svg
+    Two further limit states are a peak tilt above --tilt, and a base displacement beyond the x_max of the bearings.
+    One quantity is changed at a time, in steps of a four-hundredth of the span, in the analytic model. Changes that
+    give no valid scene (a restitution above 1, ka below kb) end the range. The vertical stiffness of bearings is taken
+    as infinite.
+
+    Example: rocking margin caryatid-isolated --plot margins.svg
     """
     from analytic.errors import SettingError
     from analytic.margins import LARGEST_SPAN, contact_margins, margins
@@ -69,7 +71,7 @@ def command(
 
 
 def _form(scene, nearest, contact, rows, span, tilt):
-    """What the JSON file holds."""
+    """Content of the JSON file."""
     from analytic.margins import limit_states
 
     from ..schemas.advice import Contact, Margin, Margins, MotionMargin
@@ -87,7 +89,7 @@ def _form(scene, nearest, contact, rows, span, tilt):
 
 
 def _reached(margin):
-    """Those of the limit states that the scene as it is reaches."""
+    """The limit states that the unchanged scene reaches."""
     from analytic.margins import LIMIT_STATES
 
     return [state for state in LIMIT_STATES if margin.reached(state)]

@@ -1,4 +1,4 @@
-"""``rocking new``: a scene file for one's own block."""
+"""``rocking new``: a scene file for a user's block."""
 
 import os
 import sys
@@ -31,7 +31,7 @@ def command(
         float | None, typer.Option(help="Mass of the base under the block [kg]; without it the ground is rigid.")
     ] = None,
     slides_freely: Annotated[
-        bool, typer.Option("--slides-freely", help="Nothing holds the base: no bearings, no friction under it.")
+        bool, typer.Option("--slides-freely", help="The base has no bearings and no friction.")
     ] = False,
     count: Annotated[int, typer.Option(help="Number of bearings.")] = 4,
     period: Annotated[float | None, typer.Option(help="Bearings by design: secant period at --xmax [s].")] = None,
@@ -39,7 +39,7 @@ def command(
     definition: Annotated[str, typer.Option(help=DEFINITION)] = "equivalent",
     ratio: Annotated[float, typer.Option(help=RATIO)] = 10.0,
     xmax: Annotated[
-        float | None, typer.Option(help="Displacement the bearings are built for [m]; runs beyond it are warned of.")
+        float | None, typer.Option(help="Design displacement of the bearings [m]; a run beyond it gives a warning.")
     ] = None,
     ka: Annotated[float | None, typer.Option(help="Bearings by constants: stiffness before yielding [N/m].")] = None,
     kb: Annotated[float | None, typer.Option(help="Bearings by constants: stiffness after yielding [N/m].")] = None,
@@ -52,17 +52,17 @@ def command(
     column: Column = None,
     channel: Channel = None,
     tilt: Annotated[float | None, typer.Option(help="Released from this tilt [rad], without a motion.")] = None,
-    friction: Annotated[float | None, typer.Option(help="Coefficient between the block and what it stands on.")] = None,
+    friction: Annotated[float | None, typer.Option(help="Coefficient between the block and its support.")] = None,
     anyway: Annotated[
         bool, typer.Option("--anyway", help="Write the file even if its numbers are implausible.")
     ] = False,
     json_file: Annotated[
-        str | None, typer.Option("--json", metavar="FILE", help="Write what follows from the scene; - prints it.")
+        str | None, typer.Option("--json", metavar="FILE", help="Write the derived quantities; - prints them.")
     ] = None,
 ) -> None:
-    """Write a commented scene file, and print what follows from it.
+    """Write a commented scene file, and print the quantities derived from it.
 
-    In a terminal it asks for missing values and queries implausible ones.
+    In a terminal the command asks for missing values, and for confirmation of implausible ones.
 
     Example: rocking new bust.toml --height 1.9 --width 0.55 --material marble --base-mass 400 --period 2.5 --xmax 0.2
     """
@@ -110,7 +110,7 @@ def command(
 
 
 def _asked(value: float | None, option: str, question: str) -> float:
-    """The value, or the answer to the question where somebody sits at a terminal."""
+    """The value, or the answer to the question in a terminal."""
     if value is not None:
         return value
     if not sys.stdin.isatty():
@@ -123,7 +123,7 @@ def _weight() -> tuple[str | None, float | None]:
     from analytic.new_scene import MATERIALS
 
     if not sys.stdin.isatty():
-        raise SettingError("the block's weight is missing: give --mass [kg], --density [kg/m3] or --material")
+        raise SettingError("the block's mass is missing: give --mass [kg], --density [kg/m3] or --material")
     answer = typer.prompt(f"Mass [kg], or material ({', '.join(MATERIALS)})").strip()
     try:
         return None, float(answer)
@@ -144,7 +144,7 @@ def _density(density: float | None, material: str | None) -> float | None:
 
 
 def _check_base(mass: float | None, borne: bool, slides_freely: bool) -> None:
-    """Raise `SettingError` unless it is said what the base [kg], if any, stands on; borne: on bearings."""
+    """Raise `SettingError` unless the support of the base [kg], if any, is given; borne: on bearings."""
     if mass is None and borne:
         raise SettingError("bearings carry a base: give its mass with --base-mass")
     if mass is None and slides_freely:
@@ -153,16 +153,16 @@ def _check_base(mass: float | None, borne: bool, slides_freely: bool) -> None:
         raise SettingError("--slides-freely: a base on bearings does not; remove it, or what belongs to bearings")
     if mass is not None and not borne and not slides_freely:
         raise SettingError(
-            f"--base-mass {mass:g}: nothing holds that base; a pedestal fixed to the ground: leave it out; a base on "
-            "bearings: give --period and --xmax, or --ka, --kb and --alpha; one without bearings and friction, in a "
-            "thought experiment or for rocking design to find its bearings: give --slides-freely"
+            f"--base-mass {mass:g}: nothing holds that base. If it is a pedestal fixed to the ground, leave it out; on "
+            "bearings, give --period and --xmax, or --ka, --kb and --alpha; without bearings and friction, as in a "
+            "thought experiment or before rocking design, give --slides-freely"
         )
 
 
 def _bearings(
     carried: float, count: int, xmax: float | None, targets: Mapping[str, Any], constants: Mapping[str, Any]
 ) -> Any:
-    """The `Bearings` under what they carry [kg], by design or by constants."""
+    """The `Bearings` under the mass `carried` [kg], by design or by constants."""
     from analytic.design import design_bearings
     from analytic.scene import Bearings
 
@@ -176,7 +176,7 @@ def _bearings(
 
 
 def _asked_for(period: float, damping: float, definition: str) -> dict[str, tuple[float, str]]:
-    """{row of what follows: (what was asked for, in the sense of that row, and in words)}."""
+    """{row of `derived`: (target in the sense of that row, target in words)}."""
     from analytic.design import DEFINITIONS
     from analytic.new_scene import DAMPING, PERIOD
 
@@ -186,12 +186,12 @@ def _asked_for(period: float, damping: float, definition: str) -> dict[str, tupl
 
 
 def _motion(file: str, record: str | None, tilt: float | None, said: Mapping[str, Any]) -> dict[str, Any] | None:
-    """The table [motion]; a record is named as seen from the scene file. `said`: what it does not say itself."""
+    """The table [motion]; the path of a record is relative to the scene file. `said`: units and step that it lacks."""
     from analytic.records import fema
 
     if record is not None and tilt is not None:
         raise SettingError("give --record or --tilt, not both")
-    ground_motion(record, **said)  # one that cannot be read is said by its own name
+    ground_motion(record, **said)  # an unreadable record is an error that names it
     if record is None:
         return {"synthetic": "duzce-like"} if tilt is None else None
     place = record if fema.is_one(record) else os.path.relpath(record, Path(file).resolve().parent)
@@ -199,7 +199,7 @@ def _motion(file: str, record: str | None, tilt: float | None, said: Mapping[str
 
 
 def _tell(file: str, scene: Any, json_file: str | None, asked: Mapping[str, tuple[float, str]]) -> None:
-    """Print or write what follows from a scene, beside what was asked for."""
+    """Print or write the derived quantities of a scene beside the targets."""
     from analytic.new_scene import derived
 
     from ..schemas.runs import Derived, New

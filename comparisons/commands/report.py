@@ -1,4 +1,4 @@
-"""``rocking report``: the main job."""
+"""``rocking report``: the page on one's own scenes or on the Caryatid."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def command(
         list[str] | None, typer.Option(help="An engine to compare; may be repeated. Default: all that are installed.")
     ] = None,
     variant: Annotated[
-        str | None, typer.Option(help="Variant of the one engine, for the scenes given. Default: that of the engine.")
+        str | None, typer.Option(help="Variant of the one engine, for the scenes given. Default: its main one.")
     ] = None,
     records: Records = None,
     both_signs: BothSigns = False,
@@ -67,9 +67,9 @@ def command(
         str | None, typer.Option("--json", metavar="FILE", help="Write what the page shows of each run; - prints it.")
     ] = None,
 ) -> None:
-    """The page: scenes in every solver, how far they agree and at what cost, with the result files it is made from.
+    """Write the page: scenes in every solver, their agreement and cost, with the result files it is made from.
 
-    A record given with scenes takes the place of their motions. The stored studies follow as background.
+    A record given with scenes replaces their motions. The findings of the stored studies follow.
     Example: rocking report bust.toml --output bust
     """
 
@@ -98,9 +98,9 @@ def command(
 
 
 def _motion(scene, record, said):
-    """The motion of the record, or the shipped one; None where scenes bring theirs."""
+    """The motion of the record, or the shipped one; None if the scenes have their own."""
     with named_by_options(RECORD_OPTIONS):
-        motion = ground_motion(record, **said)  # says what belongs to a record, too
+        motion = ground_motion(record, **said)  # also refuses options that belong to a record
     if scene and record is None:
         return None
     say(f"ground motion: {motion.label}")
@@ -108,11 +108,11 @@ def _motion(scene, record, said):
 
 
 def _simulate(output, scene, motion, engines, variants, many):
-    """Write the result files of the page; {scene: its file and options, and what is to be done first}."""
+    """Write the result files of the page; {scene: its file and options, and the action needed before}."""
     from ..report.runs import load_scenes
     from ..report.study import make_own_results, make_results
 
-    with stdout_to_stderr():  # engines greet on standard output
+    with stdout_to_stderr():  # engines print on import
         if not scene:
             make_results(output, motion, engines=engines)
             return {}
@@ -141,7 +141,7 @@ def _studies(folder):
 
 
 def form(page: Path) -> Report:
-    """What the JSON file holds of a page that lies beside its result files."""
+    """Content of the JSON file for a page, from the result files beside it."""
     from analytic.response import UNCOMPARED
 
     from ..report.runs import RESTITUTION, SCENES
@@ -160,7 +160,7 @@ def form(page: Path) -> Report:
 
 
 def _variants(variant, engines, scene):
-    """{engine: its variant} as asked for, checked."""
+    """{engine: variant} asked for, checked."""
     from engines import get_engine
 
     if variant is None:

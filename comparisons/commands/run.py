@@ -24,7 +24,7 @@ from ..running.solving import (
 def command(
     scene: Annotated[str, typer.Argument(help="Scene file (TOML), or the name of a shipped scene.")],
     engine: Annotated[str, typer.Option(help="analytic, or an engine; see `rocking engines`.")] = "analytic",
-    variant: Annotated[str | None, typer.Option(help="How the engine is set up; see `rocking engines`.")] = None,
+    variant: Annotated[str | None, typer.Option(help="Variant of the engine; see `rocking engines`.")] = None,
     settings: Annotated[
         list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="A setting of the solver; may be repeated.")
     ] = None,
@@ -39,7 +39,7 @@ def command(
     plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw the history (.png, .svg or .pdf).")] = None,
     time_limit: Annotated[float, typer.Option(metavar="SECONDS", help=TIME_LIMIT_HELP)] = TIME_LIMIT,
 ) -> None:
-    """Simulate one scene. Status 1: the solver failed on it; 2: the scene, a setting or a place is wrong.
+    """Simulate one scene. Status 1: the solver failed on it; 2: the scene, a setting or a file is wrong.
 
     Example: rocking run caryatid-isolated --engine exudyn --plot isolated.svg
     """

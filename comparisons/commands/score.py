@@ -13,11 +13,11 @@ def command(
         str | None, typer.Option("--json", metavar="FILE", help="Write the scores; - prints them.")
     ] = None,
 ) -> None:
-    """Score answers to the problem sheet: the first that is wrong, errors, rank beside the engines, probable causes.
+    """Score answers to the problem sheet: first wrong answer, errors, rank among the engines, probable causes.
 
-    First is meant in time of the run, over all scenes: before it the solver is right. A cause is named where the very
-    answers follow from it and from nothing else that is known. Status 1: an answer is off by more than 1e-3 of its
-    scale. Example: rocking score answers.csv
+    The first wrong answer is the earliest in time of the run, over all scenes. A cause is named if it reproduces the
+    answers and no other known cause does. Status 1: an answer is off by more than 1e-3 of its scale.
+    Example: rocking score answers.csv
     """
     from ..running.files import check_writable
     from ..running.progress import spinner

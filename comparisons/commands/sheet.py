@@ -1,4 +1,4 @@
-"""``rocking sheet``: problems for codes that are not ours."""
+"""``rocking sheet``: problems for other codes."""
 
 from pathlib import Path
 from typing import Annotated
@@ -11,12 +11,12 @@ from ..cli.output import write_output
 def command(
     output: Annotated[str, typer.Option(metavar="DIR", help="Folder for the pages.")] = "sheet",
     json_file: Annotated[
-        str | None, typer.Option("--json", metavar="FILE", help="Write what is asked for; - prints it.")
+        str | None, typer.Option("--json", metavar="FILE", help="Write the quantities asked for; - prints them.")
     ] = None,
 ) -> None:
     """Write the problem sheet: eight scenes as equations and numbers, a page each in HTML and Markdown.
 
-    With them go the input record and answers.csv, to be filled in and handed to rocking score.
+    The folder also holds the input record, and answers.csv to be filled in for rocking score.
     Example: rocking sheet --output problems
     """
     from ..running.files import check_folder, check_writable

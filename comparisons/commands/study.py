@@ -1,4 +1,4 @@
-"""``rocking study NAME``: every study as a command of its own, made of its `Study`."""
+"""``rocking study NAME``: a command for each study, made from its `Study`."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from ..studies import BUILT_IN, StudyBroken, get_study, study_names
 if TYPE_CHECKING:
     from ..running.plan import Study
 
-Quick = Annotated[bool, typer.Option("--quick", help="A first look, in minutes.")]
+Quick = Annotated[bool, typer.Option("--quick", help="A small version of the study, in minutes.")]
 Output = Annotated[
     str | None,
     typer.Option(
@@ -32,12 +32,12 @@ Engines = Annotated[
     list[str] | None,
     typer.Option("--engine", help="Engine to compare; may be repeated. Default: all that the study needs."),
 ]
-Workers = Annotated[int | None, typer.Option(min=1, help="Worker processes; one per core without it.")]
+Workers = Annotated[int | None, typer.Option(min=1, help="Worker processes. Default: one per core.")]
 Scheduler = Annotated[
     str | None,
     typer.Option(
         metavar="ADDRESS",
-        help="Dask scheduler whose workers do the runs, HOST:PORT, or local:N. What is timed is done here.",
+        help="Dask scheduler whose workers make the runs, HOST:PORT, or local:N. Timed runs are made here.",
     ),
 ]
 EVERY = "all"
@@ -65,12 +65,12 @@ Write = Annotated[
     typer.Option("--write", help="With --check: write date, commit and outcome of the check into the result file."),
 ]
 Seed = Annotated[
-    int | None, typer.Option(min=0, max=2**63, help="Of the random draw of --check; without it another each time.")
+    int | None, typer.Option(min=0, max=2**63, help="Seed of the random draw of --check. Default: a new one each time.")
 ]
 
 
 def command_of(study: Study) -> Callable[..., None]:
-    """A function that Typer makes the study's command of."""
+    """The function from which Typer makes the study's command."""
     asked = study.options()
 
     def command(
@@ -112,7 +112,7 @@ def command_of(study: Study) -> Callable[..., None]:
             return
         problems = []
         if scheduler is not None and workers is not None:
-            raise SettingError("--workers: are those of --scheduler; give one of the two")
+            raise SettingError("--workers: a scheduler has its own workers; give --workers or --scheduler")
         if into is not None:
             options = _given(context, options, into, engine)
         place: dict[str, Any] = {"workers": workers, "scheduler": scheduler, "into": into}
@@ -127,7 +127,7 @@ def command_of(study: Study) -> Callable[..., None]:
             raise typer.Exit(1)
 
     own = dict(inspect.signature(command, eval_str=True).parameters)
-    for name in ("options", *({"seed"} & asked.keys())):  # where the plan takes a seed, it is one option for both
+    for name in ("options", *({"seed"} & asked.keys())):  # one option for the seed of the plan and of --check
         del own[name]
     parameters = [*own.values(), *asked.values()]
     command.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]  # Typer reads it there
@@ -144,12 +144,12 @@ def _given(context, options, into, engine):
 
 
 def _check(name, output, number, seed, write, workers):
-    """Check the stored results of a study; status 1 if a run does not hold."""
+    """Check the stored results of a study; status 1 if a run differs."""
     from ..running.check import check_all
     from ..running.progress import stdout_to_stderr
     from ..running.provenance import RESULTS
 
-    with stdout_to_stderr():  # engines greet on standard output
+    with stdout_to_stderr():  # engines print on import
         seed = secrets.randbelow(2**32) if seed is None else seed
         checks = check_all(name, RESULTS if output is None else output, number, seed, record=write, workers=workers)
     for check in checks:
@@ -166,10 +166,10 @@ def every(
     engine: Engines = None,
     workers: Workers = None,
 ) -> None:
-    """All studies of this project, one after the other; interrupted, it goes on where it stopped.
+    """Compute all studies of this project, one after the other; after an interruption the same command resumes.
 
-    Runs are kept, so that a second call computes only what is new. The result files are written side by side:
-    rocking report --studies DIR shows them.
+    Runs are stored, so that a second call computes only new ones. The result files are written into one folder, which
+    rocking report --studies DIR shows.
 
     Example: rocking study all --output studies
     """
@@ -220,7 +220,7 @@ app = typer.Typer(cls=_Studies, add_completion=False, rich_markup_mode=None, no_
 
 @app.callback()
 def _about():
-    """Compute one study's result file and its page; interrupted, it resumes where it stopped.
+    """Compute one study's result file and its page; after an interruption the same command resumes.
 
     Example: rocking study restitution --quick
     """

@@ -1,4 +1,4 @@
-"""``rocking verify``: do the engines installed here keep the tolerances of this study?"""
+"""``rocking verify``: whether the engines installed here meet the tolerances."""
 
 from typing import Annotated, Any
 
@@ -15,7 +15,7 @@ def command(
     engine: Annotated[
         list[str] | None, typer.Option(help="An engine to verify; may be repeated. Default: all that are installed.")
     ] = None,
-    variant: Annotated[str | None, typer.Option(help="Variant of the one engine. Default: that of the engine.")] = None,
+    variant: Annotated[str | None, typer.Option(help="Variant of the one engine. Default: its main one.")] = None,
     json_file: Annotated[
         str | None, typer.Option("--json", metavar="FILE", help="Write the rows; - prints them.")
     ] = None,
@@ -23,10 +23,10 @@ def command(
         float, typer.Option(metavar="SECONDS", help="An engine that takes longer has failed.")
     ] = TIME_LIMIT,
 ) -> None:
-    """Run the tolerance table against the engine builds of this machine.
+    """Check the engines installed on this machine against the table of tolerances.
 
-    Of an engine from outside that states no tolerances the rows say what was found. Status 1: a row does not hold, or
-    could not be measured.
+    For an engine of another package without tolerances, the rows give the measured values. Status 1: a tolerance is
+    exceeded, or could not be measured.
     From the tests of another project: comparisons.measuring.tolerances.rows("exudyn"), each with `check()`.
     Example: rocking verify --engine exudyn
     """
@@ -51,7 +51,7 @@ def command(
 
 
 def _verified(name, table, time_limit):
-    """The rows of an engine, measured in a process of their own; where it dies, each row says so."""
+    """The rows of an engine, measured in a process of their own; if it fails, each row says so."""
     from engines.guard import run_apart
 
     from ..measuring.tolerances import measure_all
@@ -78,7 +78,7 @@ def _show(results):
 
 
 def _unbounded(results):
-    """A sentence on each engine that states no tolerances."""
+    """A sentence on each engine without tolerances."""
     for name in dict.fromkeys(row["engine"] for row in results if row["bound"] is None):
         found = [row["found"] is not None for row in results if row["engine"] == name]
         yield f"{name}: no bound stated, so nothing holds or fails; {sum(found)} of {len(found)} quantities measured."

@@ -1,1 +1,1 @@
-"""Teaching material: the playground, a page that lets one play with the rocking block, and what stands around it."""
+"""Teaching material: lessons as pages and notebooks, and the playground, a page that simulates the rocking block."""

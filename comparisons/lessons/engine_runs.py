@@ -1,7 +1,7 @@
 """What several lessons compute, and every installed engine, in every variant, on one small scene: a block released on
 rigid ground, to its second impact.
 
-Which engines there are is asked of `engines`; without any the lessons run on the model's own fixed-step integrator.
+The engines are those of `engines`; without any, the lessons use the model's own fixed-step integrator.
 """
 
 import functools
@@ -19,12 +19,12 @@ HALVINGS = 50
 
 
 def edge(differs: Callable[[float], bool], low: float, high: float) -> float:
-    """Where `differs` changes between low and high, by halving; the value on the side of high.
+    """The value at which `differs` changes between low and high, by bisection; on the side of high.
 
     Raises
     ------
     ValueError
-        It is the same at both ends.
+        `differs` is the same at both ends.
     """
     there = differs(high)
     if differs(low) == there:
@@ -46,20 +46,22 @@ def history_until(scene: Scene, duration: float) -> Response:
 
 SLENDERNESS, START = 0.28, 0.6  # rad, tilt over slenderness
 SCENE = Scene(block=caryatid_block(SLENDERNESS), start=Start(tilt=START * SLENDERNESS), duration=1.5)
-FIRST = 1.0  # s: the first impact is over, and the second far
+FIRST = 1.0  # s: between the first and the second impact
 OWN = "fixed steps"  # the model's own integrator
 OWN_STEPS = (0.02, 0.01, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4)  # s
-ROUNDS = 3  # the least CPU time of so many
+ROUNDS = 3  # runs of a timing; the least CPU time counts
 
 
 @dataclass(frozen=True)
 class EngineRun:
-    """One run: who, by name and variant, at which value of its accuracy parameter; error: of the tilt rate after the
-    first impact, nan without one; cpu [s]."""
+    """One run: solver, name with variant, kind, accuracy parameter and its value.
+
+    error: of the tilt rate after the first impact, nan without one. cpu: CPU time [s].
+    """
 
     solver: str
     name: str
-    tier: str
+    kind: str
     parameter: str
     value: float
     error: float
@@ -81,7 +83,7 @@ def error_of(response: Response) -> float:
 def timed(
     solver: str, parameter: str, values: Iterable[float], simulated: Callable[..., Response]
 ) -> tuple[EngineRun, ...]:
-    """Runs of one of our own solvers, a setting each."""
+    """Runs of one of our own solvers, one for each level."""
     found = []
     for value in values:
         runs = [simulated(SCENE, history=False, **{parameter: value}) for _ in range(ROUNDS)]
@@ -92,28 +94,28 @@ def timed(
 
 @functools.cache
 def own_runs() -> tuple[EngineRun, ...]:
-    """Of the model's fixed-step integrator."""
+    """Runs of the model's fixed-step integrator."""
     return timed(OWN, "step", OWN_STEPS, simulate_time_stepping)
 
 
 @functools.cache
 def engine_runs() -> tuple[EngineRun, ...]:
-    """Of every installed engine: each variant through the levels of its accuracy parameter."""
+    """Runs of every installed engine: each variant at all its levels."""
     found = []
     for name in installed_engines():
         engine = get_engine(name)
-        for variant, kind in engine.variants.items():
-            for value in kind.levels:
+        for variant, spec in engine.variants.items():
+            for value in spec.levels:
                 response = engine.simulate(
-                    SCENE, variant=variant, history=False, compare=False, **{kind.accuracy_parameter: value}
+                    SCENE, variant=variant, history=False, compare=False, **{spec.accuracy_parameter: value}
                 )
                 error = math.nan if response.outcome == "failed" else error_of(response)
                 found.append(
                     EngineRun(
                         name,
                         f"{name}, {variant}",
-                        kind.tier,
-                        kind.accuracy_parameter,
+                        spec.kind,
+                        spec.accuracy_parameter,
                         value,
                         error,
                         response.cpu_seconds,

@@ -37,7 +37,7 @@ def export_pages(
 ) -> list[Path]:
     """Write playground, lessons, derivation and teacher's page into `folder`; returns their paths.
 
-    progress : is called with how many lessons are done, of how many.
+    progress : called with the number of lessons done and of all lessons.
     """
     environment, chosen = _environment(), lessons()
     drawings = {name: Markup(getattr(diagrams, name)()) for name in ("rocking", "impact", "isolated")}
@@ -89,7 +89,7 @@ def _lesson_page(environment: Environment, one: Lesson, chosen: Sequence[Lesson]
 
 
 def _view_parts(view: View, name: str) -> dict:
-    """What the template shows of a view: picture, numbers as (label, value in full, text), and the sentence."""
+    """Parts of a view for the template: picture, numbers as (label, value in full, text), and the sentence."""
     numbers = [
         (label, value if isinstance(value, str) else repr(float(value)), written(value, unit))
         for label, (value, unit) in view.numbers.items()
@@ -108,13 +108,13 @@ COLOURS = (
 
 
 def code_of(lesson: Lesson) -> str:
-    """The few lines of a lesson: the body of its `code`, whose last line shows what that returns."""
+    """The code cell of a lesson: the body of its `code`, whose last line shows the value returned."""
     body = inspect.getsource(lesson.code).partition("\n")[2]
     return re.sub(r"^return ", "", textwrap.dedent(body).rstrip(), flags=re.MULTILINE)
 
 
 def notebook_of(lesson: Lesson) -> str:
-    """The notebook of a lesson, as marimo has them: a Python file."""
+    """The notebook of a lesson in marimo's format, a Python file."""
     return templates(PAGES).get_template("notebook.py.jinja").render(lesson=lesson, code=code_of(lesson))
 
 
@@ -126,7 +126,7 @@ def open_notebook(name: str, to: str | None = None) -> int:
     name : str
         Of the lesson.
     to : str or None
-        Folder where the notebook is kept, and opened again as it was left; None: it is gone when marimo ends.
+        Folder where the notebook is kept, and from which it is opened again; None: it is removed when marimo ends.
 
     Raises
     ------
@@ -144,7 +144,7 @@ def open_notebook(name: str, to: str | None = None) -> int:
         files = {file.name: text, "pyproject.toml": SETTINGS}
         new = {name: content for name, content in files.items() if not file.with_name(name).exists()}
         write_all(folder, new)  # a student's work is never overwritten
-        say(f"the notebook is {file}" + ("; it is removed at the end: keep it with --to FOLDER" if to is None else ""))
+        say(f"the notebook is {file}" + ("; it is removed at the end; --to FOLDER keeps it" if to is None else ""))
         return subprocess.call([sys.executable, "-m", "marimo", "edit", str(file.absolute())])  # "-" is no option
 
 
@@ -162,7 +162,7 @@ def answer(exercise: Exercise) -> str:
 
 
 def opening(lesson: Lesson, mo: Any) -> Any:
-    """Title, question, drawing, equations, symbols, and what to guess."""
+    """Title, question, drawing, equations, symbols, and the question to guess."""
     head = [mo.md(f"# {lesson.number}. {lesson.title}\n\n{lesson.question}")]
     if lesson.drawing:
         rules, drawing = diagrams.STYLE.read_text(encoding="utf-8"), lesson.drawing()
@@ -179,7 +179,7 @@ def opening(lesson: Lesson, mo: Any) -> Any:
 
 
 def controls(lesson: Lesson, mo: Any) -> Any:
-    """The controls as marimo's elements, an array whose value is what `Lesson.view` takes."""
+    """The controls as marimo's elements, an array whose value is the argument of `Lesson.view`."""
     made = []
     for control in lesson.controls:
         if control.in_words:
@@ -191,7 +191,7 @@ def controls(lesson: Lesson, mo: Any) -> Any:
 
 
 def place(lesson: Lesson, values: Sequence[float | str], mo: Any) -> Any:
-    """What the lesson shows at these values of its controls: picture and numbers."""
+    """Picture and numbers of the lesson at these values of its controls."""
     return shown(lesson.view(*values), mo)
 
 
@@ -205,7 +205,7 @@ def shown(view: View, mo: Any) -> Any:
 
 
 def closing(lesson: Lesson, mo: Any) -> Any:
-    """What goes wrong, and the exercises with their answers folded away."""
+    """Common errors, and the exercises with their answers folded."""
     wrong = "\n".join(f"- {text}" for text in lesson.wrong)
     folded = {exercise.question: mo.md(f"**{answer(exercise)}** – {exercise.because}") for exercise in lesson.exercises}
     example = lesson.example() if lesson.example else None

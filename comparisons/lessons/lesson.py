@@ -1,6 +1,6 @@
-"""What a lesson is: a question, symbols and equations, a guess, a picture with controls, common errors, exercises.
+"""The type of a lesson: a question, symbols and equations, a guess, a picture with controls, common errors, exercises.
 
-Texts are paragraphs with ``$formulas$`` in TeX: a notebook shows them as they are, a page as MathML (`mathml.prose`).
+Texts are paragraphs with ``$formulas$`` in TeX: a notebook shows the TeX, a page MathML (`mathml.prose`).
 Figures are drawn once with stand-ins for colours, which a page replaces by its own, light or dark.
 """
 
@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from ..showing.parts import Table, element_of
 
 INK, SOFT, GRID, PANEL = "#1c1b19", "#5f5b54", "#e4e0d8", "#fffffe"
-MODEL, OTHER, THIRD = "#0072b2", "#d55e00", "#00795c"  # told apart by colour-blind readers, and by their dashes
+MODEL, OTHER, THIRD = "#0072b2", "#d55e00", "#00795c"  # distinguishable for colour-blind readers, and by their dashes
 STONE = "#e9e0cb"
 # Outcomes in maps: stands, rocks, overturns after impacts, overturns without one.
 OUTCOMES = ("#d9d5cc", "#56b4e9", "#f0a500", "#c23b00")
@@ -26,7 +26,7 @@ VARIABLES = {
     INK: "ink", SOFT: "soft", GRID: "grid", PANEL: "panel", MODEL: "model", OTHER: "ghost", THIRD: "third",
     STONE: "stone", OUTCOMES[0]: "stands",
 }  # fmt: skip
-STYLE: Any = {  # keys of matplotlib, a type of its own
+STYLE: Any = {  # keys of matplotlib's rcParams
     "font.family": "sans-serif",
     "font.size": 11,
     "axes.edgecolor": SOFT,
@@ -50,13 +50,13 @@ STYLE: Any = {  # keys of matplotlib, a type of its own
     "svg.fonttype": "none",
     "path.simplify_threshold": 0.3,
 }
-WIDTH, HEIGHT = 5.4, 4.4  # inch: lettering stays readable on a phone
+WIDTH, HEIGHT = 5.4, 4.4  # inch; text is readable on a phone
 WIDE = (9.6, 5.4)  # inch, 16:9, of the figures for slides
 LICENCE = "rocking lessons, MIT licence"
 
 
 def canvas(rows: int = 1, heights: tuple[float, ...] = (1,), **more: Any) -> tuple[Figure, Any]:
-    """(figure, its axes as of `Figure.subplots`) in the lessons' style."""
+    """(figure, its axes from `Figure.subplots`) in the lessons' style."""
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(WIDTH, HEIGHT))
         axes = figure.subplots(rows, height_ratios=heights, **more)
@@ -78,7 +78,7 @@ def legend(axes: Axes, **more: Any) -> None:
 
 
 def svg(figure: Figure, name: str) -> str:
-    """The figure as an inline SVG element in the colours of its page; `name` keeps its parts' names apart."""
+    """The figure as an inline SVG element in the colours of its page; `name` makes the names of its parts unique."""
     file = io.BytesIO()
     with matplotlib.rc_context({**STYLE, "svg.hashsalt": name}):
         figure.savefig(file, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
@@ -113,7 +113,7 @@ SYMBOLS = {
     r"\dot{\phi}^{\pm}": "tilt rate just before ($-$) and just after ($+$) an impact [rad/s]",
     r"\phi_0": "a peak of the tilt [rad]",
     r"\phi_1": "the next peak [rad]",
-    "s": "$+1$ for a tilt to the right, $-1$ to the left",
+    "s": "$+1$ for a tilt to the right, $-1$ for one to the left",
     "g": "gravity, 9.81 m/s²",
     "a_g": "acceleration of the ground [m/s²]",
     r"e_{\phi}": "restitution: tilt rate after an impact over that before it",
@@ -146,7 +146,7 @@ SYMBOLS = {
 
 @dataclass(frozen=True)
 class Equation:
-    """tex: the formula. number: its place in the paper, "" without one. says: what it means, one sentence."""
+    """tex: the formula. number: its number in the paper, "" without one. says: its meaning, one sentence."""
 
     tex: str
     number: str
@@ -155,7 +155,7 @@ class Equation:
 
 @dataclass(frozen=True)
 class Control:
-    """What a reader moves: label; values, numbers in order or words; the value at the start; unit and digits."""
+    """A control for the reader: label; values, numbers in order or words; the initial value; unit and digits."""
 
     label: str
     values: tuple[float, ...] | tuple[str, ...]
@@ -172,7 +172,7 @@ class Control:
         return isinstance(self.start, str)
 
     def text(self, value: float | str) -> str:
-        """A value as a reader sees it."""
+        """A value as it is shown."""
         if isinstance(value, str):
             return value
         return f"{value:.{self.digits}f}".replace("-", "−") + (f" {self.unit}" if self.unit else "")
@@ -180,10 +180,10 @@ class Control:
 
 @dataclass(frozen=True)
 class View:
-    """What a lesson shows at one place of its controls.
+    """The view of a lesson at one combination of its controls.
 
     figure : matplotlib Figure. numbers : {label: (value, unit)}, the value a number or a word. says : the picture in a
-    sentence, for those who cannot see it.
+    sentence, for readers who cannot see it.
     """
 
     figure: Figure
@@ -193,7 +193,7 @@ class View:
 
 @dataclass(frozen=True)
 class Exercise:
-    """A question whose answer is computed: `compute()` is a number in `unit`; `because` says how one finds it."""
+    """A question whose answer is computed: `compute()` is a number in `unit`; `because` explains the solution."""
 
     question: str
     compute: Callable[[], float]
@@ -206,11 +206,11 @@ class Exercise:
 class Lesson:
     """One lesson; `view` takes the values of the controls in their order.
 
-    minutes : in a lecture. aims : what one can do afterwards. needs : what one should know before. symbols : keys of
-    `SYMBOLS`. guess : a question to answer before the controls are moved, which the picture then answers. code : the
-    few lines that compute a number of it, `found`; their text is a cell of the notebook. playground : where the
-    playground's sliders stand, as its address after #. drawing : at the head of the lesson. table : rows below the
-    picture. example : a second picture, without controls, and its caption `says`.
+    minutes : in a lecture. aims : learning outcomes. needs : prerequisites. symbols : keys of `SYMBOLS`. guess : a
+    question to answer before the controls are used, which the picture then answers. code : a few lines that compute a
+    number of the lesson, `found`; their text is a cell of the notebook. playground : positions of the playground's
+    sliders, as its address after #. drawing : at the head of the lesson. table : rows below the picture. example : a
+    second picture, without controls, and its caption `says`.
     """
 
     number: int
@@ -239,9 +239,9 @@ class Lesson:
         return [(symbol, SYMBOLS[symbol]) for symbol in self.symbols]
 
     def first(self) -> View:
-        """The view that stands there before anything is moved."""
+        """The view at the initial values of the controls."""
         return self.view(*(control.start for control in self.controls))
 
     def places(self) -> list[tuple[float | str, ...]]:
-        """Every place of the controls, the last one changing fastest."""
+        """All combinations of the controls, the last one changing fastest."""
         return list(product(*(control.values for control in self.controls)))

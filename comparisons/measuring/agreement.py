@@ -1,4 +1,4 @@
-"""How far an engine is from the analytic model, measured: one function for each quantity of the tolerance table.
+"""Measured differences between an engine and the analytic model: one function per quantity of the tolerance table.
 
 Each takes (engine, variant, scenes, runs) and returns one number, the worst found. scenes: what to run, one of the
 names below. runs: a dict in which simulations are kept that several measures share.
@@ -48,7 +48,7 @@ BOUNDARIES = {
 
 
 class Unmeasurable(RuntimeError):
-    """The engine's run failed, or lacks what is to be measured; says which and why."""
+    """The engine's run failed, or lacks the quantity to be measured; the message says which and why."""
 
 
 def traced(engine: str, variant: str, scene: Scene, history: bool = True) -> tuple[Response, Trace]:
@@ -205,9 +205,9 @@ def bearing_replay(engine: str, variant: str, scenes: str, runs: dict[Any, Any])
 
 
 def bearing_impulse(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
-    """What the momentum of the engine's own motion shows of the bearings' force, against the law: relative error.
+    """Relative error of the bearing impulse shown by the momentum of the engine's motion, against the law.
 
-    Unlike `bearing_replay` it does not ask the adapter what the force was.
+    Unlike `bearing_replay` it does not use the force that the adapter reports.
     """
     scene = named_scene(scenes)
     return impulse_error(scene, traced(engine, variant, scene)[1])

@@ -1,4 +1,4 @@
-"""One impact as the contact's own story, read from where an engine's steps had the block.
+"""Analysis of one impact from the positions of the block in an engine's steps.
 
 Newton's laws give the impulses that an engine must have used between two steps, whatever its solver calls them: of both
 corners upward and of both together along the ground. Momentum then splits the error of e into parts that add up to it.
@@ -10,11 +10,11 @@ and w the rate before the impact:
               - m (h (1 - mt) s + b r), of the pivot after, and + of the pivot before          parts `slip`, `rebound`
 
 `pull` is what is negative of the old corner's impulses. What is left over is the bearings' and gravity's while the
-contact lasts, of second order. Two more stand beside the parts in the same unit. `flight`: the energy that the second
-half of the swing before gained, as a share of w. `shape`: what the strike does to e if it acts where the weight did
-just before, when just before, when the landing corner is in the air and should bear nothing.
+contact lasts, of second order. Two more quantities are given in the same unit. `flight`: the energy gained in the
+second half of the swing before, as a share of w. `shape`: the change of e by a strike that acts where the weight acted
+just before, when just before, when the landing corner is in the air and should be unloaded.
 
-The cause of the error is read from that story alone: no setting is looked at.
+The cause of the error follows from these steps alone, without the variant's settings.
 """
 
 import math
@@ -45,11 +45,11 @@ class Contact:
     Parameters
     ----------
     placed : bool
-        The trace holds where the block was; else it is taken to pivot about its corners, and nothing is known of these.
+        The trace has the position of the block; else it is taken to pivot about its corners, whose motion is unknown.
     landing : float
         When the flight before reaches tilt = 0 [s].
     before, after : float
-        Tilt rates carried to tilt = 0 [rad/s].
+        Tilt rates extrapolated to tilt = 0 [rad/s].
     error : float
         after/before less the scene's restitution.
     parts : dict
@@ -104,7 +104,7 @@ class Contact:
 
     @property
     def deepest(self) -> float:
-        """How far a corner is below the ground at most [m]."""
+        """Largest penetration of a corner [m]."""
         return float(max(-self.height.min(), 0.0))
 
     @property
@@ -241,9 +241,9 @@ CAUSES = {
     "unseen": "the contact itself, and more than a step explains; the engine does not report where the block was",
     "step": "no part is larger than what the block gains in one step: the step straddles the impact",
 }
-# Steps in which a strike is seen. Solvers of velocities strike at once, which is seen in two, as velocities are those
-# of the steps' ends; not converged they take up to eight (one iteration, begun with the step before). A
-# compliant contact that is resolved takes a dozen and more.
+# Steps over which a sudden strike extends. Velocity-level solvers strike within one step, which appears in two, as
+# velocities are those of the steps' ends; without convergence they take up to eight (one iteration, started from the
+# step before). A resolved compliant contact takes a dozen or more.
 AT_ONCE, MANY = 2, 10
 SATURATED = 5.0  # largest friction over normal impulse of a sliding contact, over the strike's, in which it may turn
 STRADDLING = 2.0  # parts over what gravity gains in a step, up to which the step explains them: a strike is seen in two
@@ -292,17 +292,17 @@ def _saturated(contact):
 
 
 def diagnosis(engine: str, variant: str, scene: Scene, which: int = 0, **settings: Any) -> dict[str, object]:
-    """What the impact number `which` of a run tells, ready for JSON.
+    """The analysis of impact number `which` of a run, ready for JSON.
 
     Returns
     -------
     dict
-        engine, variant, tier, best (the default variant); if it can be analysed: placed, error, cause and words
-        (None below `LEAST`), parts, steps, energy_lost (over the kinetic one before), frames, and where
+        engine, variant, "tier" (its kind), best (the engine's main variant); if it can be analysed: placed, error,
+        cause and words (None below `LEAST`), parts, steps, energy_lost (over the kinetic one before), frames, and where
         the block is placed deepest [m]; else why_not.
     """
     record = get_engine(engine)
-    row: dict[str, object] = {"engine": engine, "variant": variant, "tier": record.variants[variant].tier}
+    row: dict[str, object] = {"engine": engine, "variant": variant, "tier": record.variants[variant].kind}
     row["best"] = variant == record.default_variant
     _, trace = record.traced(scene, variant=variant, history=False, **settings)
     try:
@@ -348,7 +348,7 @@ def _levers(scene: Scene, tilt: np.ndarray, side: float) -> tuple[np.ndarray, np
 
 
 def corner_impulses(scene: Scene, trace: Trace, side: float) -> dict[str, np.ndarray]:
-    """What the corners were given between the n steps of a trace with a centre: what its momentum gained.
+    """Impulses on the corners between the n steps of a trace with a centre, from the change of its momentum.
 
     Returns
     -------
@@ -375,7 +375,7 @@ def _gained(motion: Motion | None, time: np.ndarray) -> np.ndarray | float:
 def pivot_forces(
     scene: Scene, trace: Trace, side: float, landing: float, rates: tuple[float, float]
 ) -> tuple[float, float]:
-    """What bears a block that pivots at tilt 0 [N], before and after the landing [s], by eqs (3)-(6).
+    """Normal force on a block that pivots at tilt 0 [N], before and after the landing [s], by eqs (3)-(6).
 
     rates: tilt rates before and after it [rad/s].
     """

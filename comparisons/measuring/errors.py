@@ -1,8 +1,8 @@
 """Errors of a response, the same for every solver and in every command, study and page.
 
-Restitution: from the swings around each impact (`swing_restitution`: what a student measures, and the headline's), from
-the states at it (`state_restitution`: under forces too) and from successive rates (`rate_restitution`: no history is
-needed). Base velocity jump, impact times, missed impacts, distance of the tilt graphs, energy.
+Restitution: from the swings around each impact (`swing_restitution`, as in an experiment), from the states at it
+(`state_restitution`, also under forces) and from successive rates (`rate_restitution`, without a history). Base
+velocity jump, impact times, missed impacts, distance of the tilt graphs, energy.
 """
 
 import dataclasses
@@ -19,7 +19,7 @@ from analytic.types import Values
 from engines.checks import energy_balance, energy_gain
 from engines.swings import Trace
 
-# Of the run's fastest: slower impacts are no swings but an engine's own chatter on its way to rest.
+# Of the run's fastest: slower impacts are not swings but an engine's chatter before rest.
 SLOWEST_IMPACT = 0.1
 # Time after an impact that belongs to it [s]: exudyn's compliant corners relax for 6 ms.
 SETTLE = 0.01
@@ -71,7 +71,7 @@ def flight_energy(scene: Scene, tilt: Values, rate: Values) -> Values:
 def state_restitution(response: Response) -> np.ndarray:
     """e_phi = rate after / rate before of each impact, shape (impacts,); for any base and motion, eq. (7).
 
-    An engine's rates are its flight states carried to the impact by the model's equations (engines.observe).
+    An engine's rates are its flight states extrapolated to the impact by the model's equations (engines.observe).
     """
     rates = _rates(response)
     return rates[:, 1] / rates[:, 0]
@@ -126,7 +126,7 @@ def rate_restitution(response: Response) -> np.ndarray:
     """Restitution of each strong impact of free rocking from successive rates, shape (impacts kept,).
 
     The swing between two impacts keeps its energy (and the base's momentum), so the rate before the next impact is the
-    rate after this one: a solver that applies eq. (7) exactly is judged by what it does to the swing. No history is
+    rate after this one: for a solver that applies eq. (7) exactly, the error is that of the swing. No history is
     needed.
     """
     before = np.array([impact.rate_before for impact in response.impacts])
@@ -144,7 +144,7 @@ def worst(values: npt.ArrayLike) -> float:
 
 
 def impact_time_errors(response: Response, reference: Response) -> np.ndarray:
-    """Time of the impact minus that of the reference's [s], shape (reference impacts,); NaN for a lost one.
+    """Time of the impact minus that of the reference's [s], shape (reference impacts,); NaN for a missed one.
 
     An impact belongs to the reference's impact on the same side that is nearest in time, if it lies within half
     the interval to the reference's neighbouring impacts.
@@ -165,7 +165,7 @@ def impact_time_errors(response: Response, reference: Response) -> np.ndarray:
 
 
 def strong_time_errors(response: Response, reference: Response, until: float = math.inf) -> np.ndarray:
-    """`impact_time_errors` of the reference's strong impacts up to `until` [s]: NaN where one is lost."""
+    """`impact_time_errors` of the reference's strong impacts up to `until` [s]: NaN where one is missed."""
     strong = {impact.time for impact in strong_impacts(reference) if impact.time <= until}
     kept = [impact.time in strong for impact in reference.impacts]
     return impact_time_errors(response, reference)[kept]
@@ -233,7 +233,7 @@ def _directed(ta, ya, tb, yb):
 def energy_errors(
     scene: Scene, response: Response, *, until: float = math.inf, step: float = 0.0
 ) -> tuple[float, float]:
-    """(drift between events, gain from nowhere) up to `until` [s] and the unstable point, from the history.
+    """(drift between events, gain without a source) up to `until` [s] and the unstable point, from the history.
 
     Drift: largest change of the balance (mechanical energy + loss in the bearings - input work) within one swing or
     rest, over m g R (1 - cos gamma); 0 if exact. A sample or `step` [s] beside an event belongs to neither side.

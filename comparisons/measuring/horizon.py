@@ -1,8 +1,8 @@
-"""How long a trajectory means anything: the sensitivity horizon of a scene.
+"""The sensitivity horizon of a scene: the time up to which trajectories can be compared.
 
-Rocking under a long record is chaotic: a restitution changed in the fourth digit soon gives another motion, in the
-exact model too. Point-wise agreement of two solvers can be asked for only until then. When that is depends on how
-large the solvers' errors are: each solver has its own horizon.
+Rocking under a long record is chaotic: a change of the restitution in the fourth digit soon gives another motion, in
+the exact model, too. Point-wise agreement of two solvers can be required only until then. The horizon depends on the
+size of a solver's errors, so that each solver has its own.
 """
 
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from engines.copies import changed_copies
 
 from .errors import state_restitution
 
-# Relative changes of the copies where no solver is asked for; a good engine's are 1e-5 to 1e-3 (`perturbation_of`).
+# Relative change of the copies without a solver; errors of tuned engines are equivalent to 1e-5 to 1e-3.
 PERTURBATION = 1e-4
 # Sizes that a solver's perturbation is given: from the least on, in these steps, to the most.
 LEAST, LADDER, MOST = 1e-6, 2.0, 0.5
@@ -54,8 +54,8 @@ def unsure_outcome(scene: Scene, outcome: str, perturbation: float = LEAST) -> C
     for name, copy in changed_copies(scene, perturbation).items():
         if (other := simulate(copy, history=False).outcome) != outcome:
             words = (
-                f"with {name} by {perturbation:.0e} the block {other}, else it {outcome}: the outcome is on an edge; "
-                "see rocking margin"
+                f"with {name} by {perturbation:.0e} the block {other}, without it {outcome}: the scene is near an "
+                "outcome boundary; see rocking margin"
             )
             return Caution("model", words, "outcome", perturbation)
     return None

@@ -1,4 +1,4 @@
-"""Scenes modelled with more than they need: what the extra costs, and what it does to the error."""
+"""Scenes modelled with more than they need, to measure the cost of it and its effect on the error."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""The one table of agreement tolerances: what each engine is held to, and how far off it was when that was set.
+"""The table of agreement tolerances: the bound for each engine, and the error measured when the bound was set.
 
 The rows stand beside the engines (`engines.exudyn.tolerances`), what they measure stands here.
 

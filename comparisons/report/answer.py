@@ -123,11 +123,10 @@ MOST_WORDS = 120  # of the paragraph that says the answer
 
 @dataclass(frozen=True)
 class Setup:
-    """One way to set an engine up. marks: {heading of a `Judgement`: its `Mark`}; rating: the worst of those that rate,
-    the one rating that all pages use.
+    """A variant with its marks, {heading of a `Judgement`: its `Mark`}, and its rating, the worst of those that rate.
 
-    best: it is the engine's default. subject: `engines.contract.Engine.subject`. applies_impact: the adapter does, by
-    the model's equations. cost: CPU time over the analytic model's, infinite where it was not measured.
+    best: the engine's main variant. subject: `engines.contract.Engine.subject`. applies_impact: the adapter applies
+    the model's equations. cost: CPU time over the analytic model's, infinite where not measured.
     """
 
     engine: str
@@ -155,10 +154,9 @@ class Setup:
 
 
 def setups_of(variants: Iterable[Mapping[str, Any]], judgements: Sequence[Judgement]) -> list[Setup]:
-    """The setups that any study judges: those of the first table first, tuned before defaults; then the better rating,
-    then the lower cost.
+    """The variants that any study judges: those of the first table first (tuned, defaults); then by rating and cost.
 
-    variants: of each engine, variant, tier, best and applies_impact.
+    variants: dicts of engine, variant, kind (key "tier"), best and applies_impact.
     """
     found = []
     for one in variants:
@@ -180,7 +178,7 @@ def _place(one):
 
 
 def _mark(judgement, one):
-    """What a study says of a variant; one that takes engines as they come knows the default by no name."""
+    """A study's mark of a variant; a study without variants has marks of the main variant without a name."""
     unnamed = judgement.marks.get((one["engine"], ""), UNTESTED) if one["best"] else UNTESTED
     return judgement.marks.get((one["engine"], one["variant"]), unnamed)
 
@@ -193,7 +191,7 @@ def _rating(marks):
 def own_restitution(block: Result, outside: str = "") -> Judgement:
     """Restitution of the scenes' own block, from its free rocking; takes the place of the study's.
 
-    outside : as of `recommendation`; an error of the restitution then says little of what an impact takes.
+    outside : as of `recommendation`; the error of the restitution then says little on the loss in an impact.
     """
     marks = {
         (row["engine"], row["variant"]): Mark(
@@ -232,14 +230,15 @@ def recommendation(
     errors = [best.marks[one.heading].words for one in judgements if one.key == RESTITUTION]
     known = [f"restitution within {error}" for error in errors[:1]]
     known += [f"{number(best.cost, 2)} times the analytic model's CPU time"] if math.isfinite(best.cost) else []
-    words.append(f"Where it must be a multibody engine: {best.engine} set as “{best.variant}”: {', at '.join(known)}.")
+    words.append(
+        f"Where it must be a multibody engine: {best.engine}, variant “{best.variant}”: {', at '.join(known)}."
+    )
     words.append(f"Tested with one block, for {limits}; planar, no sliding, no jump.")
     return words
 
 
 def paragraph(setups: Sequence[Setup], judgements: Sequence[Judgement]) -> str:
-    """The first table in words, at most `MOST_WORDS`: of the subject engines tuned, and with default settings of what
-    rates them."""
+    """The first table in words, at most `MOST_WORDS`: subject engines, tuned; and defaults for what rates them."""
     sentences: list[str] = []
     for tier, how in (("tuned", "Tuned"), ("defaults", "By default")):
         columns = [one for one in setups if one.in_first_table and one.tier == tier]
@@ -266,13 +265,13 @@ def not_to_do(setups: Sequence[Setup], judgements: Sequence[Judgement]) -> list[
         bad = [one for one in defaults if one.rating.level == "bad"]
         off = ", ".join(f"{number(one.marks[heads[0]].value, 2)} in {one.engine}" for one in bad or defaults)
         count = f"{len(bad)} of {len(defaults)}"
-        lines.append(f"Do not use default settings: {count} are not to be trusted (restitution off by {off}).")
+        lines.append(f"Do not use the variants “defaults”: {count} are not to be trusted (restitution off by {off}).")
     lines.append(
         "Check how close the outcome is to changing (rocking margin SCENE). If your data are less certain than that, "
         "do not rely on it."
     )
     lines.append(
-        "Do not compare tilt point by point beyond the sensitivity horizon, nor trust a setting until refinement no "
+        "Do not compare tilt point by point beyond the sensitivity horizon, nor trust a level until a finer one no "
         "longer changes the result."
     )
     return lines

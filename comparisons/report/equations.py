@@ -76,7 +76,7 @@ GLOSSARY = {
     "analytic model": "the rocking equations solved directly from event to event; its compiled part is the kernel",
     "second implementation": "a second implementation of the same equations, independent and simple, to check the "
     "first",
-    "accuracy parameter": "the one setting of a solver that trades time for error; its levels: the values tried",
+    "accuracy parameter": "the setting of a solver that trades time for error; its levels: the values tried",
     "defaults, tuned, assisted": "settings of a first script; settings of a skilled user, with all motion computed "
     "by the engine; a velocity, position or constraint set by the adapter at the model's event",
     "root mean square (rms)": "root of the mean of squares of all errors",

@@ -17,7 +17,7 @@ from .detail import environment
 from .histories import thinned
 
 ANALYTIC = "analytic"
-TILT = 0.01, 1.6  # least and greatest limit of a tilt's axis, over slenderness: contact noise is no tilt to look at
+TILT = 0.01, 1.6  # least and largest limit of a tilt axis, over slenderness, so that contact noise is not shown
 SHOWN = 700  # samples of a line
 LEAST = 1e-9  # of a difference drawn
 
@@ -207,7 +207,7 @@ def _track(result, key, times, who, base):
 
 
 def _still(scenes, step):
-    """A time with something to see: the first block that tips, well off its base and not yet down, else the peak."""
+    """Time of the still frame: during the first overturning, before the block lies down, else at the peak."""
     for scene in scenes:
         tilt = np.abs(scene["tracks"][0]["tilt"])
         if tilt.max(initial=0.0) > 1.0:

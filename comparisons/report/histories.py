@@ -1,4 +1,4 @@
-"""Histories of the report's runs: in files while it is made, so that memory holds one at a time; thinned for drawing.
+"""Histories of the report's runs: kept in files, so that memory holds one at a time; reduced for drawing.
 
 Measured is what was computed; thinned only what a figure or the result file shows of a long record.
 """

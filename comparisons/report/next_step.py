@@ -1,4 +1,4 @@
-"""What to do next with a statue: a command that runs on its file, and how wide a plate under it would have to be."""
+"""The next step for a statue: a command that runs on its file, and the necessary width of a plate under it."""
 
 import math
 from collections.abc import Mapping, Sequence

@@ -158,12 +158,12 @@ def _restitution_row(engine, variant, members, models):
     of_states = np.concatenate([one["state"] for one in errors]) if errors else np.empty(0)
     jumps = [value for one in errors for value in one.get("jump", ())]
     simulated = sum(response.end.time for _, response in sound)
-    kind = get_engine(engine).variants[variant] if variant else None
+    spec = get_engine(engine).variants[variant] if variant else None
     return {
         "engine": engine,
         "variant": variant,
-        "tier": kind and kind.tier,
-        "applies_impact": bool(kind and kind.takes_restitution),
+        "tier": spec and spec.kind,
+        "applies_impact": bool(spec and spec.takes_restitution),
         "runs": len(members),
         "failed": len(members) - len(sound),
         "failures": [row.failure for row in members if row.failed],
@@ -179,17 +179,17 @@ def _restitution_row(engine, variant, members, models):
 
 
 def described_variants(engines: Sequence[str]) -> dict[str, dict[str, dict[str, Any]]]:
-    """{engine: {variant: its tier, what the engine computes and the adapter imposes, whether that is the impact}}."""
+    """{engine: {variant: its kind, what the engine computes and the adapter imposes, whether that is the impact}}."""
     return {
         name: {
             variant: {
-                "tier": kind.tier,
+                "tier": spec.kind,
                 "best": variant == get_engine(name).default_variant,
-                "computes": kind.computes,
-                "imposes": kind.imposes,
-                "applies_impact": kind.takes_restitution,
+                "computes": spec.computes,
+                "imposes": spec.imposes,
+                "applies_impact": spec.takes_restitution,
             }
-            for variant, kind in get_engine(name).variants.items()
+            for variant, spec in get_engine(name).variants.items()
         }
         for name in engines
     }

@@ -1,4 +1,4 @@
-"""The card of a statue: what the analytic model says of one's own scene, on one page that can be filed."""
+"""The card of a statue: results of the analytic model for a scene, on one page."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -49,7 +49,7 @@ class Card:
 
 
 def statue_of(scene: Scene, motions: Mapping[str, Sequence[Motion]], progress: Any = None) -> dict[str, Any]:
-    """What the model says of a scene, ready for a result file.
+    """Results of the model for a scene, ready for a result file.
 
     motions : {record: its motions}. The scene's own is one more where it is not among them.
     """

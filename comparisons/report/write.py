@@ -1,4 +1,4 @@
-"""The pages: result files in, one page to read and one page for each study beside it out."""
+"""Writing of the pages from result files: the report, and a page for each study."""
 
 from __future__ import annotations
 
@@ -222,7 +222,7 @@ def _contents(scenes: Result, stored: list[Stored]) -> list[Part]:
 def _computed(result: Result) -> Table:
     return Table(
         "What each engine computes, and what our adapter imposes beside loads and settings",
-        ("engine, variant", "tier", "the engine computes", "the adapter imposes"),
+        ("engine, variant", "kind", "the engine computes", "the adapter imposes"),
         [
             [f"{solver}, {variant}", kind["tier"], kind["computes"], kind["imposes"]]
             for solver, variants in result.settings.get("variants", {}).items()

@@ -1,4 +1,4 @@
-"""One run of a study: which scene, which solver, how set; and what its result depends on."""
+"""One run of a study: scene, solver, variant and settings; and all that its result depends on."""
 
 import contextlib
 import functools
@@ -31,7 +31,7 @@ class Case:
 
     scene: what is simulated. solver: "analytic", "twin", "time-stepping", the name of an engine, or
     "module:function". variant: None takes the solver's default. settings: keyword arguments, JSON values
-    only; {"history": False} spares time where the measure looks at no history. tag: whatever the measure and the
+    only; {"history": False} saves time if the measure uses no history. tag: whatever the measure and the
     study want to know of it (JSON values). constants: {"module:NAME": value} of numbers in the solver's code that are
     others during this run.
     """
@@ -132,14 +132,17 @@ def _place(name):
 
 
 def variant_settings(engine: str, variant: str, levels: Iterable[float] | None = None) -> dict[str, Any]:
-    """A variant as the settings of a result list it; levels: those that are tried of it, in place of all."""
-    kind = get_engine(engine).variants[variant]
+    """A variant as listed in the settings of a result; levels: those that are run, in place of all.
+
+    Stored results and JSON call the kind of a variant "tier".
+    """
+    spec = get_engine(engine).variants[variant]
     return {
         "engine": engine,
         "variant": variant,
-        "tier": kind.tier,
-        "parameter": kind.accuracy_parameter,
-        "default": kind.default,
-        "levels": sorted(kind.levels) if levels is None else levels,
-        "applies_impact": kind.takes_restitution,
+        "tier": spec.kind,
+        "parameter": spec.accuracy_parameter,
+        "default": spec.default,
+        "levels": sorted(spec.levels) if levels is None else levels,
+        "applies_impact": spec.takes_restitution,
     }

@@ -1,4 +1,4 @@
-"""Stored runs of a result repeated with the code of today: how many still give the same?"""
+"""Repetition of stored runs with the present code, and the number that give the same result."""
 
 from __future__ import annotations
 

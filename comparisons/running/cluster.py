@@ -35,7 +35,7 @@ INSTALL = 'pip install -e ".[cluster]" in a checkout of this project'
 
 
 class ClusterError(Mendable):
-    """A cluster that cannot do the runs, or no longer; says which part of it, and the remedy."""
+    """A cluster that cannot make the runs, or no longer can; the message names the part and the remedy."""
 
 
 class Cluster(Executor):
@@ -89,7 +89,7 @@ class Cluster(Executor):
             error = future.exception(timeout=PATIENCE)
             if error is None:
                 return future.result(timeout=PATIENCE)
-        except (OSError, TimeoutError, asyncio.CancelledError, futures.CancelledError):  # nobody else drops one
+        except (OSError, TimeoutError, asyncio.CancelledError, futures.CancelledError):  # no other code cancels a task
             raise self._gone() from None
         if isinstance(error, KilledWorker):
             return _crashed(task.ticket, "several workers of the cluster ended while they did it")
@@ -109,7 +109,7 @@ class Cluster(Executor):
                 if not isinstance(state, OSError):
                     _check_same(worker, state, mine)
                     same.add(worker)
-                elif time.monotonic() < end:  # the scheduler has yet to see that it is gone
+                elif time.monotonic() < end:  # the scheduler has not yet detected the loss
                     lost.add(worker)
                 else:
                     raise ClusterError(f"worker {worker} does not answer ({state}): end it, or start it again")
@@ -164,7 +164,7 @@ def _connect(address, stack):
         stack.callback(local.close, timeout=PATIENCE)
         address = local.scheduler_address
     try:
-        asyncio.run(_reach(address))  # a client that finds nobody leaves threads behind
+        asyncio.run(_reach(address))  # a client without a scheduler leaves threads running
     except (OSError, ValueError) as error:
         raise SettingError(
             f"--scheduler {address}: no scheduler answers there ({type(error).__name__}); give host:port of a dask "
@@ -236,7 +236,7 @@ def _start_guard(solvers):
 
 
 def _dismiss_guards() -> None:
-    """In a Dask worker: end its guards; a run under way there is one that nobody waits for."""
+    """In a Dask worker: end its guards; the result of a run under way there is not needed."""
     while _guards:
         guard, ours = _guards.popitem()[1]
         ours.close()
@@ -245,7 +245,7 @@ def _dismiss_guards() -> None:
 
 
 def guard_runs(connection: Any, solvers: tuple[str, ...]) -> None:
-    """In a process below a Dask worker: tasks in, what became of them out, until the worker hangs up or ends."""
+    """In a child process of a Dask worker: receive tasks and send their results, until the worker disconnects."""
     threading.Thread(target=end_with, args=(multiprocessing.parent_process(),), daemon=True).start()
     compile_for(solvers)
     with Processes(1, solvers) as executor, contextlib.suppress(EOFError):

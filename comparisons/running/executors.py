@@ -1,4 +1,4 @@
-"""Where the runs of a sweep are done: in worker processes that may crash or hang."""
+"""Executors of the runs of a sweep: worker processes that may crash or hang."""
 
 import contextlib
 import faulthandler
@@ -30,7 +30,7 @@ from .files import PlaceError, TemporaryFolder
 from .progress import redirected
 from .provenance import json_ready, scrub
 
-ENOUGH_SECONDS = 0.2  # of a task: cheap runs travel together; what a kill can cost
+ENOUGH_SECONDS = 0.2  # of a task, in which short runs are combined; a kill loses at most that
 MOST_BROKEN = 3  # pools in a row that end without finishing a task
 MOST_WORKERS = 64  # where there are no more cores than that
 GRACE_SECONDS = 0.5  # beyond the time limit, for the worker to write down where it hangs
@@ -55,7 +55,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Done:
-    """What became of a task: lines of JSON for its first cases, or why it was lost."""
+    """Result of a task: lines of JSON for its first cases, or why it was lost."""
 
     ticket: str
     lines: tuple[str, ...] = ()
@@ -126,7 +126,7 @@ class Processes(Executor):
             try:
                 future = self._ended.get(timeout=GRACE_SECONDS)
             except queue.Empty:
-                if not self._pool.active:  # what it had not yet taken up it never will
+                if not self._pool.active:  # it will not start its remaining tasks
                     self._renew()
                 continue
             if future not in self._under_way:
@@ -225,7 +225,7 @@ def _start_worker(path):
 
 def end_with(parent: Any) -> None:
     """End this process when its `parent` (of `multiprocessing.parent_process`) has ended."""
-    parent.join()  # kill -9 of the sweep: do not outlive it
+    parent.join()  # end with the parent, even if that is killed
     os._exit(1)
 
 

@@ -1,4 +1,4 @@
-"""Files and folders that are written: refused before the work if they cannot be, then whole or not at all.
+"""Writing of files and folders: checked before the work, then complete or not at all.
 
 All that this project writes goes through `write`, but for the store of runs, which is appended to, and what is
 temporary (tests/comparisons/running/test_one_way.py holds the code to that).
@@ -149,7 +149,7 @@ def _put(place, data):
         with open(part, "xb") as file:
             file.write(data)
             file.flush()
-            os.fsync(file.fileno())  # some disks say only now that they are full
+            os.fsync(file.fileno())  # some disks report only now that they are full
         if place.exists():
             if not os.access(place, os.W_OK):
                 raise PermissionError(errno.EACCES, "is read-only", str(place))
@@ -197,7 +197,7 @@ def _probe(place, named):
         with open(place, "xb") as file:
             file.write(bytes(PROBE_BYTES))
         place.unlink()
-    except FileExistsError:  # somebody else's by now
+    except FileExistsError:  # created by another process meanwhile
         pass
     except OSError as error:
         with contextlib.suppress(OSError):

@@ -1,4 +1,4 @@
-"""Slips in the numbers of a new scene: centimetres for metres, a weight of no stone, a tilt past the balance, bearings
+"""Implausible numbers in a new scene: centimetres for metres, an impossible density, a tilt past the balance, bearings
 that do not yield."""
 
 import math
@@ -19,7 +19,7 @@ HOLLOW = 1 / 6
 def doubts(
     scene: Scene, height: float, width: float, depth: float | None = None, *, weighed: bool, designed: bool
 ) -> list[str]:
-    """What cannot well be: the options, their value, the plausible range and the remedy; empty where all can be.
+    """Implausible values: the options, their value, the plausible range and the remedy; empty if there are none.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def doubts(
             f"{sizes} give a radius R of {block.radius:.3g} m, a statue has {least:g} to {most:g} m; "
             f"give them in m{_meant(height, width)}"
         ]
-    least, most, _ = RANGE["slenderness"]  # the same; a stouter block slides or stays, a slimmer one falls at a touch
+    least, most, _ = RANGE["slenderness"]  # likewise; stockier blocks slide or stand, more slender ones fall at once
     if not least <= block.slenderness <= most:
         found.append(
             f"{sizes} give a slenderness of {block.slenderness:.3g} rad, a statue has {least:g} to {most:g} rad: "
@@ -90,12 +90,12 @@ def _meant(height: float, width: float) -> str:
 
 
 def confirm(found: Sequence[str]) -> None:
-    """Return where nothing was found, or where somebody at a terminal wants the file all the same.
+    """Return if nothing was found, or if the user confirms the values in a terminal.
 
     Raises
     ------
     SettingError
-        Nobody is asked, or the answer is no.
+        There is no terminal, or the answer is no.
     """
     if not found:
         return

@@ -1,4 +1,4 @@
-"""What a command says while it works, on standard error: lines, bars, and what others print."""
+"""Progress on standard error: lines, bars, and redirected output of others."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from .readable import readable
 
 COMPILING = "compiling the analytic model, once on this machine"
-PATIENCE = 2.0  # s that compiled functions may take to load, without a word
+PATIENCE = 2.0  # s that compiled functions may take to load before a message
 SHOWN = 60  # characters of what is under way
 
 

@@ -1,10 +1,10 @@
-"""Text of others (names, paths, values, messages) as it may be shown: printable, on one line, of readable length."""
+"""External text (names, paths, values, messages) made printable, on one line and of readable length."""
 
 MOST_CHARACTERS = 600
 
 
 class Mendable(RuntimeError):
-    """An error a user can mend by what its message says: told without a traceback."""
+    """An error that a user can correct with its message; shown without a traceback."""
 
 
 def readable(text: object, most: int = MOST_CHARACTERS) -> str:

@@ -1,4 +1,4 @@
-"""Where outcomes change along a line, evaluated beside the changes and not everywhere.
+"""Location of the changes of an outcome along a line, with evaluations near the changes only.
 
 A search is a generator: it yields a list of points, is sent the list of their outcomes, and returns its result.
 `together` runs many searches in rounds, so that every round is one batch (one sweep); `drive` asks a function for the

@@ -1,4 +1,4 @@
-"""A random sample of a study's runs, stored with its result: all that is needed to do them again without the plan."""
+"""A random sample of a study's runs, stored with its result, so that they can be repeated without the plan."""
 
 import inspect
 import random

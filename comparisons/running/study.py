@@ -1,4 +1,4 @@
-"""A study carried out, the same for all: its runs stored and resumed, its answers written as they come."""
+"""Execution of a study, the same for all: runs are stored and resumed, answers are written when they are complete."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def compute(
     workers, folder = number_of(workers), Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     with ExitStack() as stack:
-        stack.enter_context(stdout_to_stderr())  # engines greet on standard output
+        stack.enter_context(stdout_to_stderr())  # engines print on import
         store = stack.enter_context(Store(folder / RUNS))
         stack.callback(_leave_nothing_empty, folder)
         with spinner(f"{study.name}: engines and code") if progress else contextlib.nullcontext():

@@ -1,4 +1,4 @@
-"""Many runs: a list of cases in, a row for each out, in parallel, resumable, proof against crashes and hangs.
+"""Many runs: a row for each case, computed in parallel, resumable, and safe against crashes and hangs.
 
     with Processes() as executor:
         rows = run_sweep(cases, store="results/map.jsonl", measure=outcome, executor=executor)
@@ -37,7 +37,7 @@ try:
 except ImportError:  # Windows has none: no lock there
     fcntl = None  # type: ignore[assignment]  # Windows has none
 
-SYNC_SECONDS = 1.0  # a killed process loses nothing written; only a power cut can cost this much
+SYNC_SECONDS = 1.0  # a killed process loses nothing written, a power cut at most this much
 
 
 class StoreError(Mendable):
@@ -220,7 +220,7 @@ def run_sweep(
 
 def _run(waiting, store, executor, measure, time_limit, advance):
     pending = deque(waiting.items())
-    alone: deque[Any] = deque()  # members of lost tasks: each runs by itself, to find the guilty one
+    alone: deque[Any] = deque()  # cases of lost tasks, which run one by one to find the cause
     submitted: dict[str, Any] = {}
     size = 1  # of the next task: twice what was done in the last one, which ends after `ENOUGH_SECONDS`
     while pending or alone or submitted:
@@ -246,7 +246,7 @@ def _run(waiting, store, executor, measure, time_limit, advance):
 
 
 def _settled(row, time_limit):
-    """Whether a stored row stands; a run stopped from outside, or by a shorter time limit, deserves another try."""
+    """Whether a stored row is final; a run stopped from outside, or by a shorter time limit, is repeated."""
     fields = (("values", dict), ("failure", dict | None), ("cost", dict))
     if row is None or not all(name in row and isinstance(row[name], kind) for name, kind in fields):
         return False

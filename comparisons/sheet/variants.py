@@ -86,7 +86,7 @@ class Printed12(BearingLaw):
 class Fault:
     """What is wrong in a run.
 
-    lost: number of an impact that does nothing, from 1 on. seen: whether it is noticed all the same. printed_8,
+    lost: number of an impact without effect, from 1 on. seen: whether it is detected nevertheless. printed_8,
     printed_12: these equations as printed. inertia: factor on J_O in the equation of motion, and with `restitution` in
     eq. (7). step [s]: impacts happen at its next multiple, and with `smeared` the step that holds one is a Runge-Kutta
     step of fourth order across it, each stage on its own side.
@@ -294,7 +294,7 @@ def _reported(problem, answers, factors):
 
 
 MISTAKES = (
-    Mistake("impact lost", "an impact is lost: the block passes to its other corner without losing speed", _lost),
+    Mistake("impact lost", "an impact is missed: the block passes to its other corner without a loss of rate", _lost),
     Mistake(
         "restitution off by the step",
         "impacts are applied at the end of the step in which φ changes its sign: locate them within it",

@@ -1,4 +1,4 @@
-"""Charts of the page as inline SVG: text is text, colours are the page's, and a script can read values back.
+"""Charts of the page as inline SVG, with text elements, the page's colours, and values that a script can read.
 
 Solvers keep colour, dashes and marker everywhere (`engines.ENGINES`); a group of the class "who" with ``data-who`` can
 be hidden by its name, which begins with the engine's: "exudyn" or "exudyn, native-contact". What is drawn of rows is
@@ -29,7 +29,7 @@ WIDTH = 400
 LETTER = 13
 REFERENCE = "analytic"
 INK = 25  # % of the page's ink in a solver's colour: so much gives each a contrast of 3.4 or more, light and dark
-HAIR = 0.5  # so far a cell of a map reaches under the next: rounded edges leave no gap between them
+HAIR = 0.5  # overlap of neighbouring cells of a map, so that rounding leaves no gap between them
 NEAR, ASIDE = 6.0, (0, 7, -7, 14, -14)  # marks nearer than this cover each other; where to put one instead
 DASHES = {"-": "", "--": "7 4", ":": "2 3.5", "-.": "8 3 2 3"}
 SHAPES = {
@@ -105,7 +105,7 @@ def log_axis(label: str, values: Iterable[float]) -> Axis:
 
 
 class Chart:
-    """One panel; says: what it shows, for those who cannot see it. left, right, head, foot: room around."""
+    """One panel; says: a description for readers who cannot see it. left, right, head, foot: margins."""
 
     def __init__(
         self,
@@ -125,7 +125,7 @@ class Chart:
         self.top, self.bottom = (30 if title else 12) + head, height - (foot or (46 if x.label else 28))
         self.height, self.parts, self.over = height, list[str](), list[str]()
         self.ends: list[tuple[float, str, str]] = []
-        self.taken, self.moved = list[tuple[float, float]](), False  # places of marks; whether one gave way
+        self.taken, self.moved = list[tuple[float, float]](), False  # places of marks; whether one was moved
 
     def at(self, xs: Sequence[float] | np.ndarray, ys: Sequence[float] | np.ndarray) -> np.ndarray:
         """Places, shape (points, 2), of values."""

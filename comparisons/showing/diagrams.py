@@ -173,7 +173,7 @@ def rocking() -> Markup:
 
 
 def impact() -> Markup:
-    """The instant of impact: the old corner leaves, the impulse acts at the new one."""
+    """The impact: the old corner lifts, the impulse acts at the new one."""
     drawing = Drawing(400, 330, 275, "The block upright at the impact: the impulse acts at the new corner on the left")
     corner, new = (200 + B, 0.0), (200 - B, 0.0)
     old, left, centre = corner[0], new[0], _centre(corner, 0.0)

@@ -28,7 +28,7 @@ OUTSIDE, TILT, STROKE = ("#CC79A7", -0.43), ("#0072B2", 0.35), ("#56B4E9", 0.43)
 
 
 def print_margins(scene: Scene, margins: Sequence[Margin], contact: Contact, span: float, tilt: float) -> None:
-    """Print a row for each `Margin` that changes something, in its order, and what the contact has to spare."""
+    """Print a row for each `Margin` with a change, in order, and the reserves of the contact."""
     nearest = margins[0]
     names = {state: name for state, name in _names(tilt).items() if state in limit_states(scene)}
     now = ", ".join(name for state, name in names.items() if nearest.reached(state))

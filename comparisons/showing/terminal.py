@@ -111,7 +111,7 @@ def echo(*parts: Grid | Text | str, wrap: bool = False) -> None:
 
 
 def digits(value: float | None, form: str = ".4g") -> str:
-    """A number so written; a hyphen where there is none."""
+    """A number in this format; a hyphen for None."""
     return "-" if value is None or math.isnan(value) else f"{value:{form}}"
 
 
@@ -239,11 +239,11 @@ def _warnings(responses):
 
 
 def engines_table(engines: Sequence[Engine]) -> Grid:
-    """Who does what: of every variant its tier, what the engine computes and what the adapter imposes."""
-    caption = Text(f"Tested for {in_words()}.\nrocking engines NAME: settings, refinement levels, versions.")
-    heads = ["engine", "variant", "tier", "the engine computes", "the adapter imposes"]
+    """Table of all variants: kind, what the engine computes and what the adapter imposes."""
+    caption = Text(f"Tested for {in_words()}.\nrocking engines NAME: settings, levels, versions.")
+    heads = ["engine", "variant", "kind", "the engine computes", "the adapter imposes"]
     rows = [
-        [engine.name if name == engine.default_variant else "", name, variant.tier, variant.computes, variant.imposes]
+        [engine.name if name == engine.default_variant else "", name, variant.kind, variant.computes, variant.imposes]
         for engine in engines
         for name, variant in engine.variants.items()
     ]
@@ -251,17 +251,17 @@ def engines_table(engines: Sequence[Engine]) -> Grid:
 
 
 def engine_text(engine: Engine) -> str:
-    """What an `Engine` says of itself: versions, and of each variant tier, settings (the accuracy parameter first),
-    refinement levels, and who does what."""
+    """Description of an `Engine`: versions, and for each variant kind, settings (the accuracy parameter first), levels,
+    what the engine computes and what the adapter imposes."""
     versions = ", ".join(f"{package} {version}" for package, version in engine.versions().items())
     lines = [f"{engine.name} ({versions})"]
     for name, variant in engine.variants.items():
-        default = "default, " if name == engine.default_variant else ""
+        default = "main, " if name == engine.default_variant else ""
         about = (inspect.getdoc(type(variant.settings)) or name).split("\n\n")[0].replace("\n", " ")
         values = [f"{field}={value:.6g}" for field, value in dataclasses.asdict(variant.settings).items()]
         values[:1] = [f"{value} (accuracy parameter)" for value in values[:1]]
         lines += [
-            f"  --variant {name} ({default}{variant.tier}): {about}",
+            f"  --variant {name} ({default}{variant.kind}): {about}",
             f"      settings: {', '.join(values)}",
             f"      levels, coarse to fine: {', '.join(f'{value:.4g}' for value in variant.levels)}",
             f"      the engine computes: {variant.computes}",

@@ -19,6 +19,7 @@ RATINGS = {
     "fair": "is usable where a per cent does not matter",
     "bad": "is not to be trusted",
 }
+NOT_COMPARED = {EDGE: "near an outcome boundary"}  # values of `comparable` that rows name otherwise
 OUTCOMES = {"stands": "never lifts", "rocks": "rocks and stays upright", "overturns": "overturns"}
 MOST_NAMED = 3  # solvers of the commonest outcome; more are counted
 

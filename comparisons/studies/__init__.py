@@ -7,8 +7,8 @@ noun (its cases).
 ``measure`` and returns `Computed`, plain rows and settings (`comparisons.running.plan`); where `Study` has them other
 than usual, also ``problems``, ``WHOLE``, ``INDEXED``. All rows of all studies say
 ``engine``, ``variant`` and ``part`` (what the row is), ``level`` for a value of the accuracy parameter, ``lost`` for
-impacts that a run has not; settings list ``variants``, each with engine, variant, tier, parameter, default and levels.
-`comparisons.studies.vocabulary` explains every column, `comparisons.studies.rows` says which of them a row has.
+missed impacts; settings list ``variants``, each with engine, variant, ``tier`` (its kind), parameter, default and
+levels. `comparisons.studies.vocabulary` explains every column, `comparisons.studies.rows` says which of them a row has.
 
 ``page.py`` shows: one function from a `Result` to a `comparisons.showing.parts.Page`. The report's first page takes
 title, lead and first, the study's own page all of it; nothing is told or drawn twice.
@@ -48,7 +48,7 @@ PACKAGE = "comparisons.studies"
 # name: its question; in the order of the report and of the rows of its first table
 QUESTIONS = {
     "restitution": (
-        "Error of restitution and base velocity jump over slenderness, base mass and accuracy setting, with its cost."
+        "Error of restitution and base velocity jump over slenderness, base mass and level, with its cost."
     ),
     "autopsy": "One impact in every engine and variant, taken apart: the parts of its error and their cause.",
     "overturning": "Overturning boundaries under pulses, on rigid ground and isolated, solver by solver.",
@@ -64,8 +64,7 @@ QUESTIONS = {
         "Random scenes in the range of a statue: how often is an engine right, and is every wrong run reported?"
     ),
     "stability": (
-        "Named hard cases in every solver and variant: right, differs or failed, with measures, evidence, finer "
-        "settings."
+        "Named hard cases in every solver and variant: right, differs or failed, with measures, evidence, finer levels."
     ),
     "speed-error": "Error and CPU time of the same runs: kernel, scipy, time stepping, Bouc-Wen, engines and variants.",
     "caryatid": "The Caryatid paper: every equation, figure and table reproduced or corrected, and what it leaves out.",

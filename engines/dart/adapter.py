@@ -1,4 +1,4 @@
-"""DART's variants: its boxed LCP decides contact and impact, in double precision. All with dartpy 6.20.0."""
+"""DART's variants: its boxed LCP solver computes contact and impact, in double precision. Tested with dartpy 6.20.0."""
 
 from __future__ import annotations
 
@@ -18,27 +18,27 @@ if TYPE_CHECKING:
 VARIANTS = {
     "impact-aware": Variant(
         ImpactAware(),
-        tier="tuned",
+        kind="tuned",
         levels=(2e-3, 6e-4, 2e-4, 1e-4),
         computes="motion, contact, impact and rest",
         imposes="the steps, by gaps and closing speeds",
     ),
     "first-script": Variant(
         FirstScript(1e-3),  # DART's own default
-        tier="defaults",
+        kind="defaults",
         levels=(5e-3, 1e-3, 2e-4),
         computes="motion, contact, impact and rest",
         imposes="nothing",
     ),
 }
 
-# Tilt below which the block counts as in flat contact in a first script: a corner is met in the step after it has sunk,
-# what a block passes in a step or two, so often of gamma a second.
+# Tilt rate, in gamma per second, whose tilt in one step is the flat contact of a first script: contact acts in the step
+# after a corner has penetrated, which is passed in one or two steps.
 PASSING = 10.0
 
 
 def versions() -> dict[str, str]:
-    """Versions of what computes: {package: version}."""
+    """Versions of the packages that compute: {package: version}."""
     return {"dartpy": dartpy.__version__}
 
 

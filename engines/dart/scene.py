@@ -1,8 +1,8 @@
 """The scene as a user of DART would write it: a free 3-D box on the ground, or on a slab on a prismatic joint.
 
-Collision detection is DART's default, FCL's. A first script leaves all else as it is, too. Otherwise penetrations are
-taken back by split impulses, so that they bring no speed (ConstraintSolver.setSplitImpulseEnabled), and a friction
-stands for the model's "no sliding" where the scene gives none.
+Collision detection is DART's default, FCL. A first script keeps all other defaults, too. The tuned variant corrects
+penetrations by split impulses, which add no velocity (ConstraintSolver.setSplitImpulseEnabled), and sets a friction
+that prevents sliding where the scene gives none.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ if TYPE_CHECKING:
     from analytic import Scene
 
 FRICTION, FIRST_FRICTION = 5.0, 1.0  # where the scene gives none; the second is DART's own
-WIDTH, THICKNESS = 2e3, 2.0  # of the ground, shares of R
+WIDTH, THICKNESS = 2e3, 2.0  # of the ground, over R
 
 
 class DartBodies:
-    """DART's world, with the skeletons of block and ground, at the scene's start.
+    """DART's world with the skeletons of block and ground in the initial state.
 
     Raises
     ------
@@ -59,8 +59,8 @@ class DartBodies:
         self.body.setInertia(dynamics.Inertia(block.mass, [0.0, 0.0, 0.0], np.eye(3) * block.centre_inertia))
         _touch(self.body, [2 * block.half_width] * 2 + [2 * block.half_height], [0.0, 0.0, 0.0], friction)
         x, z, vx, vz = placement(scene)
-        # A free joint's positions are a rotation vector and a translation; its velocities are set by name, as the
-        # generalised ones are along the world's axes, not the body's.
+        # The positions of a free joint are a rotation vector and a translation. Its velocities are set by dedicated
+        # functions, which take them along the world's axes.
         self.block.setPositions([0.0, start.tilt, 0.0, x, 0.0, z + block.half_height])
         joint.setLinearVelocity([vx, 0.0, vz])
         joint.setAngularVelocity([0.0, start.tilt_rate, 0.0])
@@ -87,7 +87,7 @@ class DartBodies:
         return tilt, rate, x, z - self.half_height, vx, vz, base, v
 
     def weigh(self, added: float) -> None:
-        """Give the base more mass."""
+        """See `engines.stepping.Bodies`."""
         self.slab.setMass(self.mass + added)
 
     def _check(self, scene: Scene, plain: bool, friction: float) -> None:
@@ -117,7 +117,7 @@ class DartBodies:
 
 
 def _touch(body: dartpy.dynamics.BodyNode, size: list[float], place: list[float], friction: float) -> None:
-    """Give a body a box that touches."""
+    """Add a box with contact to a body."""
     node = body.createShapeNode(dartpy.dynamics.BoxShape(size))
     node.createCollisionAspect()
     node.createDynamicsAspect()

@@ -1,6 +1,6 @@
-"""Drake's variant: its contact solver decides contact and impact, in double precision. All with drake 1.51.1.
+"""Drake's variant: its contact solver computes contact and impact, in double precision. Tested with drake 1.51.1.
 
-A plant has one time step, so that steps cannot be small at impacts alone: there is a first script only.
+A plant has one fixed time step, so that steps cannot be shortened at impacts: there is only a first script.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ if TYPE_CHECKING:
 VARIANTS = {
     "first-script": Variant(
         FirstScript(1e-3),  # Drake's own default
-        tier="defaults",
+        kind="defaults",
         levels=(5e-3, 2e-3, 1e-3),
         computes="motion, contact, impact and rest",
         imposes="nothing",
     )
 }
 
-# Tilt below which the block counts as in flat contact: a corner is met in the step after it has sunk, what a block
-# passes in a step or two, so often of gamma a second.
+# Tilt rate, in gamma per second, whose tilt in one step counts as flat contact: contact acts in the step after a corner
+# has penetrated, which is passed in one or two steps.
 PASSING = 10.0
 
 
 def versions() -> dict[str, str]:
-    """Versions of what computes: {package: version}."""
+    """Versions of the packages that compute: {package: version}."""
     return {"pydrake": metadata.version("drake")}
 
 

@@ -1,7 +1,7 @@
-"""The scene as a first script in Drake has it: a free box on the ground, or on a slab on a prismatic joint.
+"""The scene of a first script in Drake: a free box on the ground, or on a slab on a prismatic joint.
 
-All is as Drake has it: two boxes touch in the one point that is deepest, their materials let a body sink 1 mm under its
-weight, with lagged dissipation. A plant has one time step.
+All defaults are Drake's: two boxes have one contact point, the deepest; a body penetrates by 1 mm under its weight;
+dissipation is lagged. A plant has one fixed time step.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ from ..stepping import NoSolution, State
 if TYPE_CHECKING:
     from analytic import Scene
 
-FRICTION = 1.0  # where the scene gives none: Drake asks for one
-WIDTH, THICKNESS = 2e3, 2.0  # of the ground, shares of R
+FRICTION = 1.0  # where the scene gives none, as Drake requires one
+WIDTH, THICKNESS = 2e3, 2.0  # of the ground, over R
 
 
 class DrakeBodies:
-    """Drake's simulator with the plant of block and base, at the scene's start; step: that of the plant [s]."""
+    """Drake's simulator with the plant of block and base in the initial state; step: time step of the plant [s]."""
 
     def __init__(self, scene: Scene, step: float) -> None:
         block, builder, start, R = scene.block, DiagramBuilder(), scene.start, scene.block.radius
@@ -82,9 +82,9 @@ class DrakeBodies:
         return tilt, twist.rotational()[1], x, z - self.half_height, vx, vz, base, v
 
     def weigh(self, added: float) -> None:
-        """Not needed with default settings."""
+        """Not needed in a first script."""
 
 
 def _solid(mass: float, inertia: float) -> SpatialInertia:
-    """Of a body that has the same moment of inertia [kg m2] about every axis through its centre."""
+    """Inertia of a body with the same moment of inertia [kg m2] about every axis through its centre."""
     return SpatialInertia(mass, [0.0, 0.0, 0.0], UnitInertia(*[inertia / mass] * 3))

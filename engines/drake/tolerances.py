@@ -1,4 +1,4 @@
-"""What the variants of Drake are held to; the scenes are those of the tolerance table."""
+"""Tolerances of the variants of Drake; the scenes are those of the tolerance table."""
 
 from ..tolerance_rows import ToleranceRow
 

@@ -1,4 +1,4 @@
-"""exudyn's variants, and what of a run its own solver does not see."""
+"""exudyn's variants, and checks of a run that exudyn's solver does not make."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _MODULES = {"compliant-corners": corners, "switched-joints": joints, "native-con
 VARIANTS = {
     "compliant-corners": Variant(
         corners.CompliantCorners(),
-        tier="tuned",
+        kind="tuned",
         levels=(1e9, 1e10, 2e11, 1e12),
         finer=(
             {"stiffness": 1e12, "pivoting_step": 2e-4},
@@ -52,7 +52,7 @@ VARIANTS = {
     ),
     "switched-joints": Variant(
         joints.SwitchedJoints(),
-        tier="assisted",
+        kind="assisted",
         levels=(1.6e-2, 4e-3, 1e-3),
         finer=({"step": 1e-4},),
         takes_restitution=True,
@@ -61,7 +61,7 @@ VARIANTS = {
     ),
     "native-contact": Variant(
         native.NativeContact(),
-        tier="defaults",
+        kind="defaults",
         levels=(1e-3, 3e-4, 1e-4),
         finer=({"step": 5e-5},),
         computes="motion, contact, impact and rest",
@@ -91,7 +91,7 @@ def run(scene: Scene, variant: str, settings: CompliantCorners | SwitchedJoints 
 
 
 def _fault(scene: Scene, run: Run) -> Failure | None:
-    """The failure of a run that exudyn took for a success, or None."""
+    """The failure of a run that exudyn reported as successful, or None."""
     if not all(np.isfinite(getattr(run.trace, name)).all() for name in run.trace.COLUMNS):
         return None  # observe reports it, with the last finite state
     difference = replay_bearing(scene, run.trace)

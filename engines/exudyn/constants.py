@@ -1,4 +1,4 @@
-"""The numbers that were chosen in compliant-corners: what each is, for `engines.contract.Variant.constants`."""
+"""Chosen numbers of compliant-corners and their meaning, for `engines.contract.Variant.constants`."""
 
 HERE = "engines.exudyn"
 CONSTANTS = {
@@ -15,19 +15,19 @@ CONSTANTS = {
     f"{HERE}.corners:MOST_RELAX": "the same, over sqrt(R/g), at most",
     f"{HERE}.corners:SLOP": "change of the anchor that is ignored, over the sticking spring's stretch",
     f"{HERE}.corners:LEAST_STEP": "explicit step at which exudyn gives up [s]",
-    f"{HERE}.phases:ENTER": "steps before the impact from which implicit ones begin",
-    f"{HERE}.phases:LEAVE": "steps before the impact at which they end",
-    f"{HERE}.phases:CARRIES": "share of the weight on a corner from which it counts, to begin implicit steps",
-    f"{HERE}.phases:HOLDS": "the same, to go on with them",
-    f"{HERE}.phases:PUSHED": "rate toward the impact that a base may give, over that of the block's own fall",
-    f"{HERE}.phases:WORTHWHILE": "implicit step from which it pays, over pivoting_step",
+    f"{HERE}.phases:ENTER": "least number of steps to the impact at which implicit steps begin",
+    f"{HERE}.phases:LEAVE": "number of steps to the impact at which implicit steps end",
+    f"{HERE}.phases:CARRIES": "least share of the weight on a loaded corner, to begin implicit steps",
+    f"{HERE}.phases:HOLDS": "the same, to continue implicit steps",
+    f"{HERE}.phases:PUSHED": "rate toward the impact that a base may cause, over that of the block's free fall",
+    f"{HERE}.phases:WORTHWHILE": "least implicit step that is faster than explicit ones, over pivoting_step",
     f"{HERE}.phases:SMOOTH": "implicit step where bearings vibrate, over that of leapfrog engines",
-    f"{HERE}.phases:FIRST": "first explicit step of a piece, over the longest",
+    f"{HERE}.phases:FIRST": "first explicit step of a segment, over the longest",
     f"{HERE}.phases:DAMPED": "numerical damping of implicit steps, 1 less the spectral radius",
     f"{HERE}.phases:RESIDUAL": "residual of Newton's method, over the block's weight",
-    f"{HERE}.phases:ROUNDING": "the same, in rounding errors of a place as corners feel them, at least",
-    f"{HERE}.phases:DIFFERENCE": "change of a coordinate to derive the forces, over a corner's depth",
+    f"{HERE}.phases:ROUNDING": "least residual, in corner forces from the rounding error of a coordinate",
+    f"{HERE}.phases:DIFFERENCE": "increment of a coordinate in numerical differentiation, over a corner's penetration",
     f"{HERE}.ground:SUMS": "round-off of a sum of steps, over the duration",
-    f"{HERE}.ground:WHOLE": "of a step, that a segment of the motion may be longer than so many",
+    f"{HERE}.ground:WHOLE": "tolerated excess of a segment of the motion over a whole number of steps, in steps",
     "engines.vibration:VIBRATION": "step over the time in which the bearings' vibration advances by 1 rad",
 }

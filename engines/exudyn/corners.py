@@ -1,8 +1,8 @@
 """exudyn, variant compliant-corners: a stiff contact at each bottom corner.
 
-The contact's law is this adapter's own, in the tradition of Hunt and Crossley, and exudyn integrates it, by the two
-methods of `phases`: plastic (`rebound`), non-slipping (`friction`) and planar, which is what Housner assumes. That an
-impact then turns out as his formula says verifies law and integration, it is no independent physics.
+The contact law is the adapter's own, of the Hunt-Crossley type; exudyn integrates it by the two methods of `phases`.
+The contact is plastic (`rebound`), without slip (`friction`) and planar, as Housner assumes. Agreement with his formula
+verifies the law and the integration; it is not independent evidence.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ if TYPE_CHECKING:
 
 Real = exu.symbolic.Real
 
-# Time for the corners to relax after an impact, over sqrt(m/k), the landing corner being pushed out at the rebound
-# speed for a third of it; at most MOST_RELAX sqrt(R/g), which soft corners would exceed.
+# Relaxation time of the corners after an impact, over sqrt(m/k); for a third of it the landing corner is pushed out at
+# the rebound speed. At most MOST_RELAX sqrt(R/g), which soft corners would exceed.
 RELAX, MOST_RELAX = 75.0, 0.06
-# Change of the anchor that is not worth telling exudyn, over the sticking spring's stretch under the block's weight.
+# Change of the anchor that is not passed to exudyn, over the stretch of the sticking spring under the block's weight.
 SLOP = 1e-3
-LEAST_STEP = 1e-13  # s; exudyn gives up where it would take a shorter one
+LEAST_STEP = 1e-13  # s; exudyn stops where it would need a shorter one
 
 
 @dataclass(frozen=True)
@@ -48,12 +48,12 @@ class Corner:
 
     @classmethod
     def of(cls, scene: Scene, settings: CompliantCorners) -> Self:
-        """Of settings that are scaled to the scene."""
+        """The constants from settings that are scaled to the scene."""
         block, stiffness = scene.block, settings.stiffness
-        # on a light base the reduced mass is small: a sticking spring in proportion keeps the step
+        # on a light base the reduced mass is small; a sticking spring proportional to it keeps the step length
         reduced = block.mass * (1 - scene.mass_share if scene.base else 1.0)
         sticking = settings.sticking * stiffness * reduced / block.mass
-        # the corner of a block of small inertia about its centre gives way easily
+        # a corner of a block of small centre inertia has a small effective mass
         turning = 4 / (1 / reduced + block.half_height**2 / block.centre_inertia)
         return cls(
             stiffness,
@@ -67,9 +67,9 @@ class Corner:
     def force(self, displacement: Any, velocity: Any, offset: Any) -> list[Any]:
         """Symbolic force of a Cartesian connector [N]: Hunt-Crossley, clipped at zero, and friction.
 
-        Friction sticks to an anchor by spring and damper up to Coulomb's limit; exudyn has subtracted the anchor (the
-        offset) from the displacement. It is gated by the normal force: a gate by the gap would let micro-bounces
-        inject energy. exudyn evaluates a term at every place where it stands: in this form a step costs 25 % less.
+        Friction is a spring and damper to an anchor, up to Coulomb's limit; exudyn has subtracted the anchor (the
+        offset) from the displacement. It is switched by the normal force; a switch by the gap would let micro-bounces
+        add energy. exudyn evaluates a term at every occurrence; in this form a step takes 25 % less time.
         """
         across, up = displacement[0], displacement[1]
         loading = (self.hardening * self.stiffness) * velocity[1] - self.stiffness
@@ -114,7 +114,7 @@ def run(scene: Scene, settings: CompliantCorners) -> Run:
         solverType=exu.DynamicSolverType.DOPRI5,
         automaticStepSize=True,
         minimumStepSize=LEAST_STEP,
-        relativeTolerance=1e-14,  # round-off: with 0 a shock beyond the engine's numbers is never stepped to its end
+        relativeTolerance=1e-14,  # round-off: with 0 the steps never end after a shock that overflows
         absoluteTolerance=settings.tolerance,
     )
     settle = min(

@@ -1,4 +1,4 @@
-"""Ground acceleration for exudyn: one smooth expression per segment, and steps that stop where segments meet."""
+"""Ground acceleration for exudyn: one smooth expression per segment, and steps that end where segments meet."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 SUMS = 1e-12  # round-off of a sum of steps, over the duration
-WHOLE = 1e-9  # of a step, that a segment of the motion may be longer than so many
+WHOLE = 1e-9  # of a step: tolerated excess of a segment over a whole number of steps
 
 
 def ground_load(motion: Motion) -> Callable[[Any, Any], Any]:
@@ -54,7 +54,7 @@ def segments(motion: Motion, duration: float) -> tuple[array, np.ndarray]:
 
 
 class Ground:
-    """Keeps the loads on the segment of the coming step, and the steps inside segments."""
+    """Sets the loads to the segment of the next step, and keeps each step inside one segment."""
 
     def __init__(self, model: Model, longest: float = math.inf) -> None:
         """longest : longest step [s]."""
@@ -78,9 +78,9 @@ class Ground:
         self._enter()
 
     def begin(self, t: float, iterations: Any) -> float:
-        """Begin a piece of the integration at t [s]; the time [s] that is left of its segment.
+        """Begin a part of the integration at t [s]; returns the remaining time [s] of its segment.
 
-        iterations: exudyn's, of the solver that chooses its steps; None: steps are equal.
+        iterations: exudyn's iteration data of the adaptive solver; None: equal steps.
         """
         self.iterations, self.limited = iterations, False
         while self.end <= t + self.slack and self.at + 1 < len(self.ends):
@@ -88,16 +88,16 @@ class Ground:
         return self.end - t
 
     def equal(self, t: float, step: float) -> tuple[float, int]:
-        """(end [s], number) of equal steps, none longer than `step` [s], from t on that meet the ends of segments."""
+        """(end [s], number) of equal steps from t, each at most `step` [s], that meet the ends of segments."""
         left, samples = self.end - t, len(self.ends) - 1 - self.at  # segments of equal length, and the last
         if self.dt and samples and abs(left - self.dt) < self.slack:
             return self.ends[-2], samples * math.ceil(self.dt / step - WHOLE)
         return self.end, math.ceil(left / step)
 
     def prepare(self, mbs: exu.MainSystem, t: float) -> bool:
-        """Before each attempt of a step that would end at t (PreStep): its segment, and the longest step after it.
+        """Before each attempt of a step that would end at t (PreStep): set its segment and the longest step after it.
 
-        The rest of a segment is never cut to leave a sliver: it is one step, or at least two equal ones.
+        The rest of a segment is one step, or at least two equal ones, so that no very short step remains.
         """
         rest = self.end - t
         while rest < -self.slack and self.at + 1 < len(self.ends):

@@ -1,5 +1,5 @@
-"""exudyn, variant switched-joints: the idealised block. Joints hold the corner in contact; the adapter, not exudyn,
-decides uplift, impact and rest, localised in time, and applies the impact of eqs (7) and (8)."""
+"""exudyn, variant switched-joints: the idealised block. Joints hold the corner in contact. The adapter, not exudyn,
+locates uplift, impact and rest in time, and applies the impact of eqs (7) and (8)."""
 
 from __future__ import annotations
 
@@ -27,19 +27,19 @@ if TYPE_CHECKING:
     from analytic import Scene
 
 REST = 0  # the side of a block in full contact
-STUCK = 10  # events at one instant after which a run is given up; uplift and rest together are two
+STUCK = 10  # events at one time after which a run is stopped; uplift and rest together are two
 INITIAL = exu.ConfigurationType.Initial
 
 
 @dataclass(frozen=True)
 class SwitchedJoints:
-    """Settings of switched-joints. `step` is the accuracy parameter: the error goes as its square."""
+    """Settings of switched-joints. `step` is the accuracy parameter: the error is proportional to its square."""
 
     step: float = 1e-3  # s
 
 
 class Stepper:
-    """A scene between joints: pieces of exudyn's time integration, from one event to the next."""
+    """A scene with switched joints: parts of exudyn's time integration, from one event to the next."""
 
     def __init__(self, scene: Scene, settings: SwitchedJoints) -> None:
         self.scene, self.step = scene, settings.step
@@ -59,7 +59,7 @@ class Stepper:
         self.rows: list[tuple[float, np.ndarray, np.ndarray]]
         self.z: list[float]
         self.rows, self.z, self.time, self.side, self.watching = [], [], 0.0, REST, True
-        self.interrupts: list[int] = []  # not empty once it shall end
+        self.interrupts: list[int] = []  # not empty after Ctrl-C
 
     def _add_joints(self):
         model, mbs = self.model, self.model.mbs
@@ -73,11 +73,11 @@ class Stepper:
         model.connectors.update(left=self.joints[-1], right=self.joints[1], lock=self.lock)
 
     def keep(self, mbs: exu.MainSystem, t: float) -> bool:
-        """After each step (PostStep): record it, commit the bearing's history; False stops at an event."""
+        """After each step (PostStep): record it and commit the bearing's history; False stops at an event."""
         system, bearing = mbs.systemData, self.model.bearing
         q, v = system.GetODE2Coordinates(), system.GetODE2Coordinates_t()
         if self.rows and t <= self.rows[-1][0]:
-            return True  # exudyn calls it at the start of each piece, too
+            return True  # exudyn also calls it at the start of each part
         self.rows.append((t, q, v))
         if bearing is not None:
             self.z.append(bearing.commit(mbs, q.item(3)))
@@ -161,7 +161,7 @@ class Stepper:
         self.place(side, after, speed + jump)
 
     def place(self, side: int, rate: float, speed: float) -> None:
-        """Put the block flat on the base at the last row, with these rates [rad/s, m/s]."""
+        """Set the block flat on the base at the last row, with these rates [rad/s, m/s]."""
         t, q, v = self.rows[-1]
         x = q.item(3) if self.scene.base else 0.0
         h, b = self.scene.block.half_height, self.scene.block.half_width
@@ -205,7 +205,7 @@ class Stepper:
         return None
 
     def lift(self) -> None:
-        """Let the block rock, away from the acceleration of the base."""
+        """Uplift: the block rocks opposite to the acceleration of the base."""
         side = -int(math.copysign(1, self.contact_acceleration(len(self.rows) - 1)))
         self.place(side, 0.0, self.rows[-1][2].item(3) if self.scene.base else 0.0)
 

@@ -1,4 +1,4 @@
-"""What an exudyn system of one scene holds: bodies, the bearings with their history, the friction's anchor."""
+"""An exudyn system of one scene: bodies, bearings with their history, and the anchor of the friction."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Real = exu.symbolic.Real
 
 
 class _Symbols:
-    """What a law's formula is made of, see `Law.expression`."""
+    """Operations for a law's formula, see `Law.expression`."""
 
     @staticmethod
     def where(condition: Any, a: Any, b: Any) -> Any:
@@ -79,10 +79,10 @@ class Bearing:
 def _anchor(
     anchor: float, q: np.ndarray, v: np.ndarray, b: float, h: float, stiffness: float, hardening: float, stretch: float
 ) -> float:
-    """Where the block sticks to its base [m], after a step: moved along as far as every corner that bears has slid.
+    """Position [m] at which the block sticks to its base after a step, moved by what every loaded corner has slid.
 
-    stretch: of the sticking spring over the normal force when it slides [m/N]. A block in the air has no anchor: the
-    place of its lower corner.
+    stretch: stretch of the sticking spring at sliding, over the normal force [m/N]. A block without contact has no
+    anchor; then it is the position of its lower corner.
     """
     low, high, lowest, place = math.inf, -math.inf, -math.inf, anchor
     sin, cos = math.sin(q[2]), math.cos(q[2])
@@ -103,10 +103,10 @@ def _anchor(
 
 
 class Anchor:
-    """Coulomb's memory: where the block sticks to its base, committed once per accepted step.
+    """State of Coulomb friction: the position at which the block sticks to its base, committed once per accepted step.
 
-    connectors: of the two corners. stiffness [N/m], hardening [s/m]: of their normal force. stretch: of the sticking
-    spring, over the normal force, when it slides [m/N]. slop: change that is not told [m].
+    connectors: of the two corners. stiffness [N/m], hardening [s/m]: of their normal force. stretch: stretch of the
+    sticking spring at sliding, over the normal force [m/N]. slop: change that is not passed to exudyn [m].
     """
 
     def __init__(

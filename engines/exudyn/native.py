@@ -1,4 +1,4 @@
-"""exudyn, variant native-contact: exudyn's own sphere-triangle contact, set up as a first script would."""
+"""exudyn, variant native-contact: exudyn's own sphere-triangle contact, as in a first script."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class NativeContact:
-    """Settings of native-contact. `step` is the accuracy parameter; the contact keeps an error that it does not remove.
+    """Settings of native-contact. `step` is the accuracy parameter, but the contact has an error at any step.
 
-    The contact's damper pulls at a lifting corner and its friction is a regularised slip law: restitution is off by
+    The contact's damper pulls at a lifting corner, and its friction is a regularised slip law: restitution is off by
     1 to 10 %, whatever the step.
     """
 

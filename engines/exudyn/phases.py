@@ -1,8 +1,8 @@
-"""Two integrators of exudyn for one model: explicit steps through impacts, implicit ones while contact stays as it is.
+"""Two integrators of exudyn for one model: explicit steps through impacts, implicit ones while contact does not change.
 
-A stiff corner asks for thousands of explicit steps a second even while the block merely pivots on it or stands; there
-exudyn's generalized-alpha method takes steps of a millisecond. Both see the same corners and the same bearings: a
-change of integrator changes no state and no force.
+A stiff corner needs thousands of explicit steps per second, even while the block only pivots or stands. There exudyn's
+generalized-alpha method takes steps of a millisecond. Both integrate the same corners and bearings: a change of
+integrator changes no state and no force.
 """
 
 from __future__ import annotations
@@ -31,35 +31,34 @@ if TYPE_CHECKING:
     from .stepping import Steps
 
 INITIAL = exu.ConfigurationType.Initial
-NEITHER, BOTH = -2, 0  # corners that carry; -1 and 1: that one
+NEITHER, BOTH = -2, 0  # loaded corners; -1 and 1: that one
 
-# Implicit steps begin only where so many of them are left before the impact, and end where fewer than LEAVE are.
+# Implicit steps begin only if at least so many of them fit before the impact, and end if fewer than LEAVE do.
 ENTER, LEAVE = 4.0, 2.0
-# Share of the weight that a corner must carry to count, for steps to become implicit and to stay so.
+# Least share of the weight on a loaded corner, for steps to become implicit and to remain so.
 CARRIES, HOLDS = 0.2, 0.1
-# Rate toward the impact that a base may give the block, over that of the block's own fall.
+# Rate toward the impact that a base may cause, over that of the block's free fall.
 PUSHED = 3.0
-# Steps shorter than this share of `pivoting_step`, which stiff bearings ask for, gain nothing over explicit ones.
+# Implicit steps shorter than this share of `pivoting_step`, as stiff bearings need, are no faster than explicit ones.
 WORTHWHILE = 0.1
-# Of the steps that leapfrog engines take where bearings vibrate: its phase is off by (h omega)^2/12 a radian.
+# Share of the step of leapfrog engines where bearings vibrate: the phase error is (h omega)^2/12 per radian.
 SMOOTH = 0.075
-FIRST = 2e-3  # of the longest explicit step: the first one of a piece
-# What generalized-alpha takes of a vibration that steps do not resolve: 1 less its spectral radius. .02 to .4 give the
-# same e to 2e-7.
+FIRST = 2e-3  # of the longest explicit step: the first step of a part
+# Numerical damping of generalized-alpha for vibrations that steps do not resolve: 1 less its spectral radius. .02 to .4
+# give the same e to 2e-7.
 DAMPED = 0.1
-# Newton's residual, over the block's weight; but no less than some rounding errors of a place, as stiff corners feel
-# them: below these exudyn finds no end.
+# Residual of Newton's method, over the block's weight; at least the corner force from some rounding errors of a
+# coordinate, below which Newton's method does not converge.
 RESIDUAL, ROUNDING = 1e-7, 30 * 2.0**-52
-DIFFERENCE = 0.02  # of a corner's depth, by which exudyn moves a coordinate to derive the forces
+DIFFERENCE = 0.02  # of a corner's penetration: exudyn's increment in numerical differentiation
 
 
 @dataclass(frozen=True)
 class Rule:
-    """What a variant asks of its steps.
+    """Parameters of the steps of a variant.
 
-    explicit: settings of the explicit solver. longest, step: longest explicit step, and implicit one [s]. sink:
-    penetration of a corner that carries half the weight [m]. settle: time [s] that a change of contact takes to die
-    away.
+    explicit: settings of the explicit solver. longest, step: longest explicit and implicit step [s]. sink: penetration
+    of a corner under half the weight [m]. settle: relaxation time after a change of contact [s].
     """
 
     explicit: exu.SimulationSettings
@@ -71,7 +70,7 @@ class Rule:
 
 @njit("i8(f8[::1], f8, f8, f8)", cache=True)  # compiled when it is imported
 def carrying(q: np.ndarray, b: float, h: float, least: float) -> int:
-    """Which corner is deeper than `least` [m] in the ground: -1, 1, BOTH or NEITHER."""
+    """The corner with a penetration above `least` [m]: -1, 1, BOTH or NEITHER."""
     sin, drop = math.sin(q[2]), h * (math.cos(q[2]) - 1) - q[1]
     left, right = drop + b * sin >= least, drop - b * sin >= least
     if left:
@@ -80,7 +79,7 @@ def carrying(q: np.ndarray, b: float, h: float, least: float) -> int:
 
 
 class Phases:
-    """Which integrator a run needs at a step, and the pieces of exudyn's time integration that follow from it."""
+    """The choice of integrator at each step, and the parts of exudyn's time integration that follow from it."""
 
     def __init__(self, model: Model, rule: Rule, steps: Steps, record: Callable[..., bool]) -> None:
         scene, self.model, self.rule, self.steps, self.record = model.scene, model, rule, steps, record
@@ -91,7 +90,8 @@ class Phases:
         self.worthwhile = self.step >= WORTHWHILE * rule.step
         self.implicit, self.state, self.since, self.anchored, self.refused = False, NEITHER, 0.0, 0.0, -math.inf
         self.ground = Ground(model, rule.longest) if scene.motion else None
-        # Where a pulse begins or ends the ground may jump, and lift a standing block within one implicit step.
+        # The ground acceleration may jump where a pulse begins or ends, and lift a standing block within one implicit
+        # step.
         self.jumps = (scene.motion.start, scene.motion.end) if isinstance(scene.motion, PulseMotion) else ()
         model.mbs.SetPostStepUserFunction(self.keep)
         if self.ground:
@@ -104,27 +104,27 @@ class Phases:
         weight = scene.block.mass * scene.gravity
         rounding = ROUNDING * scene.block.radius * weight / (2 * rule.sink)
         integration.newton.absoluteTolerance = max(RESIDUAL * weight, rounding)
-        # Forces are derived by differences: of a share of the corner's depth, beyond which it would leave contact.
+        # Numerical differentiation uses a share of the corner's penetration, so that the corner stays in contact.
         differences = integration.newton.numericalDifferentiation
         differences.minimumCoordinateSize = 1.0
         differences.relativeEpsilon = DIFFERENCE * rule.sink / scene.block.radius
         self.solvers = exu.MainSolverExplicit(), exu.MainSolverImplicitSecondOrder()
 
     def keep(self, mbs: exu.MainSystem, t: float) -> bool:
-        """After each step (PostStep): record it; False ends the run, or a piece of it."""
+        """After each step (PostStep): record it; False ends the run, or a part of it."""
         if t <= self.steps.times[-1]:
-            return True  # exudyn calls it at the start of each piece, too
+            return True  # exudyn also calls it at the start of each part
         if not self.record(mbs, t):
             return False
         system = self.model.mbs.systemData
         return self.quiet(t, system.GetODE2Coordinates(), system.GetODE2Coordinates_t()) == self.implicit
 
     def quiet(self, t: float, q: np.ndarray, v: np.ndarray) -> bool:
-        """Whether contact has been as it is for a while, and will be for the next steps."""
+        """Whether contact has not changed for a while, and will not change in the next steps."""
         least = 2 * (HOLDS if self.implicit else CARRIES) * self.rule.sink
         state, at = carrying(q, *self.shape, least), self.model.anchor.at
         if state != self.state or at != self.anchored or state == NEITHER:
-            # A corner came, left or slid.
+            # A corner landed, lifted or slid.
             self.state, self.since, self.anchored = state, t, at
             return False
         if not self.worthwhile or t - self.since < self.rule.settle or t < self.refused:
@@ -138,7 +138,7 @@ class Phases:
         return tilt + fall * ahead - 0.5 * self.pull * ahead * ahead > 0.0
 
     def run(self) -> Failure | None:
-        """Step to the scene's end, to overturning or to where a run is given up; exudyn's failure, or None."""
+        """Step to the scene's end, to overturning or to the limit of steps; exudyn's failure, or None."""
         steps, duration = self.steps, self.model.scene.duration
         self.record(self.model.mbs, 0.0)
         while steps.times[-1] < duration * (1 - SUMS):
@@ -149,13 +149,13 @@ class Phases:
             if failure and not self.implicit:
                 return failure
             if failure:
-                self.refused = steps.times[-1] + self.rule.settle  # explicit steps go where Newton's method does not
+                self.refused = steps.times[-1] + self.rule.settle  # explicit steps where Newton's method fails
             elif len(steps.times) == count or steps.ended:
                 return None
         return None
 
     def _piece(self, t, q, v):
-        """Integrate from a state to where the other integrator is due; the failure, or None."""
+        """Integrate from a state to the next change of integrator; the failure, or None."""
         mbs, settings = self.model.mbs, self.smooth if self.implicit else self.rule.explicit
         mbs.systemData.SetODE2Coordinates(q, configuration=INITIAL)
         mbs.systemData.SetODE2Coordinates_t(v, configuration=INITIAL)

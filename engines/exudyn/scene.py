@@ -35,8 +35,8 @@ Real = exu.symbolic.Real
 
 
 def start_coordinates(scene: Scene, sink: float) -> tuple[list[float], list[float]]:
-    """(q, v) of the block's centre [m, m/s; rad, rad/s], relative to its place at rest; `sink` is the static
-    penetration [m] of a block that stands."""
+    """(q, v) of the block's centre [m, m/s; rad, rad/s], relative to its position at rest; `sink` is the static
+    penetration [m] of a standing block."""
     x, z, across, up = placement(scene)
     tilt, rate = scene.start.tilt, scene.start.tilt_rate
     lower = sink if tilt == 0 and rate == 0 else 0.0
@@ -112,7 +112,7 @@ def _add_loads(model: Model) -> None:
 
 
 def read_back(model: Model) -> dict[str, tuple[Any, Any]]:
-    """What exudyn really holds, as a dict name -> (in exudyn, in the scene)."""
+    """{name: (value in exudyn, value in the scene)}."""
     scene, mbs = model.scene, model.mbs
     block = mbs.GetObject(model.block)
     values = {

@@ -28,28 +28,28 @@ if TYPE_CHECKING:
 
 OVERTURNED = math.pi / 2
 
-# Steps after which a run is given up: so many per rocking period of the scene, the first one counted double. The
-# defaults take up to 3e4 per period where impacts are frequent; bearings that are stiff or viscous for the mass of
-# their base take what the stability of explicit steps asks for.
+# Limit of steps per rocking period of the scene, the first one counted double. The default level takes up to 3e4 per
+# period where impacts are frequent. Bearings that are stiff or viscous for the mass of their base take as many as
+# stability of explicit steps requires.
 STEPS_PER_PERIOD = 300_000
 
 
 @contextmanager
 def interruptible() -> Iterator[list[Any]]:
-    """Runs of exudyn in here end at Ctrl-C, as Python code does.
+    """Context in which a run of exudyn ends at Ctrl-C, as Python code does.
 
-    exudyn takes the KeyboardInterrupt that Python raises in a user function for a failure of its solver. So the
-    signal is only noted, the user functions stop the run, and the signal comes again, to its handler, afterwards.
+    exudyn takes a KeyboardInterrupt raised in a user function for a failure of its solver. The signal is therefore only
+    recorded, the user functions stop the run, and the signal is sent again afterwards.
 
     Yields
     ------
     list
-        Not empty once the signal has come.
+        Not empty after the signal.
     """
     came: list[int]
     came, handler = [], signal.getsignal(signal.SIGINT)
     if threading.current_thread() is not threading.main_thread() or not callable(handler):
-        yield came  # signals are handled elsewhere, or not at all
+        yield came  # not the main thread, or no such signal
         return
     signal.signal(signal.SIGINT, lambda number, frame: came.append(number))
     try:
@@ -61,18 +61,18 @@ def interruptible() -> Iterator[list[Any]]:
 
 
 def step_limit(scene: Scene) -> int:
-    """Number of steps after which a run of a scene is given up."""
+    """Largest number of steps of a run of a scene."""
     return int(STEPS_PER_PERIOD * (2 + scene.duration * scene.rocking_frequency / (2 * math.pi)))
 
 
 def solver_settings(scene: Scene, **time_integration: Any) -> exu.SimulationSettings:
-    """Silent exudyn settings for one scene; the time integration's fields as given."""
+    """exudyn settings for one scene, without output; fields of the time integration as given."""
     settings = exu.SimulationSettings()
     settings.solution.file.write = False
     settings.solution.solverInformationFileName = ""
     settings.timeIntegration.verboseMode = 0
     settings.timeIntegration.endTime = scene.duration
-    explicit = settings.timeIntegration.explicit  # for what no scene has; without it a step costs 15 % less
+    explicit = settings.timeIntegration.explicit  # for features that no scene has; a step takes 15 % less time
     explicit.useLieGroupIntegration = explicit.eliminateConstraints = False
     explicit.computeEndOfStepAccelerations = False
     for name, value in time_integration.items():
@@ -84,10 +84,10 @@ def solver_settings(scene: Scene, **time_integration: Any) -> exu.SimulationSett
 
 
 class Steps:
-    """What is recorded of a run: times, states (coordinates, then velocities) and bearing forces, step after step.
+    """Recorded steps of a run: times, states (coordinates, then velocities) and bearing forces.
 
-    Not in lists: a step costs 100 bytes instead of 500. interrupts: as of `interruptible`. ended: the run is not to go
-    on, by overturning, interrupt, the number of steps or a state that is not finite.
+    Arrays take 100 bytes per step, lists would take 500. interrupts: see `interruptible`. ended: the run must stop, by
+    overturning, interrupt, the number of steps or a state that is not finite.
     """
 
     def __init__(self, width: int) -> None:
@@ -112,14 +112,14 @@ def step_through(
     Parameters
     ----------
     model : Model
-        With its contact.
+        A model with contact.
     drive : callable
-        (model, steps, record) -> failure or None: sets exudyn's user functions and lets it integrate; record, called
-        after a step, keeps it in steps and says whether to go on.
+        (model, steps, record) -> failure or None: sets exudyn's user functions and runs the integration. record, called
+        after a step, stores it in steps and returns whether to continue.
     contact_tilt : float
-        For the trace [rad].
+        See `Trace` [rad].
     settle : float
-        For the trace [s].
+        See `Trace` [s].
     """
     exu.config.printToConsole = False
     scene, mbs, limit = model.scene, model.mbs, step_limit(model.scene)
@@ -144,7 +144,7 @@ def step_through(
 
 
 def _recorder(model, steps, limit):
-    """exudyn's function after each step: keeps it in `steps` and says whether to go on, at most for `limit` of them."""
+    """Function to call after each step: stores it in `steps` and returns whether to continue, up to `limit` steps."""
     bearing, anchor, system = model.bearing, model.anchor, model.mbs.systemData
     times, states, forces = steps.times, steps.states, steps.forces
     coordinates, velocities = system.GetODE2Coordinates, system.GetODE2Coordinates_t
@@ -158,7 +158,7 @@ def _recorder(model, steps, limit):
             forces.append(bearing.commit(mbs, q.item(3)))
         if anchor is not None:
             anchor.commit(mbs, q, v)
-        # Not for NaN either
+        # False for NaN, too
         steps.ended = not (-OVERTURNED < q.item(2) < OVERTURNED and len(times) <= limit and not steps.interrupts)
         return not steps.ended
 
@@ -168,7 +168,7 @@ def _recorder(model, steps, limit):
 def in_one_go(
     model: Model, settings: exu.SimulationSettings, steps: Steps, record: Callable[..., bool]
 ) -> Failure | None:
-    """Drive a model by the implicit trapezoidal rule in equal steps, as `step_through` asks."""
+    """`drive` of `step_through` by the implicit trapezoidal rule in equal steps."""
     mbs, integration = model.mbs, settings.timeIntegration
     integration.solverType = exu.DynamicSolverType.TrapezoidalIndex2
     integration.generalizedAlpha.useNewmark = integration.generalizedAlpha.useIndex2Constraints = True
@@ -180,7 +180,7 @@ def in_one_go(
 
 
 def solve(solver: Any, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> Failure | None:
-    """Let a solver of exudyn integrate; what it says where it fails, or None."""
+    """Run a solver of exudyn; the failure with its message, or None."""
     try:
         done = solver.SolveSystem(mbs, settings)
     except exu.ExudynError as error:
@@ -189,17 +189,17 @@ def solve(solver: Any, mbs: exu.MainSystem, settings: exu.SimulationSettings) ->
 
 
 def release(mbs: exu.MainSystem) -> None:
-    """Take the user functions out of a system that has run.
+    """Remove the user functions from a system after its run.
 
-    With them the system and what they hold are alive as long as the process, in a cycle through exudyn that the
-    garbage collector does not see: 400 bytes a step (40 MB a run of 100 000), and the segments of the ground motion.
+    They form a reference cycle through exudyn that the garbage collector cannot detect. Without this, each run leaks
+    400 bytes a step (40 MB for 100 000 steps) and the segments of the ground motion.
     """
     mbs.SetPreStepUserFunction(0)
     mbs.SetPostStepUserFunction(0)
 
 
 def check(model: Model) -> None:
-    """Assemble a model and refuse one in which exudyn holds other values than the scene.
+    """Assemble a model and check that exudyn holds the values of the scene.
 
     Raises
     ------
@@ -228,7 +228,7 @@ def make_trace(
 ) -> Trace | None:
     """The `Trace` of the recorded steps, or None where there are fewer than two."""
     if bearing:
-        t, q, v = t[: len(z)], q[: len(z)], v[: len(z)]  # a step whose history could not be committed is not a step
+        t, q, v = t[: len(z)], q[: len(z)], v[: len(z)]  # without a step whose history was not committed
     if len(t) < 2:
         return None
     x, speed = (q[:, 3], v[:, 3]) if scene.base else (np.zeros_like(t), np.zeros_like(t))

@@ -1,4 +1,4 @@
-"""What the variants of exudyn are held to; the scenes are those of the tolerance table."""
+"""Tolerances of the variants of exudyn; the scenes are those of the tolerance table."""
 
 from ..tolerance_rows import HELD, READING, ROUNDING, ToleranceRow
 

@@ -2,7 +2,7 @@
 
 from ..contract import EXTRA, Engine
 
-__all__ = ["ENGINE"]  # else the reference imports the rest, and an extra may be absent
+__all__ = ["ENGINE"]  # keeps the reference from importing the adapter of an extra that may be absent
 
 ENGINE = Engine(
     name="mujoco",

@@ -1,11 +1,12 @@
-"""MuJoCo's variants: its soft constraint solver decides contact and impact.
+"""MuJoCo's variants: its soft constraint solver computes contact and impact.
 
-A MuJoCo contact is a spring and damper per unit of mass (solref: k, b), scaled by an impedance d < 1 (solimp): each
-step it gives a corner the acceleration (1 - d) a0 - d (b v + k r), at its sink r, speed v and free acceleration a0. It
-knows no restitution. With b = 1/step a corner stops in the step after it has sunk, whatever its speed, and the impact
-is that of eq. (7): the old corner is free to lift in the same solve. k must only undo the sink, gently.
+A MuJoCo contact is a spring and damper per unit of mass (solref: k, b), scaled by an impedance d < 1 (solimp). In each
+step it gives a corner the acceleration (1 - d) a0 - d (b v + k r), with penetration r, velocity v and free acceleration
+a0. There is no coefficient of restitution. With b = 1/step a corner stops in the step after it has penetrated, whatever
+its velocity. The impact is then that of eq. (7), as the other corner may lift in the same solve. k only has to remove
+the penetration slowly.
 
-All with mujoco 4.0.0; diagexact needs 3.9.
+Tested with mujoco 4.0.0; diagexact needs 3.9.
 """
 
 from __future__ import annotations
@@ -29,14 +30,14 @@ if TYPE_CHECKING:
 VARIANTS = {
     "impact-aware": Variant(
         ImpactAware(),
-        tier="tuned",
+        kind="tuned",
         levels=(2e-3, 6e-4, 2e-4, 1e-4),
         computes="motion, contact, impact and rest",
         imposes="a plane, by joints; the steps, by gaps and closing speeds",
     ),
     "fixed-step": Variant(
         FixedStep(1e-4),
-        tier="tuned",
+        kind="tuned",
         levels=(4e-3, 1e-3, 1e-4),
         finer=({"step": 2e-5},),
         computes="motion, contact, impact and rest",
@@ -44,7 +45,7 @@ VARIANTS = {
     ),
     "first-script": Variant(
         FirstScript(2e-3),  # MuJoCo's own default
-        tier="defaults",
+        kind="defaults",
         levels=(1 / 120, 2e-3, 5e-4),
         finer=({"step": 2e-4},),
         computes="motion, contact, impact and rest",
@@ -52,13 +53,13 @@ VARIANTS = {
     ),
 }
 
-# Tilt below which the block counts as in flat contact, over the slenderness, and time [s] to relax: of the default
-# contact, which sinks by .02 of gamma and has a time constant of .02 s.
+# Tilt below which the block counts as in flat contact, over the slenderness, and relaxation time [s], both of the
+# default contact, which penetrates by .02 of gamma and has a time constant of .02 s.
 FIRST_CONTACT, FIRST_SETTLE = 0.05, 0.1
 
 
 def versions() -> dict[str, str]:
-    """Versions of what computes: {package: version}."""
+    """Versions of the packages that compute: {package: version}."""
     return {"mujoco": mujoco.__version__, "mujoco-library": mujoco.mj_versionString()}
 
 
@@ -67,7 +68,7 @@ def run(scene: Scene, variant: str, settings: Settings) -> Run:
     edge = FIRST_CONTACT * scene.block.slenderness
     said: list[str] = []
     handler = mujoco.get_mju_user_warning()
-    mujoco.set_mju_user_warning(said.append)  # else MuJoCo writes a log file into the working directory
+    mujoco.set_mju_user_warning(said.append)  # otherwise MuJoCo writes a log file into the working directory
     try:
         ran = run_of(
             scene,
@@ -81,6 +82,6 @@ def run(scene: Scene, variant: str, settings: Settings) -> Run:
         mujoco.set_mju_user_warning(handler)
     if not said:
         return ran
-    words = "; ".join(line.strip() for line in said)  # of a bad state, which MuJoCo would else reset to the start
+    words = "; ".join(line.strip() for line in said)  # of a bad state, at which MuJoCo would reset to the start
     message = f"{ran.failure.message}. {words}" if ran.failure else words
     return replace(ran, failure=Failure(ran.failure.reason if ran.failure else "MuJoCo warned", message))

@@ -15,16 +15,16 @@ from ..stepping import State
 if TYPE_CHECKING:
     from analytic import Scene
 
-FRICTION = 5.0  # stands for the model's "no sliding"; of two geoms MuJoCo takes the larger; e is the same with 1
-CORNER_RADIUS = 1e-6  # share of R: the block touches by a sphere at each bottom corner; e is the same with 1e-8
-IMPEDANCE = 0.999  # of the contacts, at any depth; 1 - d is the share of a landing that a step leaves
-# A sink decays at RECOVERY [1/s], for the Caryatid's R, by at most MOST_RECOVERY in a step. It must only be undone
-# before the next impact, and gently: what comes back faster throws the corner up.
+FRICTION = 5.0  # prevents sliding; MuJoCo takes the larger of two geoms; e is the same with 1
+CORNER_RADIUS = 1e-6  # share of R: the block has a sphere at each bottom corner for contact; e is the same with 1e-8
+IMPEDANCE = 0.999  # d of the contacts, at any depth; 1 - d is the share of a landing speed that remains after a step
+# A penetration decays at RECOVERY [1/s], for the Caryatid's R, by at most MOST_RECOVERY in a step. It must vanish
+# before the next impact, but slowly: a faster recovery throws the corner up.
 RECOVERY, MOST_RECOVERY = 75.0, 0.1
 
 
 def coordinates(scene: Scene) -> tuple[list[float], list[float]]:
-    """Coordinates and velocities at the start: base (if any), block's centre x, z from its standing height, tilt."""
+    """Initial coordinates and velocities: base (if any), block's centre x, z from its standing height, tilt."""
     x, z, vx, vz = placement(scene)
     position, velocity = [x, z, scene.start.tilt], [vx, vz, scene.start.tilt_rate]
     if scene.base is None:
@@ -33,7 +33,7 @@ def coordinates(scene: Scene) -> tuple[list[float], list[float]]:
 
 
 def _ground(scene: Scene, geom: str = "") -> str:
-    """MJCF of what the block stands on, its top at z = 0: a plane, or a slab on a slide joint for a base."""
+    """MJCF of the support of the block, with its top at z = 0: a plane, or a slab on a slide joint for a base."""
     if scene.base is None:
         return f'<geom type="plane" size="0 0 1" {geom}/>'
     reach, depth = 100 * scene.block.radius, scene.block.radius  # a plane cannot move in MuJoCo
@@ -45,22 +45,22 @@ def _ground(scene: Scene, geom: str = "") -> str:
 
 
 def contact_reference(step: float, recovery: float) -> tuple[float, float]:
-    """solref for a step [s]: -stiffness and -damping per unit of mass that stop a corner in this very step.
+    """solref for a step [s]: -stiffness and -damping per unit of mass that stop a corner within this step.
 
-    A corner that has sunk by r then moves up at r min(MOST_RECOVERY/step, recovery), whatever its speed was.
+    A corner with penetration r then moves up at r min(MOST_RECOVERY/step, recovery), whatever its speed was.
     """
     return -min(MOST_RECOVERY / step, recovery) / step, -1.0 / step
 
 
 def build(scene: Scene, step: float, plain: bool) -> MujocoBodies:
-    """The block on slide-x, slide-z and hinge-y joints over its ground or base, at the start; step: the longest [s].
+    """The block on slide-x, slide-z and hinge-y joints over its ground or base in the initial state.
 
-    plain: a box, and all else as MuJoCo has it.
+    step: longest step [s]. plain: a box for contact, and MuJoCo's defaults.
 
     Raises
     ------
     Mismatch
-        MuJoCo does not take the scene, or reports other values than it was given.
+        MuJoCo rejects the scene, or reports other values than it was given.
     """
     block, recovery = scene.block, None if plain else RECOVERY / size_scale(scene)
     friction = FRICTION if scene.friction is None else scene.friction
@@ -99,8 +99,8 @@ def check_readback(
 ) -> None:
     """Compare what MuJoCo holds with what the scene needs; raises `Mismatch` naming what differs.
 
-    The contacts are looked at as MuJoCo combines them: the block is pushed into its base for it, and put back.
-    They, and the solver, are left out where solref is None: those are MuJoCo's defaults.
+    The contacts are checked after MuJoCo has combined the parameters of both geoms: the block is moved into its base
+    for this, and back. Contacts and solver are not checked where solref is None, as those are MuJoCo's defaults.
     """
     option, block, depth = model.opt, scene.block, -1e-3 * scene.block.radius
     masses = [block.mass] if scene.base is None else [scene.base.mass, block.mass]
@@ -142,7 +142,7 @@ def check_readback(
 
 
 class MujocoBodies:
-    """Model and data; recovery: as `scene.contact_reference` has it, None where the contact is MuJoCo's own."""
+    """Model and data; recovery: see `contact_reference`, None for MuJoCo's default contact."""
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, recovery: float | None) -> None:
         self.model, self.data, self.recovery, self.used = model, data, recovery, model.opt.timestep
@@ -170,5 +170,5 @@ class MujocoBodies:
         return tilt, rate, x, z, vx, vz, base, v
 
     def weigh(self, added: float) -> None:
-        """Give the base more mass."""
+        """See `engines.stepping.Bodies`."""
         self.model.dof_M0[0] = self.model.body_mass[1] = self.base.mass + added

@@ -1,4 +1,4 @@
-"""PyBullet's variants: Bullet decides contact and impact. All with PyBullet 3.2.7."""
+"""PyBullet's variants: Bullet computes contact and impact. Tested with PyBullet 3.2.7."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 VARIANTS = {
     "impact-aware": Variant(
         ImpactAware(1e-3, 1e-3),
-        tier="tuned",
+        kind="tuned",
         levels=(7e-3, 3e-3, 1e-3, 5e-4),
         constants=CONSTANTS,
         computes="motion, contact, impact and rest",
@@ -35,19 +35,19 @@ VARIANTS = {
     ),
     "fixed-step": Variant(
         FixedStep(1e-4),
-        tier="tuned",
+        kind="tuned",
         levels=(4e-3, 1e-3, 2.5e-4, 1e-4),
         finer=({"step": 2e-5},),
         free_block="engines.pybullet.free_block:simulate",
         computes="motion, contact, impact and rest",
         imposes="a plane, by joints",
     ),
-    "first-script": Variant(  # damping that no one asked for: e off by .01 to .5 at every step
+    "first-script": Variant(  # default damping: e off by .01 to .5 at every step
         FirstScript(1 / 240),  # Bullet's own default
-        tier="defaults",
+        kind="defaults",
         levels=(1 / 60, 1 / 240, 1 / 1000),
         finer=({"step": 2e-4},),
-        friction=0.5 * 0.5,  # the default on either body, which Bullet multiplies
+        friction=0.5 * 0.5,  # the product of the defaults of both bodies
         flight_damping=0.04,  # the default of a multibody
         computes="motion, contact, impact and rest",
         imposes="nothing",
@@ -58,7 +58,7 @@ FIRST_CONTACT = 1e-3  # tilt below which a first script's block counts as in fla
 
 
 def versions() -> dict[str, str]:
-    """Versions of what computes: {package: version}."""
+    """Versions of the packages that compute: {package: version}."""
     return {"pybullet": version("pybullet"), "bullet-api": str(pybullet.getAPIVersion())}
 
 
@@ -73,7 +73,7 @@ def run(scene: Scene, variant: str, settings: Settings) -> Run:
             settings,
             lambda step: kind(client, scene, step),
             lambda rows: raw_trace_of(rows, scene, edge),
-            depth=0.0,  # its contacts act before they touch
+            depth=0.0,  # contacts act before penetration
         )
     except pybullet.error as error:
         return Run(None, 0, math.nan, Failure("Bullet raised an error", str(error)))

@@ -1,6 +1,6 @@
-"""The scene as a first script would set it up in PyBullet: the API's defaults left as they are.
+"""The scene as in a first script for PyBullet, with the API's defaults.
 
-What that brings: damping .04 on every body, a motor of 1 N s per step in the base's joint, friction .5 times .5,
+They include damping of .04 on every body, a motor of 1 N s per step in the base's joint, friction of .5 times .5, and
 contact parameters for games.
 """
 
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
     from analytic import Scene
 
 THICKNESS = 1.0  # m, of the slab
-# Gap [m] below which Bullet keeps contact points: its own default. Process-global, leaks from client to client and is
-# not returned by the getter: set in every client.
+# Gap [m] below which Bullet keeps contact points: its own default. It is global to the process and not returned by the
+# getter, so that it is set in every client.
 BREAKING_THRESHOLD = 0.02
-MOST_VELOCITY = 100.0  # m/s and rad/s: where Bullet cuts a joint's by default, in silence
+MOST_VELOCITY = 100.0  # m/s and rad/s: Bullet's default limit of joints, applied without a message
 
 
 class FreeBox:
-    """A free 3-D box on a slab; the slab fixed, or on one joint where the scene has a base."""
+    """A free 3-D box on a slab, which is fixed or, where the scene has a base, on one joint."""
 
     def __init__(self, client: int, scene: Scene, step: float) -> None:
         block = scene.block
@@ -70,4 +70,4 @@ class FreeBox:
         return 2 * math.atan2(turn[1], turn[3]), rate, x, z - self.high, vx, vz, base, v
 
     def weigh(self, added: float) -> None:
-        """Not needed with default settings."""
+        """Not needed in a first script."""

@@ -1,7 +1,7 @@
-"""The scene with a free block of six degrees of freedom, otherwise set as the planar variants are.
+"""The scene with a free block of six degrees of freedom, otherwise as in the planar variants.
 
-The planar chain leaves out three of them; this is the model most scripts begin with, without the defaults that spoil it
-(damping, contact softness).
+The planar chain has three of them. This is the model of most scripts, but without the default damping and contact
+softness.
 """
 
 from typing import Any
@@ -18,8 +18,8 @@ from .imported import pybullet
 from .links import without_losses
 from .scene import FRICTION, iterations
 
-# contactERP of a box on a slab: penetration decays at this rate per second whatever the step. A fixed share of .08 per
-# step leaves the base velocity jump 2 to 5 % off at every step.
+# contactERP of a box on a slab: penetration decays at this rate per second at any step. With a fixed share of .08 per
+# step the base velocity jump is off by 2 to 5 % at any step.
 CORRECTION_RATE, MOST_CORRECTION = 30.0, 0.1
 BREAKING_THRESHOLD = 1e-3  # m; with Bullet's own .02 the rate after the third impact of a box is off by 4e-4 rad/s
 LEAST_ITERATIONS = 20  # a box has four corners, and `iterations` counts what two need
@@ -27,7 +27,7 @@ CONTACT = 1e-6  # tilt below which the block counts as in flat contact, over the
 
 
 def simulate(scene: Scene, *, step: float, history: bool = True) -> Response:
-    """The response; step [s]; history: keep it in the response. Without a duration it runs until it is decided."""
+    """The response; step [s]; history: keep it. A scene without a duration runs until its outcome is decided."""
     if scene.duration is None:
         return until_decided(lambda cut: simulate(cut, step=step, history=history), scene)
     client = pybullet.connect(pybullet.DIRECT)
@@ -54,7 +54,7 @@ def simulate(scene: Scene, *, step: float, history: bool = True) -> Response:
 
 
 def _undone(box, scene, step):
-    """The box with contact, damping and friction as the planar variants have them."""
+    """Set contact, damping and friction of the box as in the planar variants."""
     client, slab = box.client, box.slab
     pybullet.setPhysicsEngineParameter(
         fixedTimeStep=step,

@@ -1,6 +1,6 @@
-"""PyBullet as it is imported here: without the line that it prints then."""
+"""Import of PyBullet without the line that it prints."""
 
-import numpy  # noqa: F401 else PyBullet loads it, which takes longer than all the rest
+import numpy  # noqa: F401 imported before PyBullet, which would load it slowly
 
 from ..greeting import without
 

@@ -1,4 +1,4 @@
-"""Links and joints as Bullet takes them, without what it adds by itself."""
+"""Links and joints in Bullet without its default damping and motors."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ def chain(client: int, links: list[tuple], **options: int) -> int:
 
 
 def without_losses(client: int, body: int, link: int, friction: float, **limits: float) -> None:
-    """Take Bullet's damping, restitution and motor out of a link (-1: the body itself), and set its friction.
+    """Remove Bullet's damping, restitution and motor from a link (-1: the body itself), and set its friction.
 
-    Damping and velocity limits in a call force its linkIndex to -1: friction goes in a call of its own.
+    A call that sets damping or velocity limits forces linkIndex to -1, so that friction is set in a separate call.
     """
     pybullet.changeDynamics(body, link, linearDamping=0.0, angularDamping=0.0, physicsClientId=client, **limits)
     none = dict.fromkeys(("rollingFriction", "spinningFriction", "restitution", "jointDamping"), 0.0)
     pybullet.changeDynamics(body, link, lateralFriction=friction, physicsClientId=client, **none)
-    if link >= 0:  # joints come with a motor of 1 N s per step
+    if link >= 0:  # joints have a default motor of 1 N s per step
         pybullet.setJointMotorControl2(body, link, pybullet.VELOCITY_CONTROL, force=0.0, physicsClientId=client)

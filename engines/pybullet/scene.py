@@ -1,6 +1,6 @@
-"""A scene built from Bullet's parts, and read back to see what Bullet really uses.
+"""A scene built in Bullet, and read back to check the values that Bullet uses.
 
-All traps named here were met with PyBullet 3.2.7; see the comments.
+The pitfalls named in the comments were observed with PyBullet 3.2.7.
 """
 
 from __future__ import annotations
@@ -21,27 +21,27 @@ from .links import chain, without_losses
 if TYPE_CHECKING:
     from analytic import Scene
 
-# Coefficient between the block and what it stands on where the scene gives none: the model's "no sliding". Bullet
-# multiplies the frictions of two bodies and cuts the product to 10, in silence.
+# Coefficient of friction of the block where the scene gives none: it prevents sliding. Bullet multiplies the frictions
+# of two bodies and limits the product to 10 without a message.
 MOST_FRICTION = 10.0
 FRICTION = MOST_FRICTION
 
-# Not set is contactERP, the share of a penetration that a step takes back: with these corners nothing penetrates.
-# Between 0 and .9 a step e is the same to 2e-9 at every accuracy; with a box's contact it matters.
+# contactERP, the share of a penetration that a step removes, is not set, as these corners do not penetrate. With 0 to
+# .9 per step e is the same to 2e-9 at every level. It matters for the contact of a box.
 
-# The block touches by a sphere at each bottom corner, radius in shares of R (1e-9 gives the same e to 1e-6). A box
-# shows Bullet only its lowest corners: on a box it lost weak impacts (e off by .3), on a plane it did not stand still
-# (tilt 8e-6 of gamma at rest at 1 ms, slenderness .45; the spheres 8e-11).
+# The block has a sphere at each bottom corner for contact, radius over R (1e-9 gives the same e to 1e-6). Of a box,
+# Bullet uses only the lowest corners: on a box it missed weak impacts (e off by .3), on a plane it did not stand still
+# (tilt 8e-6 of gamma at rest at 1 ms, slenderness .45; spheres: 8e-11).
 CORNER_RADIUS = 1e-6
 
-# What the sequential impulses of a step may leave undone, as a share, rocking on one corner and standing on two; see
-# `iterations`. With too few e is .99998 for .64 (J_O = 1.05 m R^2) and a standing block rocks (10: at 9e-5 of gamma
-# under shaking of .9 of the uplift threshold, gamma .1). The direct solver (Dantzig) stands too, but its friction is
-# wrong on two corners: under a horizontal load the block and its base part. The default solverResidualThreshold does
-# not end the iterations early.
+# Relative residual of the sequential impulses of a step, rocking on one corner and standing on two; see `iterations`.
+# With too few iterations e is .99998 instead of .64 (J_O = 1.05 m R^2), and a standing block rocks (10: at 9e-5 of
+# gamma under shaking of .9 of the uplift threshold, gamma .1). With the direct solver (Dantzig) the block stands, too,
+# but its friction is wrong on two corners: under a horizontal load the block and its base separate. The default
+# solverResidualThreshold does not end the iterations early.
 ROCKING_REST, STANDING_REST, MOST_ITERATIONS = 1e-6, 1e-4, 20_000
 
-MOST_VELOCITY = 1e9  # m/s and rad/s, above which Bullet would cut a joint's; its default is 100
+MOST_VELOCITY = 1e9  # m/s and rad/s: Bullet's limit for joints; its default is 100
 
 
 @dataclass(frozen=True)
@@ -59,10 +59,10 @@ class Assembly:
 
 @dataclass(frozen=True)
 class Units:
-    """Size of Bullet's units of length [m] and time [s]; those of acceleration, mass and force are SI.
+    """Bullet's units of length [m] and time [s]; acceleration, mass and force are in SI units.
 
-    Bullet has thresholds in metres, and step lengths go with sqrt(R/g): a block of .5 to 2 m stays as it is, others are
-    brought there. By powers of 4, so nothing is rounded.
+    Bullet has thresholds in metres, and step lengths scale with sqrt(R/g). A block of .5 to 2 m is not scaled; other
+    blocks are scaled to that size, by powers of 4, so that nothing is rounded.
     """
 
     length: float
@@ -74,7 +74,7 @@ class Units:
         return cls(4.0**power, 2.0**power)
 
     def scale(self, scene: Scene) -> Scene:
-        """The scene in these units, but for its motion and bearings, which stay in SI."""
+        """The scene in these units, except its motion and bearings, which stay in SI."""
         block, start, length, speed = scene.block, scene.start, self.length, self.length / self.time
         inertia = None if block.corner_inertia is None else block.corner_inertia / length**2
         duration = None if scene.duration is None else scene.duration / self.time
@@ -90,11 +90,11 @@ class Units:
 
 
 def iterations(scene: Scene, corners: int) -> int:
-    """Iterations of the contact solver until ROCKING_REST (one corner) or STANDING_REST (two) is left.
+    """Iterations of the contact solver to a residual of ROCKING_REST (one corner) or STANDING_REST (two).
 
-    Sequential impulses are Gauss-Seidel's method, the normals first: its rate is an eigenvalue, near 1 for J_O near
-    m R^2, and for slender blocks on two corners as 1 - 3 tan^2 gamma. The forces on a light base are shared out by
-    friction: there is more to undo.
+    Sequential impulses are the Gauss-Seidel method, normal impulses first. Its convergence rate is an eigenvalue, near
+    1 for J_O near m R^2, and 1 - 3 tan^2 gamma for slender blocks on two corners. The forces on a light base are shared
+    by friction, which takes more iterations.
     """
     block = scene.block
     b, h, light = block.half_width, block.half_height, scene.base.mass if scene.base else math.inf
@@ -104,7 +104,7 @@ def iterations(scene: Scene, corners: int) -> int:
     delassus = directions @ mobility @ directions.T
     lower = np.tril(delassus)
     rates = np.abs(np.linalg.eigvals(np.linalg.solve(lower, lower - delassus)))
-    rate = rates[rates < 1 - 1e-9].max()  # 1: the two corners' shares of the friction, which do not matter
+    rate = rates[rates < 1 - 1e-9].max()  # 1: distribution of the friction between the corners, irrelevant
     rest = (ROCKING_REST, STANDING_REST)[corners - 1]
     needed = math.log(rest * min(1.0, light / block.mass)) / math.log(rate) if rate > 0 else 1.0
     return min(max(math.ceil(needed), 1), MOST_ITERATIONS)
@@ -113,14 +113,13 @@ def iterations(scene: Scene, corners: int) -> int:
 def assemble(client: int, scene: Scene, step: float) -> Assembly:
     """Build the planar chain of a scene, in Bullet's `Units`, in a fresh client.
 
-    The block, on x-prismatic, z-prismatic and y-revolute joints without mass, touches with two corners. The base is
-    a plane on an x-prismatic joint of the same multibody (one call then reads both), or a fixed plane for rigid
-    ground.
+    The block is on massless x-prismatic, z-prismatic and y-revolute joints, and has two contact corners. The base is a
+    plane on an x-prismatic joint of the same multibody, so that one call reads both; rigid ground is a fixed plane.
 
     Raises
     ------
     Mismatch
-        What Bullet reports back differs from what was asked for.
+        Bullet reports other values than it was given.
     """
     block, start = scene.block, scene.start
     many = iterations(scene, 2)
@@ -153,7 +152,7 @@ def assemble(client: int, scene: Scene, step: float) -> Assembly:
     body = chain(client, links, flags=pybullet.URDF_USE_SELF_COLLISION)
     for link in range(-1, len(links)):
         without_losses(client, body, link, rough, maxJointVelocity=MOST_VELOCITY)
-    # Inertia without mass in the same call can set the mass to 0 and give NaN in the first step.
+    # Setting the inertia without the mass in the same call can set the mass to 0, with NaN in the first step.
     pybullet.changeDynamics(body, 2, mass=block.mass, localInertiaDiagonal=[inertia] * 3, physicsClientId=client)
     x, z, vx, vz = placement(scene)
     for joint, value, rate in ((0, x, vx), (1, z, vz), (2, start.tilt, start.tilt_rate)):
@@ -166,7 +165,7 @@ def assemble(client: int, scene: Scene, step: float) -> Assembly:
 
 
 def _shapes(client, block):
-    """Two corners for the block's link, and a plane for what it stands on."""
+    """Two corners for the block's link, and a plane for its support."""
     b, h, r = block.half_width, block.half_height, CORNER_RADIUS * block.radius
     corners = pybullet.createCollisionShapeArray(
         shapeTypes=[pybullet.GEOM_SPHERE] * 2,
@@ -224,14 +223,14 @@ def check_readback(assembly: Assembly, scene: Scene, step: float, many: int, rou
 
 
 class BulletBodies:
-    """The planar chain of an `Assembly`, its units SI outside.
+    """The planar chain of an `Assembly`, with an interface in SI units.
 
-    Few iterations do while one corner may carry, more while both may: where the higher one is within what its speed or
-    free fall cover in the step.
+    Few iterations suffice while only one corner may be loaded. More are used while both may be: where the higher one
+    can reach contact within the step by its velocity or by free fall.
     """
 
     def __init__(self, client: int, scene: Scene, largest: float) -> None:
-        """In a fresh client; largest: longest step [s]."""
+        """client: a fresh one; largest: longest step [s]."""
         self.units = Units.of(scene)
         assembly = assemble(client, self.units.scale(scene), largest / self.units.time)
         self.client, self.body, self.base = assembly.client, assembly.body, assembly.base
@@ -255,7 +254,7 @@ class BulletBodies:
         if gravity != self.gravity:
             self.gravity = gravity
             pybullet.setGravity(gravity[0], 0.0, gravity[1], client)
-        if self.loaded:  # a force on the base's link is the same as one on its joint, and the call costs half as much
+        if self.loaded:  # a force on the link equals one on its joint, and takes half the time
             force = impulse / step, 0.0, 0.0
             pybullet.applyExternalForce(self.body, self.base, force, (0.0, 0.0, 0.0), pybullet.LINK_FRAME, client)
         pybullet.stepSimulation(client)
@@ -268,5 +267,5 @@ class BulletBodies:
         return tilt, rate, length * x, length * z, speed * vx, speed * vz, length * b, speed * v
 
     def weigh(self, added: float) -> None:
-        """Give the base more mass."""
+        """See `engines.stepping.Bodies`."""
         pybullet.changeDynamics(self.body, self.base, mass=self.mass + added, physicsClientId=self.client)

@@ -1,4 +1,4 @@
-"""What the variants of PyBullet are held to; the scenes are those of the tolerance table."""
+"""Tolerances of the variants of PyBullet; the scenes are those of the tolerance table."""
 
 from ..tolerance_rows import HELD, LARGE_STEP, READING, ROUNDING, STEP, ToleranceRow
 

@@ -1,6 +1,6 @@
-"""pymunk's variants: Chipmunk's iterative contact solver decides contact and impact, in its plane, in double precision.
+"""pymunk's variants: Chipmunk's iterative contact solver computes contact and impact, in 2-D and double precision.
 
-All with pymunk 7.3.1.
+Tested with pymunk 7.3.1.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ if TYPE_CHECKING:
 VARIANTS = {
     "impact-aware": Variant(
         ImpactAware(),
-        tier="tuned",
+        kind="tuned",
         levels=(2e-3, 6e-4, 2e-4, 1e-4),
         computes="motion, contact, impact and rest",
         imposes="the steps, by gaps and closing speeds",
     ),
     "first-script": Variant(
-        FirstScript(1 / 240),  # four a frame: pymunk leaves the step to its user
-        tier="defaults",
+        FirstScript(1 / 240),  # four steps per frame; pymunk has no default step
+        kind="defaults",
         levels=(1 / 60, 1 / 240, 1e-3),
         computes="motion, contact, impact and rest",
         imposes="nothing",
@@ -36,12 +36,12 @@ VARIANTS = {
 }
 
 # Tilt below which the block counts as in flat contact in a first script, over the slenderness: with the default slop
-# corners sink, at rest by up to 3e-3.
+# corners penetrate, at rest by up to 3e-3.
 FIRST_CONTACT = 1e-2
 
 
 def versions() -> dict[str, str]:
-    """Versions of what computes: {package: version}."""
+    """Versions of the packages that compute: {package: version}."""
     return {"pymunk": pymunk.version, "chipmunk": pymunk.chipmunk_version}
 
 

@@ -1,9 +1,10 @@
 """The scene as a user of pymunk would write it: a free box on the ground, or on a slab that a groove joint guides.
 
-In Chipmunk's plane: x to the right, y up, angles counter-clockwise, angle = -tilt. A first script leaves all as pymunk
-has it; only a friction must be given, as the default of 0 lets every block slide. Otherwise three settings of
-Chipmunk's manual are made: `iterations` ("increase for accuracy"), `collision_slop` ("the amount of overlap between
-shapes that is allowed", .1 m by default, for pixels), and `collision_bias`, by which overlap is taken back.
+In Chipmunk's plane x points to the right, y up, and angles are counter-clockwise: angle = -tilt. A first script keeps
+pymunk's defaults, except that a friction is given, as the default of 0 lets every block slide. The tuned variant sets
+three parameters of Chipmunk's manual: `iterations` ("increase for accuracy"), `collision_slop` ("the amount of overlap
+between shapes that is allowed", .1 m by default, for pixels), and `collision_bias`, the rate at which overlap is
+removed.
 """
 
 from __future__ import annotations
@@ -20,14 +21,14 @@ from ..stepping import State
 if TYPE_CHECKING:
     from analytic import Scene
 
-# Stands for the model's "no sliding" where the scene gives none. At 5 Chipmunk's iterations jam where a corner slides:
-# a block that overturns sinks.
+# Prevents sliding where the scene gives none. At 5 Chipmunk's iterations do not converge when a corner slides, and a
+# block that overturns sinks.
 FRICTION = 1.0
-# Iterations, and how many more for each block mass over the base's, as a light base is held by its groove through them:
-# on 212 kg e is off by 5e-4 with 10 in all, by 6e-5 with 170 and with 500.
-# Bases below .005 block masses are left to what the most bring.
+# Iterations, and the further ones per block mass over the base's mass: the groove constraint of a light base converges
+# slowly. On 212 kg e is off by 5e-4 with 10 iterations in all, by 6e-5 with 170 and with 500. Bases below .005 block
+# masses get the largest number.
 ITERATIONS, LIGHT, MOST = 20, 10, 2000
-WIDTH = 1e3  # of the groove, shares of R
+WIDTH = 1e3  # of the groove, over R
 
 
 def iterations(scene: Scene) -> int:
@@ -37,13 +38,12 @@ def iterations(scene: Scene) -> int:
 
 
 class ChipmunkBodies:
-    """Chipmunk's space with the block, and the slab that is the base.
+    """Chipmunk's space with the block and, as the base, the slab.
 
-    A call of Chipmunk first moves all bodies at their velocities, then finds contacts, then kicks them: its kick stands
-    between the step of its length and the next one. Where the next one is of another length, that must be chosen before
-    the call, so what is read is where the bodies will be: that far ahead at their velocities, as no overlap is taken
-    back (bias 1). The first call begins a step before the start, on the way that leads to it. In a first script steps
-    are all the same, and what is read is where bodies are.
+    A call of Chipmunk first moves all bodies at their velocities, then finds contacts, then applies impulses. The
+    impulse thus lies between this step and the next one, whose length must be known before the call. The state that is
+    read is therefore the predicted one, one step ahead at the present velocities; no overlap is removed (bias 1). The
+    first call begins one step before the start. In a first script all steps are equal, and the present state is read.
 
     Raises
     ------
@@ -97,7 +97,7 @@ class ChipmunkBodies:
         return tilt, -spin, x + vx * ahead, y + vy * ahead - self.half_height, vx, vy, base, v
 
     def weigh(self, added: float) -> None:
-        """Give the base more mass."""
+        """See `engines.stepping.Bodies`."""
         self.slab.mass = self.mass + added
 
     def _check(self, scene: Scene, friction: float, back: float) -> None:

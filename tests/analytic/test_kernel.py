@@ -13,6 +13,7 @@ from analytic.bearing import BearingLaw
 from analytic.caryatid import BASE, caryatid_block
 from analytic.caryatid import BEARINGS as LRB
 from analytic.kernel import run
+from analytic.layout import END_TILT, END_Z
 from analytic.problems import problem_a, problem_b
 from analytic.solver import ground, options, parameters
 
@@ -28,7 +29,7 @@ def isolated(slenderness=0.18, **parts):
 
 def end_state(scene, tolerance):
     chosen = options(tolerance, record=False)
-    return np.array(run(parameters(scene), ground(scene.motion), chosen)[1])
+    return run(parameters(scene), ground(scene.motion), chosen)[0][END_TILT : END_Z + 1]
 
 
 def impacts_until(response, rate):

@@ -22,7 +22,7 @@ from analytic import simulate as exact
 from analytic.caryatid import BEARINGS
 from analytic.response import History
 from engines import ENGINES, get_engine, guard
-from engines.contract import TIERS
+from engines.contract import KINDS
 
 # What an engine's record holds, and what it refuses.
 
@@ -34,7 +34,7 @@ def test_record_holds_what_the_contract_names(engine, variant):
     for one in record.variants.values():
         assert is_dataclass(one.settings) and one.settings.__dataclass_params__.frozen
         assert fields(one.settings) and all(0 < value < math.inf for value in asdict(one.settings).values())
-        assert one.tier in TIERS and one.computes and one.imposes
+        assert one.kind in KINDS and one.computes and one.imposes
         down = sorted(one.levels, reverse=True)  # from coarse to fine; of a stiffness the finer is the larger
         assert (
             list(one.levels) == (down[::-1] if one.accuracy_parameter == "stiffness" else down) and len(one.levels) > 1

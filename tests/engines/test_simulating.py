@@ -1,4 +1,4 @@
-"""Runs that end in an impact: what the engine has begun by then is read where it is over."""
+"""Runs that end during an impact: the impact is read from a longer run."""
 
 from dataclasses import replace
 
@@ -76,4 +76,4 @@ def test_a_run_goes_on_only_where_it_ends_in_an_impact_and_costs_both(name):
     assert response.steps > 1.8 * plain.steps
     # one that cannot go on says that its last impact is not to be trusted
     (warning,) = unsound.traced(given, history=False)[0].warnings
-    assert "in an impact, and fails where it goes on" in warning.text
+    assert "during an impact, and fails if it goes on" in warning.text

@@ -36,7 +36,7 @@ OWN = {"mujoco": {"peak tilt": 1.4e-4, "peak displacement": 6.4e-6}}
 
 
 def bound(engine, quantity, scenes):
-    """Of the engine's first variant; its own of this file, where it has one."""
+    """Of the engine's main variant; its own of this file, where it has one."""
     if quantity in OWN.get(engine.name, {}):
         return OWN[engine.name][quantity]
     rows = engine.tolerance_rows()[engine.default_variant]

@@ -28,9 +28,9 @@ const Charts = (() => {
 
   const text = (value) => String(+value.toPrecision(3)).replace("-", "−");
 
-  // Smallest of a ladder of limits that holds the value: axes that do not wobble while a slider moves.
-  function limit(value, ladder) {
-    return ladder.find((top) => value <= top) ?? ladder[ladder.length - 1];
+  // Smallest of the given limits that contains the value, so that axes do not change continuously with a slider.
+  function limit(value, limits) {
+    return limits.find((top) => value <= top) ?? limits[limits.length - 1];
   }
 
   // Frame with ticks and labels; returns { x, y, context, box } with the scales as functions.
@@ -80,7 +80,7 @@ const Charts = (() => {
     let [lastX, lastY] = [Infinity, Infinity];
     for (let i = 0; i < rows.length; i++) {
       const px = x(across(rows[i])), py = y(up(rows[i]));
-      if (Math.abs(px - lastX) + Math.abs(py - lastY) < NEAR && i < rows.length - 1) continue; // nobody sees it
+      if (Math.abs(px - lastX) + Math.abs(py - lastY) < NEAR && i < rows.length - 1) continue; // not visible
       if (i) context.lineTo(px, py);
       else context.moveTo(px, py);
       [lastX, lastY] = [px, py];

@@ -138,8 +138,8 @@ const Views = (() => {
     const shown = clipped(run.rows, g), other = ghost ? clipped(ghost.rows, g) : [];
     const fastest = [...shown, ...other].reduce((most, row) => Math.max(most, Math.abs(row[2])), 0) / (p * g);
     const widest = [...shown, ...other].reduce((most, row) => Math.max(most, Math.abs(row[1])), 0) / g;
-    const ladder = [0.02, 0.05, 0.1, 0.25, 0.5, 1.1, WHOLE, 2.5];
-    const [xTop, yTop] = [Charts.limit(widest * 1.05, ladder.slice(0, 7)), Charts.limit(fastest * 1.05, ladder)];
+    const limits = [0.02, 0.05, 0.1, 0.25, 0.5, 1.1, WHOLE, 2.5];
+    const [xTop, yTop] = [Charts.limit(widest * 1.05, limits.slice(0, 7)), Charts.limit(fastest * 1.05, limits)];
     const frame = Charts.axes(canvas, { x: [-xTop, xTop], y: [-yTop, yTop], xLabel: "tilt / slenderness [–]", yLabel: "rate / (ωᵣ γ) [–]" });
     Charts.line(frame.context, frame.x(0), frame.box.top, frame.x(0), frame.box.bottom, colour("axis"));
     curve(frame, shown, (row) => row[1] / g, (row) => row[2] / (p * g), { stroke: colour("model"), width: 1.8 });
@@ -151,8 +151,8 @@ const Views = (() => {
 
   function loop(canvas, { run, ghost, t }) {
     const of = (k) => run.rows.reduce((most, row) => Math.max(most, Math.abs(row[k])), 0);
-    const ladder = [0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500];
-    const [xTop, yTop] = [Charts.limit(of(3) * 1.05, ladder), Charts.limit((of(5) / 1e3) * 1.05, ladder)];
+    const limits = [0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500];
+    const [xTop, yTop] = [Charts.limit(of(3) * 1.05, limits), Charts.limit((of(5) / 1e3) * 1.05, limits)];
     const frame = Charts.axes(canvas, { x: [-xTop, xTop], y: [-yTop, yTop], xLabel: "base displacement [m]", yLabel: "force of all bearings [kN]" });
     Charts.line(frame.context, frame.x(0), frame.box.top, frame.x(0), frame.box.bottom, colour("axis"));
     curve(frame, run.rows, (row) => row[3], (row) => row[5] / 1e3, { stroke: colour("model"), width: 1.6 });

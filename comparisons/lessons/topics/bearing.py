@@ -15,12 +15,12 @@ AMPLITUDES = np.linspace(0.02, 0.4, 77)
 
 
 def at(amplitude: float) -> BearingProperties:
-    """What the bearings give at an amplitude [m]."""
+    """Properties of the bearings at an amplitude [m]."""
     return properties(BEARINGS, CARRIED, amplitude)
 
 
 def loop(amplitude: float) -> tuple[np.ndarray, np.ndarray]:
-    """(x [m], force [N]) of one bearing: from rest to +amplitude, back, and forth again."""
+    """(x [m], force [N]) of one bearing: from rest to +amplitude, then a full cycle."""
     turn = np.linspace(amplitude, -amplitude, 160)
     x = np.concatenate([np.linspace(0, amplitude, 80), turn, turn[::-1]])
     return x, LAW.kb * x + LAW.path(x)
@@ -51,7 +51,7 @@ def view(amplitude: float) -> View:
             "damping, Table 1(a)": (100 * here.damping_paper, "%"),
             "damping, usual": (100 * here.damping_equivalent, "%"),
         },
-        f"Moved to and fro by {amplitude:.2f} m, one bearing takes {here.cycle_loss:.0f} J a cycle.",
+        f"With an amplitude of {amplitude:.2f} m, one bearing dissipates {here.cycle_loss:.0f} J per cycle.",
     )
 
 
@@ -66,10 +66,10 @@ def usual_damping() -> float:
 
 
 def misprinted_jump() -> float:
-    """By how much the force of eq. (12) as printed jumps at a reversal from 0.20 m [N].
+    """Jump of the force of eq. (12) as printed at a reversal from 0.20 m [N].
 
-    Its bracket grows, 1 + (x - x_j) + 2 x0, where it must shrink, and x_j is chosen so that the right form is
-    continuous: both brackets are D_c at the reversal, so the jump is that of the printed law's history, 2 f0.
+    The bracket as printed increases, 1 + (x - x_j) + 2 x0, where it must decrease, and x_j is such that the correct
+    form is continuous. Both brackets are D_c at the reversal, so that the force as printed jumps by 2 f0.
     """
     z = LAW.start(0.20)
     return 2 * min(abs(z), LAW.f0)

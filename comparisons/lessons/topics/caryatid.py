@@ -59,7 +59,7 @@ def least_slenderness() -> float:
 
 
 def reserve() -> float:
-    """How far the peak acceleration of the isolated Caryatid is below what lifts it [%]."""
+    """Margin of the peak acceleration of the isolated Caryatid below its uplift acceleration [%]."""
     response = simulate(scene_of(0.28, 1.0, NEAR_FAULT), history=False)
     return 100 * (1 - response.peak_base_acceleration / G / math.tan(0.28))
 
@@ -86,10 +86,10 @@ LESSON = Lesson(
     number=4,
     name="caryatid",
     title="The isolated Caryatid",
-    question="Bearings keep the ground’s acceleration away from the statue, and let it sway. Do they always help?",
+    question="Bearings reduce the acceleration of the statue, and allow its base to move. Do they always help?",
     aims=(
         "explain isolation as a change of period",
-        "say how far a result is from the opposite result",
+        "state the margin of a result against the opposite result",
         "name a motion for which isolation does harm",
     ),
     needs="lessons 1 and 3; response spectrum",
@@ -104,7 +104,7 @@ LESSON = Lesson(
         Equation(
             r"|a_g + \ddot{x}| = \frac{n_d |f|}{m + m_b} > g \tan \gamma",
             "",
-            "The block lifts where the bearings push harder than this.",
+            "The block lifts where the force of the bearings exceeds this.",
         ),
     ),
     controls=(
@@ -117,13 +117,13 @@ LESSON = Lesson(
     "does not even lift the statue without bearings, and overturns it with them?",
     look="Change the slenderness, then the bearings, then the motion.",
     wrong=(
-        "*The result depends on a number that the paper does not print.* 0.28 rad reproduces its three claims; a few "
-        "hundredths less, and the isolated statue lifts.",
+        "*The result depends on a number that the paper does not print.* 0.28 rad reproduces its three claims. With a "
+        "few hundredths less, the isolated statue lifts.",
         "*Isolation can do harm.* A long pulse that does not lift a free-standing statue brings the base into "
         "resonance: choose the long pulse, with and without bearings.",
         "*“Stands” is not “safe”.* Ask how much slenderness, motion or stiffness may change before the block lifts: "
-        "`rocking margin caryatid-isolated` tells.",
-        "*One record is one record.* Another motion of the same intensity may give another outcome.",
+        "`rocking margin caryatid-isolated` computes it.",
+        "*One record is one sample.* Another motion of the same intensity may give another outcome.",
     ),
     exercises=(
         Exercise(

@@ -13,7 +13,7 @@ from ..engine_runs import G
 from ..lesson import MODEL, OTHER, SOFT, Control, Equation, Exercise, Lesson, View, canvas, legend
 
 SLENDERNESS, RESTITUTION, DURATION = 0.28, 0.98, 30.0  # rad, -, s
-APART = 0.1  # of the slenderness: what counts as parted
+APART = 0.1  # of the slenderness: tilts that differ by more have separated
 EXPONENTS = tuple(float(k) for k in range(-12, -1))
 STEP = 0.01  # s
 TIMES = np.arange(0, DURATION + STEP / 2, STEP)  # s
@@ -21,8 +21,8 @@ TIMES = np.arange(0, DURATION + STEP / 2, STEP)  # s
 
 @functools.cache
 def scene() -> Scene:
-    """A nearly elastic block under two sines whose periods never meet."""
-    sines = 0.5 * np.sin(11.7 * TIMES) + 0.5 * np.sin(1.618 * 11.7 * TIMES + 1)  # a golden section apart
+    """A nearly elastic block under two sines with incommensurate periods."""
+    sines = 0.5 * np.sin(11.7 * TIMES) + 0.5 * np.sin(1.618 * 11.7 * TIMES + 1)  # in the golden ratio
     motion = SampledMotion(STEP, 4 * G * math.tan(SLENDERNESS) * sines, "two sines")
     return Scene(block=caryatid_block(SLENDERNESS), motion=motion, duration=DURATION).with_(
         block={"restitution": RESTITUTION}
@@ -38,13 +38,13 @@ def tilt_of(exponent: float | None) -> np.ndarray:
 
 
 def horizon(exponent: float) -> float:
-    """Time [s] at which the two have parted by `APART`; the whole run where they never do."""
+    """Time [s] at which the two differ by `APART`; the whole run if they never do."""
     apart = np.flatnonzero(np.abs(tilt_of(exponent) - tilt_of(None)) > APART)
     return float(apart[0] * STEP) if len(apart) else DURATION
 
 
 def view(exponent: float) -> View:
-    """Both tilts, and their distance; exponent: of the relative difference in restitution."""
+    """Both tilts and their difference; exponent: power of ten of the relative difference in restitution."""
     one, other, end = tilt_of(None), tilt_of(exponent), horizon(exponent)
     power = "10" + f"{exponent:.0f}".translate(MINUS_DIGITS)
     figure, (tilt, distance) = canvas(2, (1, 1), sharex=True)
@@ -66,7 +66,7 @@ def view(exponent: float) -> View:
             "the first block": ("overturns" if abs(one[-1]) > 2 else "rocks", ""),
             "the second block": (last, ""),
         },
-        f"Two blocks that differ by 10^{exponent:.0f} in their restitution part after {end:.1f} s; the second {last}.",
+        f"Two blocks that differ by 10^{exponent:.0f} in restitution separate after {end:.1f} s; the second {last}.",
     )
 
 
@@ -79,7 +79,7 @@ def growth() -> float:
 
 
 def perturbation_for_twenty_seconds() -> float:
-    """Horizon [s] that double precision, 1e-16, allows by that growth."""
+    """Horizon [s] of double precision, 1e-16, at that growth rate."""
     return float(np.log(APART / 1e-16) / growth())
 
 
@@ -101,9 +101,9 @@ LESSON = Lesson(
     title="Two almost equal blocks",
     question="Two blocks differ in the twelfth digit of their restitution. For how long do they move alike?",
     aims=(
-        "tell a wrong result from a sensitive one",
-        "estimate a sensitivity horizon, and know that it belongs to the scene",
-        "compare many runs where single runs mean nothing",
+        "distinguish a wrong result from a sensitive one",
+        "estimate a sensitivity horizon, and know that it is a property of the scene",
+        "compare statistics of many runs where single runs are not comparable",
     ),
     needs="lesson 2; logarithms",
     minutes=10,
@@ -120,14 +120,14 @@ LESSON = Lesson(
     view=view,
     guess="With a difference of $10^{-6}$ the blocks separate after some seconds. By which factor does that time grow "
     "with a difference of $10^{-9}$: 1000, 3, or less than 3?",
-    look="Change the difference. Every factor of a thousand adds a few seconds, no more.",
+    look="Change the difference. Every factor of a thousand adds only a few seconds.",
     wrong=(
         "*A hundred times smaller error does not give a hundred times longer agreement.* It adds a constant: some "
         "seconds.",
         "*After the horizon two good solvers disagree, and both are right.* Compare them point by point before it, and "
         "by the statistics of many runs after it.",
         "*A single outcome under a long record is one sample.* Report the share of many, with its interval.",
-        "*Do not mistake an error for chaos.* Chaos needs time: a solver that is off at the second impact is wrong.",
+        "*Do not mistake an error for chaos.* Chaos takes time: a solver that is off at the second impact is wrong.",
     ),
     exercises=(
         Exercise(

@@ -16,17 +16,17 @@ from ..lesson import MODEL, SOFT, Control, Equation, Exercise, Lesson, View, can
 SLENDERNESS, START, DURATION = 0.28, 0.6, 2.5  # rad, tilt over slenderness, s
 SOLVERS = ("event-driven", "fixed steps")
 LEVELS = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
-FLOOR = 1e-17  # what is exact is drawn here
+FLOOR = 1e-17  # zero is drawn here
 
 
 def scene(side: float = 1.0) -> Scene:
-    """The Caryatid released on rigid ground, to the one side or the other."""
+    """The Caryatid released on rigid ground, to one side or the other."""
     start = Start(tilt=side * START * SLENDERNESS)
     return Scene(block=caryatid_block(SLENDERNESS), start=start, duration=DURATION)
 
 
 def run(solver: str, level: float, side: float = 1.0) -> Response:
-    """level: tolerance 10^-2 level of the one, step 0.02 / 2^level [s] of the other."""
+    """level: tolerance 10^-2 level for the event-driven solver, step 0.02 / 2^level [s] for fixed steps."""
     if solver == SOLVERS[0]:
         return simulate(scene(side), tolerance=10.0 ** (-2 * level))
     return simulate_time_stepping(scene(side), step=0.02 / 2**level)
@@ -39,7 +39,7 @@ def second() -> float:
 
 
 def energy_defect(response: Response) -> float:
-    """|energy at the end + what the impacts took - energy at the start| / energy at the start."""
+    """|final energy + loss in impacts - initial energy| / initial energy."""
     model, end, start = RockingModel.of(scene()), response.end, scene().start
 
     def energy(tilt, rate):
@@ -60,7 +60,7 @@ def checks(solver: str, level: float) -> dict[str, float]:
     time = response.impacts[1].time
     return {
         "closed form": abs(time / known - 1),
-        "finer setting": abs(time / finer.impacts[1].time - 1),
+        "finer level": abs(time / finer.impacts[1].time - 1),
         "energy": energy_defect(response),
         "mirror": abs(response.end.tilt + mirrored.end.tilt) / SLENDERNESS,
         "second program": abs(time / second() - 1),
@@ -88,17 +88,17 @@ def view(solver: str, level: float) -> View:
 
 
 def misprint_factor() -> float:
-    """By how many per cent e_x as printed is too long: what a trajectory would have to show."""
+    """Excess of e_x as printed, in per cent, which a trajectory would have to show."""
     on_base = Scene(block=caryatid_block(SLENDERNESS), base=BASE)
     return 100 * (base_jump_length_as_printed(on_base) / base_jump_length(on_base) - 1)
 
 
 def observed_order() -> float:
-    """Of the fixed steps: halvings of the step against the defect of the closed form."""
+    """Order of convergence of the fixed steps, from halvings of the step and the defect of the closed form."""
     block, steps = scene(), 0.02 / 2 ** np.arange(3.0, 9.0)
     known = free_rocking(block.rocking_frequency, SLENDERNESS, restitution(block), START * SLENDERNESS, 1)
     rate = known.rates_after[0]
-    # the envelope over neighbouring steps: where the impact falls within its step is chance
+    # the envelope over neighbouring steps, as the phase of the impact in its step is random
     errors = [
         max(
             abs(
@@ -137,9 +137,9 @@ LESSON = Lesson(
     title="How to check a simulation",
     question="The curve looks right. How would you notice if it were not?",
     aims=(
-        "name five checks, and what each of them can see",
+        "name five checks, and the errors that each of them detects",
         "measure an order of convergence",
-        "find a misprint by a law it breaks",
+        "find a misprint by a law that it violates",
     ),
     needs="lessons 2 and 5",
     minutes=10,
@@ -158,16 +158,16 @@ LESSON = Lesson(
     ),
     controls=(Control("solver", SOLVERS, "fixed steps"), Control("accuracy", LEVELS, 2.0, "", 0)),
     view=view,
-    guess="Five checks of one run: closed form, finer setting, energy, mirror image, second program. Which of them "
-    "would miss that the time step is too large?",
+    guess="Five checks of one run: closed form, finer level, energy, mirror image, second program. Which of them "
+    "does not detect a time step that is too large?",
     look="Choose a solver, then refine it. Bars are relative errors, on a logarithmic axis.",
     wrong=(
-        "*Each check is blind to something.* Energy does not see a shifted time; the mirror image sees only what "
-        "treats the two sides differently; a second program shares the errors of the equations it was given.",
-        "*A finer setting checks the solver, not the model.* It converges just as well to wrong equations.",
-        "*Trajectories hide small misprints.* (8) as printed changes the base’s jump by a few per cent. No plot shows "
-        "that; momentum shows it at once.",
-        "*A check that cannot fail checks nothing.* Break the model on purpose, and see which check fails.",
+        "*Each check misses some errors.* Energy does not show a shift in time. The mirror image shows only errors "
+        "that differ between the two sides. A second program shares the errors of its equations.",
+        "*A finer level checks the solver, not the model.* It converges to wrong equations, too.",
+        "*Trajectories do not show small misprints.* (8) as printed changes the base’s jump by a few per cent. No plot "
+        "shows that, but the momentum does.",
+        "*A check that cannot fail is no check.* Introduce an error into the model, and see which check fails.",
     ),
     exercises=(
         Exercise(

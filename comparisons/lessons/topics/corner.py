@@ -1,4 +1,4 @@
-"""Lesson 5: what an engine does at a corner."""
+"""Lesson 5: an impact in an engine with time steps."""
 
 import functools
 import math
@@ -21,7 +21,7 @@ from ..lesson import MODEL, OTHER, SOFT, STONE, THIRD, Control, Equation, Exerci
 
 STEPS = (0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 7.0, 10.0, 14.0, 20.0, 28.0, 40.0)  # ms
 SCAN = np.geomspace(4e-4, 0.05, 160)  # s
-EXAGGERATED = 12  # angles of the four frames
+EXAGGERATED = 12  # factor on the angles of the four frames
 
 
 def rate_error(step: float) -> float:
@@ -74,7 +74,7 @@ def view(step: float) -> View:
 
 
 def _frame(axis, middle, tilt, words, old_corner):
-    """The foot of the block, its angle exaggerated; old_corner: it still turns about the corner it comes from."""
+    """The foot of the block, its angle exaggerated; old_corner: it still pivots about the corner before the impact."""
     pivot = middle + (1 if tilt > 0 or old_corner else -1)
     axis.add_patch(
         Rectangle(
@@ -96,16 +96,14 @@ def engines_table() -> Table:
     rows = [
         [
             run.name,
-            run.tier,
+            run.kind,
             f"{run.parameter} = {run.value:g}",
             "no impact" if math.isnan(run.error) else number(100 * run.error, 2),
         ]
         for run in engine_runs()
     ]
     return Table(
-        "What the engines installed here make of the same impact",
-        ("engine, variant", "tier", "setting", "error [%]"),
-        rows,
+        "The same impact in the engines installed here", ("engine, variant", "kind", "level", "error [%]"), rows
     )
 
 
@@ -113,7 +111,7 @@ WHICH = ("engine", "variant")
 
 
 def bad_example() -> View:
-    """Error of restitution over the step, of the engines under study: refinement of their defaults does not help."""
+    """Error of restitution over the step for the engines under study: a finer level of their defaults does not help."""
     study = read_study(RESULTS / "restitution.json")
     best = study.settings["default_variants"]
     chosen = [
@@ -147,13 +145,13 @@ def bad_example() -> View:
     return View(
         figure,
         numbers,
-        "With default settings the error of restitution hardly falls while the step becomes ten times finer: the "
-        "contact of these engines is not the rigid one. With tuned settings it falls with the step.",
+        "With the variants “defaults” the error of restitution hardly falls while the step becomes ten times finer: "
+        "their contact is not the rigid one. With the tuned variants it falls with the step.",
     )
 
 
 def step_for_one_per_cent() -> float:
-    """Largest step of `SCAN` [ms] at which, and below which, the error of the rate stays under 1 %."""
+    """Largest step of `SCAN` [ms] up to which the error of the rate is below 1 %."""
     over = np.flatnonzero(~(scanned() < 0.01))
     return 1e3 * float(SCAN[over[0] - 1])
 
@@ -183,11 +181,11 @@ LESSON = Lesson(
     number=5,
     name="corner",
     title="What an engine does at a corner",
-    question="An engine for games and robots moves in steps. What happens if the corner strikes between two of them?",
+    question="An engine for games and robots moves in steps. What happens if the impact falls between two of them?",
     aims=(
         "explain why an impact inside a step causes an error",
-        "measure an order of convergence, and see the scatter around it",
-        "find out whether a smaller step helps at all",
+        "measure an order of convergence, and the scatter around it",
+        "decide whether a smaller step reduces the error",
     ),
     needs="lesson 2; explicit Euler steps",
     minutes=12,
@@ -212,13 +210,13 @@ LESSON = Lesson(
     look="Change the step. Above: the foot of the block at four steps (angles twelve times too large). Below: your "
     "step among all others.",
     wrong=(
-        "*The error depends on chance.* Two steps that differ by a tenth of a millisecond may have errors that differ "
-        "tenfold, depending on where in its step the impact falls. One lucky step proves nothing: halve it, and halve "
-        "it again.",
-        "*A soft contact is another error.* An engine without an impact law lets the corner sink in. The playground "
-        "shows how much energy that costs.",
-        "*A small step does not cure a wrong law.* In the second picture some errors do not fall with the step: those "
-        "engines solve another contact.",
+        "*The error depends on the phase of the step.* Two steps that differ by a tenth of a millisecond may have "
+        "errors that differ tenfold, depending on where in its step the impact falls. One small error proves nothing: "
+        "halve the step, and halve it again.",
+        "*A soft contact is another error.* In an engine without an impact law the corner penetrates. The playground "
+        "shows the energy that is lost.",
+        "*A small step does not correct a wrong law.* In the second picture some errors do not fall with the step: "
+        "those engines have another contact law.",
     ),
     exercises=(
         Exercise(

@@ -25,12 +25,12 @@ def model_runs() -> tuple[EngineRun, ...]:
 
 
 def levels_by_variant(runs: tuple[EngineRun, ...]) -> dict[str, list[EngineRun]]:
-    """{solver: its runs}, coarse to fine as they come."""
+    """{solver: its runs}, from coarse to fine."""
     return {name: list(levels) for name, levels in groupby(runs, attrgetter("name"))}
 
 
 def trusted(runs: tuple[EngineRun, ...], target: float) -> dict[str, EngineRun]:
-    """The cheapest run of each solver whose error, and that of every finer setting, is below the target."""
+    """The cheapest run of each solver whose error, and that of every finer level, is below the target."""
 
     passing = {
         name: list(takewhile(lambda run: run.error < target, reversed(levels)))
@@ -47,7 +47,7 @@ def view(step: float) -> View:
     """Error against CPU time; step [ms] of the fixed-step integrator."""
     figure, axis = canvas()
     for name, levels in levels_by_variant(everything()).items():
-        solver, first = levels[0].solver, levels[0].tier == "defaults"
+        solver, first = levels[0].solver, levels[0].kind == "defaults"
         colour = {OWN: THIRD, MODEL: INK}.get(solver) or style(solver)["color"]
         known = [run for run in levels if not math.isnan(run.error)]
         axis.loglog(
@@ -82,21 +82,21 @@ def view(step: float) -> View:
 
 
 def table() -> Table:
-    """The cheapest trusted setting of each solver below 1 %."""
+    """The cheapest level of each solver below 1 % with all finer ones."""
     best = trusted(everything(), TARGET)
     rows = [
         [run.name, f"{run.parameter} = {run.value:g}", number(100 * run.error, 2), number(1e3 * run.cpu, 2)]
         for run in sorted(best.values(), key=lambda run: run.cpu)
     ]
     return Table(
-        "The cheapest setting of each solver that errs below 1 %, and whose finer settings do too (this machine)",
-        ("solver", "setting", "error [%]", "CPU time [ms]"),
+        "The cheapest level of each solver with an error below 1 % at it and at all finer levels (this machine)",
+        ("solver", "level", "error [%]", "CPU time [ms]"),
         rows,
     )
 
 
 def coarsest_step() -> float:
-    """Of the fixed-step integrator's steps: the largest [ms] below 1 % with all finer ones."""
+    """Largest step of the fixed-step integrator [ms] with an error below 1 % at it and at all finer ones."""
     return 1e3 * max(run.value for run in takewhile(lambda run: run.error < TARGET, reversed(own_runs())))
 
 
@@ -123,11 +123,11 @@ LESSON = Lesson(
     number=7,
     name="cost",
     title="Speed against error",
-    question="How accurate must it be, and what does that cost? Find the setting at which an engine’s error is below "
+    question="How accurate must it be, and what does that cost? Find the level at which an engine’s error is below "
     "1 %, then the cheapest solver.",
     aims=(
         "draw and read a work-precision diagram",
-        "choose a setting by a rule that excludes luck",
+        "choose a level by a rule that excludes chance",
         "compare solvers at equal error, not at equal step",
     ),
     needs="lesson 5",
@@ -145,12 +145,12 @@ LESSON = Lesson(
     view=view,
     guess="Which is the cheapest solver below 1 %: one with fixed steps of 1 ms, or one that finds each impact? How "
     "many times cheaper?",
-    look="Right and down is better. Change the step and follow its line. Dotted lines: default settings.",
+    look="Right and down is better. Change the step and follow its line. Dotted lines: defaults.",
     wrong=(
-        "*Equal steps are no fair race.* One engine needs ten times the steps of another for the same error.",
-        "*A lucky point is no setting.* Take the coarsest setting below the target whose *finer ones are below it "
-        "too*.",
-        "*Some lines never get there.* Their error is that of another contact law, which no step removes.",
+        "*Equal steps are no fair comparison.* One engine needs ten times the steps of another for the same error.",
+        "*One point below the target proves nothing.* Take the coarsest level below the target whose *finer ones are "
+        "below it, too*.",
+        "*Some lines do not reach the target.* Their error is that of another contact law, at any step.",
         "*Times belong to this machine.* Ratios carry over better; measure again on yours (`rocking study "
         "speed-error`).",
     ),

@@ -1,4 +1,4 @@
-"""Lesson 2: why impacts lose speed."""
+"""Lesson 2: the loss of tilt rate at an impact."""
 
 import numpy as np
 
@@ -14,7 +14,7 @@ START, WINDOW = 0.8, 8.0  # tilt over slenderness, s
 CURVE = np.linspace(0.02, 1.2, 80)
 
 
-def let_go(slenderness: float) -> Scene:
+def released(slenderness: float) -> Scene:
     """The Caryatid's mass and radius, tilted to 0.8 of its slenderness and released on rigid ground."""
     return Scene(block=Block(mass=MASS, radius=RADIUS, slenderness=slenderness), start=Start(tilt=START * slenderness))
 
@@ -25,8 +25,8 @@ def restitution_of(slenderness: float, on_base: bool = False) -> float:
 
 
 def view(slenderness: float) -> View:
-    """Tilt after letting go, and restitution over slenderness."""
-    scene = let_go(slenderness)
+    """Tilt after the release, and restitution over slenderness."""
+    scene = released(slenderness)
     response = history_until(scene, WINDOW)
     impact, e = response.impacts[0], restitution_of(slenderness)
     figure, (tilt, curve) = canvas(2, (1.1, 1))
@@ -47,15 +47,14 @@ def view(slenderness: float) -> View:
             "e of eq. (7)": (e, ""),
             "energy lost in one impact": (100 * (1 - e * e), "%"),
         },
-        f"Let go from 0.8 of its slenderness {slenderness:.2f}, the block loses {100 * (1 - e * e):.0f} % of its "
-        "energy "
-        "at each impact.",
+        f"Released from 0.8 of its slenderness {slenderness:.2f}, the block loses {100 * (1 - e * e):.0f} % of its "
+        "energy at each impact.",
     )
 
 
 def swings_to_a_tenth() -> float:
     """Impacts until the swings of the Caryatid are below a tenth of its slenderness."""
-    response = simulate(let_go(0.28))
+    response = simulate(released(0.28))
     times, tilt = response.history.time, np.abs(response.history.tilt)
     last = times[np.flatnonzero(tilt > 0.1 * 0.28)[-1]]
     return float(sum(impact.time < last for impact in response.impacts)) + 1
@@ -85,11 +84,11 @@ LESSON = Lesson(
     number=2,
     name="impacts",
     title="Why impacts lose speed",
-    question="A rocking block strikes the ground with its other corner. We know nothing of its stone or mortar, and "
-    "can still compute how much speed is left. How?",
+    question="A rocking block strikes the ground with its other corner. The tilt rate after the impact can be computed "
+    "without knowing the stone or the mortar. How?",
     aims=(
         "derive the restitution from the angular momentum about the new corner",
-        "say what it depends on, and what it does not",
+        "state the quantities on which it depends",
         "check an impact of a simulation by hand",
     ),
     needs="angular momentum, moment of inertia",
@@ -112,13 +111,14 @@ LESSON = Lesson(
     "Caryatid ($\\gamma = 0.28$) lose at each impact: 1 %, 10 % or 20 %?",
     look="Change the slenderness. Dots are impacts; the lower picture shows the restitution of every block.",
     wrong=(
-        "*Restitution is no material constant here.* A table that gives 0.6 for stone on stone is about bouncing "
-        "balls. A rigid block that neither bounces nor slips leaves nothing to choose.",
-        "*Mass and size cancel.* If the restitution in your simulation changes with the mass, something else decides: "
+        "*Restitution is no material constant here.* A table with 0.6 for stone on stone is about bouncing balls. For "
+        "a rigid block that neither bounces nor slips, the restitution follows from momentum.",
+        "*Mass and size cancel.* If the restitution in your simulation changes with the mass, the cause is "
         "a soft contact, the step, or a solver that stopped too early.",
-        "*Stocky blocks do not rock on.* Where (7) is not positive the block lands flat. Code that continues with a "
-        "negative restitution swings the block through the floor.",
-        "*The base takes part.* On a light base less of the tilt rate is left, and the base is pushed: eq. (8).",
+        "*Stocky blocks do not continue to rock.* Where (7) is not positive the block lands flat. Code that continues "
+        "with a negative restitution swings the block through the floor.",
+        "*The base takes part.* On a light base the tilt rate after the impact is smaller, and the base velocity "
+        "jumps: eq. (8).",
     ),
     exercises=(
         Exercise(

@@ -1,4 +1,4 @@
-"""Lesson 1: when does a block tip?"""
+"""Lesson 1: uplift and overturning of a block."""
 
 import functools
 import math
@@ -34,7 +34,7 @@ def overturning() -> np.ndarray:
 
 
 def view(amplitude: float) -> View:
-    """Tilt over time, and the place on the overturning map; amplitude [g]."""
+    """Tilt over time, and the point on the overturning map; amplitude [g]."""
     scene = pulse_scene(amplitude)
     response, decided = history_until(scene, WINDOW), simulate(scene, history=False)
     figure, (tilt, field) = canvas(2, (1, 1.25))
@@ -84,7 +84,7 @@ def first_fall() -> float:
 
 
 def size_that_survives() -> float:
-    """How many times larger the block must be to survive 0.5 g and 0.8 s."""
+    """Factor on the size of the block at which it survives 0.5 g and 0.8 s."""
     return edge(lambda size: overturns(pulse_scene(0.5, size=size)), 1.0, 3.0)
 
 
@@ -107,7 +107,7 @@ LESSON = Lesson(
     question="A block stands on the ground, and the ground accelerates. When does the block lift, and when does it "
     "overturn? Are these one question?",
     aims=(
-        "tell uplift from overturning",
+        "distinguish uplift from overturning",
         "compute the acceleration that lifts a block from its width and height",
         "read an overturning map, with its island of safety",
     ),
@@ -137,8 +137,8 @@ LESSON = Lesson(
     "it overturns, does it overturn at every larger amplitude?",
     look="Change the amplitude of a sine of 0.8 s. The ring marks it in the map of all sines.",
     wrong=(
-        "*Uplift is not overturning.* Between the two lies the whole blue region: the block rocks, loses speed at "
-        "every impact and comes back.",
+        "*Uplift is not overturning.* Between the two lies the blue region: the block rocks, loses energy at every "
+        "impact and comes to rest.",
         "*A stronger pulse is not always worse.* Along a vertical line of the map the block may overturn, survive, and "
         "overturn again. Bisection assumes a single boundary: it finds one of them and says nothing of the others.",
         "*A static check ignores size.* Two blocks of one shape lift at the same acceleration, but the larger one "

@@ -38,16 +38,20 @@ def page(result: Result) -> Page:
     )
     causes = ", ".join(dict.fromkeys(row["cause"] for row in wrong)) or "none"
     return Page(
-        f"Why engines err: {len(sound)} of {len(best)} impacts with default variants are within {settings['least']:g}; "
+        f"Why engines err: {len(sound)} of {len(best)} impacts of main variants are within {settings['least']:g}; "
         f"causes elsewhere: {causes}",
         (
             "Newton’s laws give the impulses that an engine must have used between two steps, whatever its solver "
-            "calls them. They split the error of restitution into parts that add up to it. The parts tell the cause, "
-            "without any knowledge of the settings.",
+            "calls them. They split the error of restitution into parts that add up to it. The parts show the cause, "
+            "without the engine’s settings.",
         ),
         first=(
             _frames([row for row in where(told, ground=RIGID) if row["best"] or row["tier"] == "defaults"]),
-            table("The first impact: those with a cause, and all of default variants", [*wrong, *sound], *columns),
+            table(
+                "The first impact: those with a cause, and all of the engines’ main variants",
+                [*wrong, *sound],
+                *columns,
+            ),
         ),
         more=(
             table("The other impacts", where(ranked, cause=None, best=False), *columns),
@@ -61,7 +65,7 @@ def page(result: Result) -> Page:
         how=(
             f"A block of slenderness {settings['slenderness']:g} rad is released from {settings['start']:g} of it, on "
             "rigid ground and on the Caryatid’s base sliding freely. Its first impact is taken apart in every engine "
-            f"and variant with default settings. A cause is named for errors from {settings['least']:g} on.",
+            f"and variant at its default level. A cause is named for errors from {settings['least']:g} on.",
         ),
         evidence=tuple(
             (f"{NAME.of(row)}, {row['ground']}", row.get("why_not") or row["failure"]["reason"])
@@ -106,8 +110,8 @@ def _frames(rows):
                 chart.dots(time, values, row["engine"], grey=grey, filled=not grey, says=says, apart=at_once)
         charts.append(chart)
     caption = (
-        "The first impact on rigid ground. Coloured: default variants; grey: tier “defaults”. Only engines that tell "
-        "where the block was have frames 2 and 3."
+        "The first impact on rigid ground. Coloured: each engine’s main variant; grey: kind “defaults”. Only engines "
+        "whose position of the block is read have frames 2 and 3."
     )
     caption += MOVED if any(chart.moved for chart in charts) else ""
     return figure(charts, caption, [row["engine"] for row in rows if row["best"]])

@@ -375,7 +375,7 @@ def _cost(rows):
     )
     yield (
         f"{found} The Bouc-Wen law is the simplest one, linear in z: a multiplication where the algebraic law raises "
-        "to a power. Not tested are the paper's own setting, sub-steps inside a time-step scheme, and other exponents."
+        "to a power. Not tested are the paper's own case, sub-steps inside a time-step scheme, and other exponents."
     )
 
     yield _table(

@@ -306,7 +306,7 @@ def _compared(integrator, what, scenes, runs, rounds):
 def _cpu_at(error, errors, cpu):
     """CPU at `error` by logarithmic interpolation; None outside the errors of the levels."""
     errors = np.maximum(errors, 1e-17)
-    best = np.minimum.accumulate(errors)  # a lucky rung is not bought by the next
+    best = np.minimum.accumulate(errors)  # errors that do not increase with finer levels
     if not best[-1] <= error <= best[0]:
         return None
     return float(np.exp(np.interp(-np.log(error), -np.log(best), np.log(cpu))))

@@ -228,12 +228,12 @@ def _how(settings):
         f"{settings['x_max']:g} m), at {percent(settings['damping'])} damping; spectral velocity and displacement have "
         "the same dispersion. g tan γ: uplift acceleration; ωᵣ: rocking frequency. The curve P = Φ(ln(x/median)"
         "/dispersion) is that of greatest likelihood, p that of Pearson's test of its fit.",
-        "Left out, of all engines alike: N falls to 0, the friction demand is more than any contact provides, or with "
-        "a change of the scene by 10⁻⁴ the block ends otherwise in the model. Scenes share their motions: the interval "
-        "takes the runs under one motion as one.",
+        "Left out, of all engines alike: N falls to 0, the friction demand is more than any contact provides, or the "
+        "scene is near an outcome boundary: with a change by 10⁻⁴ the block ends otherwise in the model. Scenes share "
+        "their motions: the interval takes the runs under one motion as one.",
         f"Engines run the first {settings['runs_of_engines']} scenes whose PGA is {settings['near'][0]:g} to "
-        f"{settings['near'][1]:g} times g tan γ, default settings the first {settings['runs_of_defaults']}. Exact "
-        f"McNemar test, adjusted after Holm for the limit states, at a level of {LEVEL:g}. “analytic, perturbed”: the "
-        f"model with its restitution changed by 1 part in {1 / settings['change']:.0f}; an engine that differs no "
-        "more than that cannot be told from the model.",
+        f"{settings['near'][1]:g} times g tan γ, the variants “defaults” the first {settings['runs_of_defaults']}. "
+        f"Exact McNemar test, adjusted after Holm for the limit states, at a level of {LEVEL:g}. “analytic, "
+        f"perturbed”: the model with its restitution changed by 1 part in {1 / settings['change']:.0f}; an "
+        "engine that differs no more than that cannot be told from the model.",
     )

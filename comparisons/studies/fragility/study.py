@@ -97,23 +97,23 @@ CHANGE = 1e-4  # relative change of the restitution: the model's own sensitivity
 MODEL, PERTURBED = ("analytic", ""), ("analytic", "perturbed")
 NEAR = (1.3, 6.0)  # PGA/(g tan γ) of the runs that engines get: there outcomes are mixed
 TIME_LIMIT = 60.0  # s, of an engine's run; a stiff corner that hardly lifts may take more, and fails
-# runs: of the analytic model, of default variants (of 73 motions and more, none differing shows equality), of the tier
-# "defaults" (gross errors show in few)
+# runs: of the analytic model, of the engines' main variants (with 73 motions or more, no difference shows equality),
+# of the kind "defaults" (a few runs show large errors)
 FULL, QUICK = (2000, 80, 20), (200, 6, 2)
 TILTS = (0.1, 0.5, 1.0)  # limit states of |tilt|/slenderness
 KEPT = ("overturns", "tilt", "displacement")
 
 
 def variants_of(engines: Sequence[str]) -> list[tuple[str, str]]:
-    """(engine, variant) of what is compared: the default variant of every engine, then those of the tier "defaults"."""
+    """(engine, variant) compared: the main variant of every engine, then those of the kind "defaults"."""
     defaults = {name: get_engine(name).default_variant for name in engines}
     return [
         *defaults.items(),
         *(
             (name, variant)
             for name, default in defaults.items()
-            for variant, kind in get_engine(name).variants.items()
-            if kind.tier == "defaults" and variant != default
+            for variant, spec in get_engine(name).variants.items()
+            if spec.kind == "defaults" and variant != default
         ),
     ]
 
@@ -202,7 +202,7 @@ def _cases(scenes: Iterable[tuple[int, Scene]], engine: str, variant: str) -> li
 
 
 def _compared(drawn: Cloud, near: np.ndarray, few: int, variants: Iterable[tuple[str, str]]) -> Iterator[tuple]:
-    """((engine, variant), cases): the model with another restitution, then engines; of the tier "defaults" `few`."""
+    """((engine, variant), cases): the model with another restitution, then engines; of the kind "defaults" `few`."""
     chosen = [(int(seed), drawn.scenes[seed]) for seed in near]
     yield PERTURBED, _cases([(seed, _more_elastic(scene)) for seed, scene in chosen], *MODEL)
     for engine, variant in variants:
@@ -252,7 +252,7 @@ def _settings(request, scenes, counts, variants):
         "x_max": X_MAX,
         "change": CHANGE,
         "variants": [
-            {"engine": engine, "variant": variant, "tier": kind.tier, "friction": kind.friction}
-            for engine, variant, kind in kinds
+            {"engine": engine, "variant": variant, "tier": spec.kind, "friction": spec.friction}
+            for engine, variant, spec in kinds
         ],
     }

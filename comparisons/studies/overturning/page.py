@@ -132,7 +132,7 @@ def page(result: Result) -> Page:
                 Column("runs [-]", "runs"),
                 Column("of them with N < 0 in the analytic model [-]", "held_down"),
             ),
-            Head("Refinement levels"),
+            Head("Levels"),
             *_refinement(result),
         ),
         how=_how(result),
@@ -214,9 +214,9 @@ def _summary(rows):
 
 
 def _title(best, tuned):
-    """Of the tuned ones among the variants that are run at their engine's best; of all of these, if none is tuned."""
+    """The title: over the engines' main variants that are tuned; over all main variants if none is tuned."""
     rated = [row for row in best if (row["engine"], row["variant"]) in tuned]
-    how, rated = ("tuned", rated) if rated else ("at their best", best)
+    how, rated = ("tuned", rated) if rated else ("not tuned", best)
     largest = max((row["largest"] for row in rated if row["largest"] is not None), default=None)
     lost = [f"{row['engine']} finds {row['found']} of {row['of']}" for row in rated if row["found"] < row["of"]]
     words = f"Many pulses: {how}, engines move the overturning boundary by {percent(largest)} at most"
@@ -424,10 +424,10 @@ def _refinement(result):
         rules=[("y", 100 * LIMIT, "trusted")],
     )
     yield table(
-        f"Refinement levels, shifts known to ± {percent(result.settings['level_tolerance'] / 2, 1)}",
+        f"All levels, shifts known to ± {percent(result.settings['level_tolerance'] / 2, 1)}",
         levels,
         NAME,
-        Column("tier", "tier"),
+        Column("kind", "tier"),
         Column("setting", setting_of),
         FOUND,
         MEDIAN,
@@ -451,12 +451,12 @@ def _how(result):
         f"{len(where(result.rows, part='edge'))} boundaries of the analytic model: pulses {', '.join(s['shapes'])} of "
         f"{min(s['frequencies']):g} to {max(s['frequencies']):g} times the rocking frequency, amplitudes of "
         f"{s['amplitudes'][0]:g} to {s['amplitudes'][1]:g} g tan γ, on two grounds ({grounds}). Each engine bisects "
-        f"for its own to ± {percent(s['tolerance'] / 2, 1)} at default settings. Where the normal force of the "
+        f"for its own to ± {percent(s['tolerance'] / 2, 1)} at the default level. Where the normal force of the "
         "analytic model becomes negative, that model is the one not to be trusted, and the boundary is not rated. The "
         "drawn blocks are those of the random scenes, at rest; shapes of pulses take turns, frequencies are drawn from "
         f"{FREQUENCIES[0]:g} to {FREQUENCIES[1]:g} times the rocking frequency; of each the lowest boundary that no "
         f"other one is nearer to than {percent(APART, 1)}.",
         f"Trusted: all boundaries found, shifted by at most {percent(LIMIT, 1)}, no outcome that differs beyond the "
-        f"band; usable: all found, at most {percent(FAIR, 1)}. Tier assisted: the adapter applies the impact, so "
+        f"band; usable: all found, at most {percent(FAIR, 1)}. Kind “assisted”: the adapter applies the impact, so "
         "that the boundaries test the integration alone; no other level is tried.",
     )

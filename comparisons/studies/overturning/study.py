@@ -47,8 +47,8 @@ STEPPING = {
 class Grid:
     """What the study covers. frequencies over omega_r; scan: amplitudes over g tan(slenderness) of the coarse scan.
 
-    size: amplitudes and frequencies of the analytic maps. levels: which of a variant's refinement levels. drawn: how
-    many blocks of the promised range.
+    size: amplitudes and frequencies of the analytic maps. levels: which levels of a variant. drawn: number
+    of blocks drawn in the range of a statue.
     """
 
     grounds: tuple[str, ...]
@@ -93,12 +93,12 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
 
 
 def plan(request: Request, grid: Grid | None = None) -> Plan:
-    """The plan of the study: an answer first at default settings alone, then growing; grid: in place of FULL or QUICK.
+    """The plan of the study: first an answer at the default levels, then more; grid: in place of FULL or QUICK.
 
-    Rows by "part": "edge" (a boundary of the analytic model), "shift" (an engine's beside it, of its default variant
-    and of those of the tier "defaults"), "drawn edge" and "drawn shift" (the same of blocks drawn at random), "held"
-    (the same with the corner held down, where the model's normal force is negative), "refinement" (the same at
-    refinement levels), "confusion" (counts of outcomes), "disagreement" (an outcome that differs outside the band) and
+    Rows by "part": "edge" (a boundary of the analytic model), "shift" (an engine's beside it, of its main variant and
+    of those of the kind "defaults"), "drawn edge" and "drawn shift" (the same of blocks drawn at random), "held" (the
+    same with the corner held down, where the model's normal force is negative), "refinement" (the same at other
+    levels), "confusion" (counts of outcomes), "disagreement" (an outcome that differs outside the band) and
     "failure".
 
     Arrays: frequency, amplitude; ``<ground>/<shape>``: int16, shape (amplitudes, frequencies), impacts before
@@ -118,21 +118,21 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
         found += edges(grounds[ground], ground, shape, grid.frequencies)
     rows = [{"part": "edge", **vars(edge)} for edge in found]
     variants = [
-        (name, variant, kind) for name in request.engines for variant, kind in get_engine(name).variants.items()
+        (name, variant, spec) for name in request.engines for variant, spec in get_engine(name).variants.items()
     ]
     default = [
-        Setting(name, variant, kind.default)
-        for name, variant, kind in variants
+        Setting(name, variant, spec.default)
+        for name, variant, spec in variants
         if variant == get_engine(name).default_variant
     ]
     held = [
-        Setting(name, variant, settings.get(kind.accuracy_parameter, kind.default), settings)
-        for name, variant, kind in variants
-        if kind.takes_restitution
-        for settings in (kind.finer[0] if kind.finer else {},)
+        Setting(name, variant, settings.get(spec.accuracy_parameter, spec.default), settings)
+        for name, variant, spec in variants
+        if spec.takes_restitution
+        for settings in (spec.finer[0] if spec.finer else {},)
     ]
     first_scripts = [
-        Setting(name, variant, kind.default) for name, variant, kind in variants if kind.tier == "defaults"
+        Setting(name, variant, spec.default) for name, variant, spec in variants if spec.kind == "defaults"
     ]
     runs = _Runs(grounds, default)
     for setting in default:
@@ -162,14 +162,14 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
     return Computed(settings, rows + runs.failures, arrays)
 
 
-def _described(engine: str, variant: str, kind: Variant) -> dict[str, Any]:
-    """A variant, as the settings list it; levels: those that are tried of it."""
-    tried = () if kind.takes_restitution or kind.tier == "defaults" else kind.levels
-    return variant_settings(engine, variant, tried) | {"friction": kind.friction}
+def _described(engine: str, variant: str, spec: Variant) -> dict[str, Any]:
+    """A variant as listed in the settings; levels: those that are run."""
+    tried = () if spec.takes_restitution or spec.kind == "defaults" else spec.levels
+    return variant_settings(engine, variant, tried) | {"friction": spec.friction}
 
 
 def _refined(described, levels):
-    """The `Setting`s that are tried beside the default ones: the model by another method, then all levels."""
+    """The `Setting`s that are run beside the default ones: the model by another method, then all levels."""
     for variant in sorted(described, key=lambda variant: variant["tier"] != "model"):
         for level in variant["levels"][levels] or variant["levels"]:
             yield Setting(variant["engine"], variant["variant"], level, {variant["parameter"]: level})
@@ -215,7 +215,7 @@ def _maps(grounds, grid):
 
 
 class _Runs:
-    """Runs pulses through solvers and remembers failures, and the outcomes at default settings.
+    """Runs pulses in solvers, and stores failures and the outcomes at default levels.
 
     outcomes: {(engine, ground, shape, frequency, amplitude): (overturns, or None where undecided; whether of the scan)}
     """

@@ -40,15 +40,15 @@ def page(result: Result) -> Page:
                 "impacts, and within 2 % of both peaks, 0.01 of the restitution and 10 % of an impact's loss",
                 counts,
                 NAME,
-                Column("tier", "tier"),
+                Column("kind", "tier"),
                 *(Column(name, name) for name in CLASSES),
                 Column("right, of those not left out", "share", percent=True, within="share_within"),
-                Column("on an edge, and beyond it", "{beyond} of {edge}"),
+                Column("near an outcome boundary, and beyond it", "{beyond} of {edge}"),
             ),
         ),
         more=(
             table(
-                "Runs that differ, but for default settings",
+                "Runs that differ, without the variants “defaults”",
                 differing,
                 NAME,
                 Column("scene", "index"),
@@ -60,8 +60,9 @@ def page(result: Result) -> Page:
             f"{limits}; released or under a pulse, until the outcome is decided. {settings['below_range']} "
             "whose peak tilt stays below the range are not run.",
             "Left out, of all engines alike: the normal force falls to 0, the friction demand is more than any contact "
-            "provides, or the scene is on an edge, where a change by 10⁻⁴ makes such a difference in the analytic "
-            "model. Beyond it: runs of those scenes that fail, or lie outside what such changes do in the model.",
+            "provides, or the scene is near an outcome boundary: a change by 10⁻⁴ makes such a difference in the "
+            "analytic model. Beyond it: runs of those scenes that fail, or lie outside what such changes do in the "
+            "model.",
         ),
         evidence=tuple(
             (f"{NAME.text(row)}, scene {row['index']}: {row['failure']['reason']}", row["failure"]["message"])

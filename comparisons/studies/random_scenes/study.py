@@ -74,7 +74,7 @@ def _bearings(rng: np.random.Generator, block: Block, base: Base) -> Bearings:
     return Bearings(law=law, count=count, ka=k * _log(rng, *STIFFER), kb=k, alpha=alpha, damping=damping)
 
 
-SCENES, QUICK_SCENES = 500, 20  # of the engines' default variants
+SCENES, QUICK_SCENES = 500, 20  # of the engines' main variants
 FEWER = 5  # other variants run one scene in so many, and at least so many
 
 SEED = "Of the scenes, without it of the commit; with --check of the draw of runs."
@@ -101,7 +101,7 @@ def plan(request: Request, *, seed: Seed = None, scenes: Number = None) -> Plan:
         {
             "engine": row.case.solver,
             "variant": row.case.variant,
-            "tier": get_engine(row.case.solver).variants[row.case.variant or ""].tier,
+            "tier": get_engine(row.case.solver).variants[row.case.variant or ""].kind,
             **row.case.tag,
             **(_failed(row) if row.failed else row.values),
         }
@@ -120,7 +120,7 @@ def _failed(row: Row) -> dict[str, Any]:
 def compared(case: Case, response: Response) -> dict[str, Any]:
     """Measure: the class of a run, and in what it differs, or why it is left out.
 
-    A scene on an edge is left out of all engines alike; in what a run of it differs all the same is kept.
+    A scene near an outcome boundary is left out for all engines alike; the differences of its runs are kept.
     """
     quantities = [one.quantity for one in response.differences]
     return {

@@ -26,7 +26,7 @@ from ...showing.parts import (
     typeset,
     where,
 )
-from ...showing.wording import equal_mark, tally
+from ...showing.wording import NOT_COMPARED, equal_mark, tally
 from .study import ERRORS
 
 BOTH = "both"  # of the column "configuration": free-standing and isolated together
@@ -75,7 +75,7 @@ def page(result: Result) -> Page:
                 f"another time, with 95 % Wilson intervals by record; equal: at most {equal} differ",
                 both,
                 NAME,
-                Column("tier", "tier"),
+                Column("kind", "tier"),
                 *COUNTS,
             ),
         ),
@@ -172,7 +172,7 @@ def _title(both: list[dict[str, Any]], equal: str) -> str:
     title = f"Recorded motions: {words.count('yes')} of {len(words)} variants of engines end as the model does, "
     title += f"within {equal}"
     few = words.count(TOO_FEW)
-    return title + (f"; {few} have too few runs to say" if few else "")
+    return title + (f"; {few} inconclusive (too few runs)" if few else "")
 
 
 def _tilts(runs: list[dict[str, Any]]) -> Figure | None:
@@ -226,7 +226,8 @@ def _how(result: Result) -> tuple[str, ...]:
         f"{name}: " + ", ".join(f"{count} {outcome}" for outcome, count in found.items())
         for name, found in settings["mix"].items()
     )
-    left = [row["comparable"] for row in where(result.rows, part="scene") if row["comparable"] != "yes"]
+    why = [row["comparable"] for row in where(result.rows, part="scene") if row["comparable"] != "yes"]
+    left = [NOT_COMPARED.get(reason, reason) for reason in why]
     reasons = ", ".join(f"{left.count(reason)} {reason}" for reason in dict.fromkeys(left)) or "none"
     return (
         f"{settings['records']} records ({settings['source']}), their components one by one as they were recorded, "
@@ -235,11 +236,11 @@ def _how(result: Result) -> tuple[str, ...]:
         "peak ground velocity times ωᵣ over g tan γ, evenly over the logarithm, as the mass of the base over the "
         f"block’s; period [s] and damping of the bearings at {settings['x_max']:g} m, by one of the laws "
         f"{', '.join(settings['laws'])}. The ranges were chosen once, by the outcomes of the model alone: {mix}.",
-        "Tuned settings of the engines in question run all of them, their defaults and the tuned settings of other "
-        f"engines {settings['records_of_others']} records, both components. Left out, of all engines alike: {reasons}; "
-        "on an edge: with a change of the scene by 10⁻⁴ the block ends otherwise in the model. Components and "
-        "configurations of a record are not independent: the interval is Wilson’s of the share of runs, with the "
-        "number of records in place of that of runs.",
+        "The tuned variants of the engines in question run all of them; their defaults, and the tuned variants of "
+        f"other engines, {settings['records_of_others']} records, both components. Left out, of all engines alike: "
+        f"{reasons}. Near an outcome boundary: with a change of the scene by 10⁻⁴ the block ends otherwise in the "
+        "model. Components and configurations of a record are not independent: the interval is Wilson’s of the share "
+        "of runs, with the number of records in place of that of runs.",
         "The common horizon is where a change of the model by 10⁻⁴ has moved its tilt by a hundredth of the "
         "slenderness, the engine’s own where a change as large as its errors has. A peak too small to count is not "
         "compared.",

@@ -153,9 +153,9 @@ def plan(request: Request, *, records: Folder = None) -> Plan:
 def _variants(name: str) -> Iterator[tuple[str, str, bool]]:
     """(engine, variant, whether on all records) of an engine: what is tuned, and the defaults of those in question."""
     engine = get_engine(name)
-    for variant, kind in engine.variants.items():
-        if kind.tier == "tuned" or (engine.subject and kind.tier == "defaults"):
-            yield name, variant, engine.subject and kind.tier == "tuned"
+    for variant, spec in engine.variants.items():
+        if spec.kind == "tuned" or (engine.subject and spec.kind == "defaults"):
+            yield name, variant, engine.subject and spec.kind == "tuned"
 
 
 def _model_cases(found: dict[str, list[SampledMotion]]) -> list[Case]:
@@ -222,7 +222,7 @@ def _run_row(row: Row, known: Iterable[dict[str, Any]]) -> dict[str, Any]:
         "part": "run",
         "engine": row.case.solver,
         "variant": row.case.variant,
-        "tier": variant.tier,
+        "tier": variant.kind,
         **tag,
         "class": class_of(model["comparable"], row.values.get("quantities"), END),
         "comparable": model["comparable"],

@@ -1,4 +1,4 @@
-"""The runs of the restitution study: blocks released from rest, in every engine, variant and refinement level.
+"""The runs of the restitution study: blocks released from rest, in every engine, variant and level.
 
 Three parts: the grid (slenderness x base x level), blocks on bearings, released or under a pulse (slenderness x base x
 isolation period, laws in turn), and experiments that change one suspected cause of error at a time.
@@ -114,7 +114,7 @@ def bearing_scene(slenderness: float, ratio: float, period: float, law: str, exc
 
 
 def bearing_cases(grid: Grid, engines: Sequence[str]) -> Iterator[Case]:
-    """Blocks on bearings, at default settings; the laws take turns, so that each meets every value of the others."""
+    """Blocks on bearings, at default levels; the laws take turns, so that each is combined with all other values."""
     for places in product(*map(enumerate, grid.bearings)):
         ranks, (slenderness, ratio, period) = zip(*places, strict=True)
         law = LAWS[sum(ranks) % len(LAWS)]
@@ -144,7 +144,7 @@ def grid_cases(grid: Grid, engines: Sequence[str]) -> Iterator[Case]:
 
 
 def experiments_of(engines: Sequence[str]) -> list[tuple[str, str, str, str, tuple[float, ...]]]:
-    """(name, engine, variant, setting, values) of what the engines say is worth changing alone."""
+    """(name, engine, variant, setting, values) of the settings that variants name as worth changing one at a time."""
     return [
         (setting.replace("_", " "), engine, variant, setting, values)
         for engine, variant, kind in variants_of(engines)
@@ -166,8 +166,8 @@ def experiment_cases(grid: Grid, engines: Sequence[str]) -> Iterator[Case]:
                 for value in values:
                     yield case(name, ratio, start, value, engine, variant, {setting: value})
     # where the impact is decided with care at one step: starts so close that impacts lie within the longest step
-    for engine, variant, kind in variants_of(engines):
-        if kind.tier == "tuned" and kind.accuracy_parameter == "step":
+    for engine, variant, spec in variants_of(engines):
+        if spec.kind == "tuned" and spec.accuracy_parameter == "step":
             for start in map(float, np.linspace(0.600, 0.604, grid.phase_starts)):
                 for step in PHASE_STEPS:
                     yield case("phase", None, start, step, engine, variant, {"step": step})

@@ -80,15 +80,15 @@ def page(result: Result) -> Page:
             Head("Slenderness and base mass"),
             *_maps(cells),
             table(
-                "Default settings of all variants; assisted: the adapter applies eqs (7) and (8) itself",
+                "All variants at their default level; assisted: the adapter applies eqs (7) and (8) itself",
                 ratings.values(),
                 NAME,
-                Column("tier", "tier"),
+                Column("kind", "tier"),
                 Column("rating", "rating"),
-                Column("default setting", setting_of),
+                Column("default level", setting_of),
             ),
             table(
-                "Default settings, all slendernesses and bases together",
+                "Default levels, all slendernesses and bases together",
                 [{**row, "order": orders[NAME.of(row), row["ground"]]} for row in default],
                 NAME,
                 GROUND,
@@ -105,7 +105,7 @@ def page(result: Result) -> Page:
                 CPU,
             ),
             *_on_bearings(result),
-            Head("Refinement levels"),
+            Head("Levels"),
             *_refinement(levels),
             Head("Causes, one at a time"),
             *_causes(result, variants),
@@ -178,7 +178,7 @@ def _mark(row, error, worst):
 
 
 def rated(result: Result) -> list[dict[str, Any]]:
-    """A row for each variant at its default setting, with the worse of both grounds: what the first screen rates it by.
+    """A row for each variant at its default level, with the worse of both grounds, by which the first screen rates it.
 
     Settings, rms, worst, rms_state, worst_state, jump_rms, jump_worst, impacts, lost, failed, runs, orders and, in
     words, rating.
@@ -225,8 +225,8 @@ def _over_slenderness(cells, defaults):
         worst,
         GAMMA,
         ERROR,
-        "Error of restitution, root mean square; on the base the worst of its masses. Coloured: each engine at its "
-        "best; grey: its other settings, named under the pointer.",
+        "Error of restitution, root mean square; on the base the worst of its masses. Coloured: each engine’s "
+        "main variant; grey: its others, named under the pointer.",
         panel="ground",
         grey=lambda row: defaults[row["engine"]] != row["variant"],
         log="y",
@@ -241,7 +241,7 @@ def _maps(cells):
             BASE,
             GAMMA,
             Column(error.head, error.value, digits=1),
-            f"{error.head.capitalize()}, at default settings, over all starts and impacts. ✗: runs that failed, of "
+            f"{error.head.capitalize()}, at default levels, over all starts and impacts. ✗: runs that failed, of "
             "those made; they are not part of the error.",
             bounds=BOUNDS,
             panel=NAME.of,
@@ -256,7 +256,7 @@ def _on_bearings(result):
     columns = [FAILED, LOST, STATE, Column("worst impact [-]", "worst_state"), JUMP, WORST_JUMP, LATE, CPU]
     axes = {"slenderness": GAMMA, "ratio": BASE_RATIO, "period": PERIOD}
     yield Head("On bearings")
-    yield table("On bearings, at default settings, all scenes together", where(rows, factor="all"), NAME, *columns)
+    yield table("On bearings, at default levels, all scenes together", where(rows, factor="all"), NAME, *columns)
     yield beside(
         *(
             lines(
@@ -275,7 +275,7 @@ def _on_bearings(result):
         "On bearings, apart by law and by what moves the block",
         where(rows, factor={"law", "excitation"}),
         NAME,
-        Column("law or excitation", "of"),
+        Column("law or excitation", lambda row: "released" if row["of"] == "let go" else row["of"]),
         *columns,
     )
 
@@ -288,7 +288,7 @@ def _refinement(levels):
         lines(levels, CPU, DRAWN_ERROR, "And against the CPU time of the same runs.", panel="ground", log="xy"),
     )
     yield table(
-        "Refinement levels",
+        "All levels",
         levels,
         NAME,
         GROUND,

@@ -11,7 +11,8 @@ TICKS = ((LEAST, "0"), (0.01, "1 %"), (0.1, "10 %"), (1.0, "100 %"))
 BOUNDS = (0.01, 0.03, 0.1, 0.2, 0.3)
 
 SCENE, RUNS = Column("scene", "scene"), Column("runs [-]", "runs")
-WHAT = Column("change or engine", lambda row: row["change"] or NAME.of(row))
+ROTATED = {"direction turned by 30°": "motion rotated by 30°"}  # changes that rows name otherwise
+WHAT = Column("change or engine", lambda row: ROTATED.get(row["change"], row["change"]) or NAME.of(row))
 SHARE = Column(
     "outcomes changed",
     lambda row: row["outcomes_changed"] / row["runs"] if row["runs"] else None,
@@ -58,7 +59,7 @@ def page(result: Result) -> Page:
                 WHAT,
                 SHARE,
                 "Share of outcomes that each change alters, with 95 % Wilson intervals. Ink: changes of the scene in "
-                "the analytic model; coloured: engines in their default variant, on the unchanged scene.",
+                "the analytic model; coloured: the engines’ main variants, on the unchanged scene.",
                 Axis("outcomes changed", LEAST, 1.0, "log", TICKS),
                 panel="scene",
             ),
@@ -109,9 +110,9 @@ def _most(rows):
 def _title(shown):
     """What alters most in the first scene, and the engine that alters most in any."""
     first = _most(grouped(where(shown, engine=REFERENCE), "scene")[shown[0]["scene"],])
-    title = f"What matters more than the engine: {first['change']} changes {percent(SHARE.of(first))} of outcomes"
+    title = f"What matters more than the engine: {WHAT.of(first)} changes {percent(SHARE.of(first))} of outcomes"
     if most := _most([row for row in shown if row["engine"] != REFERENCE and row["runs"]]):
-        title += f", engines at their best {percent(SHARE.of(most))} (95 % upper bound {percent(most['high'])})"
+        title += f", engines’ main variants {percent(SHARE.of(most))} (95 % upper bound {percent(most['high'])})"
     return title
 
 
@@ -124,7 +125,7 @@ def _against_engines(scene, shown):
     worst = max(engines, key=lambda row: row["high"])
     above = sum(row["low"] > worst["high"] for row in changes)
     return (
-        f"{scene.capitalize()}: {above} of {len(changes)} changes alter more outcomes than any engine at its best, "
+        f"{scene.capitalize()}: {above} of {len(changes)} changes alter more outcomes than any engine’s main variant, "
         f"with 95 % certainty; the least certain is {NAME.of(worst)}, up to {percent(worst['high'])}."
     )
 
@@ -140,8 +141,8 @@ def _how(settings):
     return (
         f"{settings['motions']} synthetic motions, scaled by lognormal factors of deviation "
         f"{short(settings['spread'])} about the one that overturns half. Scenes: {scenes}. Engines take the first "
-        f"{best} motions in their default variant, {others} in others, whose peak is at least {settings['lifting']:g} "
-        "g tan γ" + (f"; where none changes, {' and '.join(unseen)} are not excluded." if unseen else "."),
-        "The vertical motion is that of another seed. Bearings are taken as stiff vertically; real ones sway at 10 to "
-        "20 Hz, so that twice the usual vertical motion is run too.",
+        f"{best} motions in their main variant, {others} in others, whose peak is at least {settings['lifting']:g} "
+        "g tan γ" + (f"; where none changes, the 95 % upper bounds are {' and '.join(unseen)}." if unseen else "."),
+        "The vertical motion is that of another seed. Bearings are vertically rigid in the model; real ones vibrate at "
+        "10 to 20 Hz, so that twice the usual vertical motion is run, too.",
     )

@@ -105,7 +105,7 @@ SPREAD = 0.4  # standard deviation of the logarithm of the motions' factors
 TRIED = np.geomspace(0.1, 4.0, 40)  # factors among which the one is found that overturns half
 # name: (shipped scene, slendernesses [rad])
 SCENES = {"free-standing": ("caryatid-rigid", (0.15, 0.2, 0.28)), "isolated": ("caryatid-isolated", (0.12, 0.15, 0.18))}
-# motions for the changes, for default variants of engines, for other variants (engines run the middle slenderness)
+# motions for the changes, for the engines' main variants, for others (engines run the middle slenderness)
 FULL, QUICK = (300, 60, 12), (16, 2, 1)
 LIFTING = 1.3  # least peak over g tan γ of the engines' motions: a stiff corner that hardly lifts takes minutes
 TIME_LIMIT = 60.0  # s, of an engine's run

@@ -20,7 +20,7 @@ def page(result: Result) -> Page:
         f"The problem sheet: {len(right)} of {len(rows)} variants are within {USABLE:g} in all {len(scenes)} scenes",
         (
             "Scenes stated as equations and numbers, for codes that are not ours (rocking sheet, rocking score), here "
-            "solved by the engines with default settings. Error: the largest of a scene’s answers, over the scale of "
+            "solved by the engines at default levels. Error: the largest of a scene’s answers, over the scale of "
             "each. The exact answers’ own is the largest difference to another tolerance and to a second "
             "implementation.",
         ),

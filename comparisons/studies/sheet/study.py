@@ -12,7 +12,7 @@ from ...sheet.variants import error, of_response, own_error, solved
 
 
 def plan(request: Request) -> Plan:
-    """The plan of the study: each scene in each variant at its default setting; quick: in default variants only."""
+    """The plan of the study: each scene in each variant at its default level; quick: in main variants only."""
     cases = [
         Case(problem.scene, engine, variant, tag={"scene": problem.name})
         for engine in request.engines

@@ -235,10 +235,10 @@ def refined(levels: Sequence[float]) -> list[float]:
     return sorted({*levels, *means}, reverse=levels[0] > levels[-1])
 
 
-def levels_of(kind: Variant, quick: bool) -> list[float]:
-    """Levels of a variant's accuracy parameter that are run: of default settings, whose error hardly moves, few."""
-    few = (kind.levels[0], kind.default) if quick else kind.levels
-    return list(dict.fromkeys(few)) if quick or kind.tier == "defaults" else refined(kind.levels)
+def levels_of(spec: Variant, quick: bool) -> list[float]:
+    """Levels of a variant that are run; few of the kind "defaults", whose error hardly changes."""
+    few = (spec.levels[0], spec.default) if quick else spec.levels
+    return list(dict.fromkeys(few)) if quick or spec.kind == "defaults" else refined(spec.levels)
 
 
 def entries(scenes: Sequence[Trial], engines: Sequence[str], quick: bool) -> list[Entry]:

@@ -1,8 +1,8 @@
 """Problems A and B, a block alone, that every integrator solves, with references of 30 digits: the kernel, scipy's
 `solve_ivp` and, of the optional extra `peers`, heyoka, each set up by someone who wants it fast.
 
-No classes, floats instead of arrays in the right-hand side, the smallest set of events, a first step taken from the
-length of the coming hop. The readable set-up, the one to learn from, is `analytic.twin`.
+There are no classes, the right-hand side uses floats instead of arrays, the set of events is the smallest possible, and
+the first step follows from the length of the next swing. The simple form to learn from is `analytic.twin`.
 """
 
 import functools

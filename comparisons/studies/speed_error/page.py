@@ -34,9 +34,9 @@ FIRST = ("free-sliding", PLAIN)  # scenes of the report's first page
 LEVELS = (1e-2, 1e-3, 1e-4, 1e-5)  # of an error
 FINE, FINE_LEVELS, FINEST = "horizon_tilt", (1e-6, 1e-9, 1e-12), 1e-16  # of integrators alone; the last is drawn
 ASKED = 1e-3
-USUAL = 1e-8  # tolerance of the kernel that engines' default settings are compared with; its own default costs more
+USUAL = 1e-8  # tolerance of the kernel in comparisons with engines at default levels; its own default takes longer
 DRAWN, ROUNDING = 1e-9, 1e-13  # errors below the first are drawn there, those below the second tell no order
-NOISE = 95  # percentile of the settings' spread over the rounds, below which two costs are not told apart
+NOISE = 95  # percentile of the spread of costs over the rounds, below which two costs are not distinguished
 KERNEL = "analytic, kernel"
 # What is shown of a scene: the errors of one line that it has, of the first line of which it has any. All are numbers
 # without a unit.
@@ -70,10 +70,10 @@ def page(result: Result) -> Page:
         _title(result, errors[shown_scene], _noise(every)),
         (
             "Every solver runs through levels of its accuracy parameter; error and CPU time come from the same runs. "
-            "Cheapest is the cheapest level at which it and all finer ones keep the error: a lucky run does not count.",
+            "Cheapest is the cheapest level at which it and all finer ones keep the error: none counts by chance.",
             "In brackets: CPU time over the analytic model's; level of the accuracy parameter. Assisted: the adapter "
-            f"applies the impact. Costs within a factor of {number(_noise(every), 3)} are of one rank: as much the "
-            "same setting differs between rounds.",
+            f"applies the impact. Costs within a factor of {number(_noise(every), 3)} are of one rank: the cost of "
+            "one level differs as much between rounds.",
         ),
         first=(
             _figure([row for key in first for row in errors[key]], CPU, CAPTION, rows),
@@ -115,14 +115,14 @@ def page(result: Result) -> Page:
 
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
-    """CPU time at the default settings over the analytic model's, by (engine, variant); none without that scene."""
+    """CPU time at the default levels over the analytic model's, by (engine, variant); none without that scene."""
     marks = {
         (row["engine"], row["variant"]): Mark(
             f"{RATIO.text(row)} ×",
             "none",
             f"error of restitution {number(row['restitution'], 2)}"
             + (f"; {SHARE.head} {SHARE.text(row)}" if row["share"] is not None else "")
-            + (f"; {row['lost']} impacts lost" if row["lost"] else ""),
+            + (f"; {row['lost']} impacts missed" if row["lost"] else ""),
             RATIO.of(row),
         )
         for row in _defaults(result)
@@ -136,7 +136,7 @@ SHARE = Column("engine's own share", lambda row: "not measured" if row["share"] 
 
 
 def _defaults(result):
-    """A row for each variant at its default settings in the scene `PLAIN`, with ratio and share; cheapest first."""
+    """A row for each variant at its default level in the scene `PLAIN`, with ratio and share; cheapest first."""
     rows = [row for row in where(levels_run(result), scene=PLAIN, model=NEEDED, principal=True) if "cpu_seconds" in row]
     kernel = where(rows, name=KERNEL, level=USUAL)
     shares = {SOLVER.of(row): row["share"] for row in where(result.rows, part="share", failure=None)}
@@ -157,14 +157,14 @@ def _defaults(result):
 
 def _defaults_table(result):
     return table(
-        f"Isolated, rocking, default settings; the analytic model at a tolerance of {short(USUAL)}. Own share: CPU "
+        f"Isolated, rocking, default levels; the analytic model at a tolerance of {short(USUAL)}. Own share: CPU "
         "time inside the engine's compiled functions over that of the run; the rest is Python, mostly the adapter's",
         _defaults(result),
         NAME,
         RATIO,
         SHARE,
         *(Column(MEASURES[key], key) for key in SHOWN[1]),
-        Column("impacts lost [-]", "lost"),
+        Column("impacts missed [-]", "lost"),
     )
 
 
@@ -184,7 +184,7 @@ FINE_CAPTION = (
 def levels_run(result: Result) -> list[dict[str, Any]]:
     """The rows of all solvers at their levels, one for each error shown: with name, title of the scene, measure, error.
 
-    The error is None where the run failed, lost impacts or found no boundary. principal: it is the scene's first.
+    The error is None where the run failed, missed impacts or found no boundary. principal: it is the scene's first.
     """
     scenes = result.settings["scenes"]
     return [
@@ -237,7 +237,7 @@ def _title(result, rows, noise):
 
 
 def _noise(rows):
-    """The factor by which the same setting differs between rounds, but for the most restless of them."""
+    """The factor by which the cost of one level differs between rounds, without the largest ones."""
     return float(
         np.percentile([row["cpu_high"] / row["cpu_low"] for row in rows if "cpu_seconds" in row] or [1], NOISE)
     )
@@ -288,7 +288,7 @@ def _costs(result, rows):
 
 
 def _without_error(every):
-    """What failed, lost impacts or found no boundary: it has no place in figures and tables of cost."""
+    """Levels that failed, missed impacts or found no boundary, which figures and tables of cost leave out."""
     counted = []
     for (name, model, title, measure), some in grouped(every, "name", "model", "title", "measure").items():
         sound = [row for row in some if not row["failure"]]
@@ -309,7 +309,7 @@ def _without_error(every):
         SCENE,
         Column("levels [-]", "all"),
         Column("failed [-]", "failed"),
-        Column("impacts lost [-]", "lost"),
+        Column("impacts missed [-]", "lost"),
         Column("no overturning boundary near the reference's [-]", "none"),
     )
 
@@ -356,13 +356,13 @@ def _more_than_needed(result, every):
     ]
 
     def error(row):
-        lost = f" (lost: {row['lost']})" if row["lost"] else ""
+        lost = f" (missed: {row['lost']})" if row["lost"] else ""
         return number(row["errors"].get(row["measure"]), 2) + lost
 
     yield Head("More than the scene needs")
     yield table(
         "A scene modelled with more than it needs, at the same level: ratio of CPU times, errors as in the tables "
-        "above, lost impacts",
+        "above, missed impacts",
         [row for row in pairs if row["model"] != NEEDED],
         Column("modelled", "model"),
         NAME,
@@ -374,8 +374,8 @@ def _more_than_needed(result, every):
     )
     yield table(
         "A Bouc-Wen bearing: CPU time over the algebraic law's at the same level; what it changes in the scene itself. "
-        "That it costs more is not confirmed here; the paper's own setting (sub-stepped inside a time-step scheme) is "
-        "not tested",
+        "That it costs more is not confirmed here; the paper's own case (sub-stepped inside a time-step scheme) is not "
+        "tested",
         laws,
         NAME,
         SCENE,
@@ -431,12 +431,12 @@ def _how(result, every):
     differences = [scene["reference_difference"].get(measure, 0.0) for scene in scenes for measure in _measures(scene)]
     return (
         f"{result.settings['rounds']} fresh processes one after the other; in each, every solver has its turn after a "
-        "warm-up. CPU times are medians, of the simulation alone: no import, compilation or building of the scene. The "
-        f"same setting differs between rounds by up to a factor of {number(_noise(every), 3)} in "
-        f"{NOISE} % of the settings: costs nearer than that are not told apart.",
+        "warm-up. CPU times are medians, of the simulation without import, compilation and building of the scene. The "
+        f"cost of one level differs between rounds by up to a factor of {number(_noise(every), 3)} for "
+        f"{NOISE} % of the levels: costs closer than that are not distinguished.",
         "References are the kernel at its tightest; an independent solution by scipy differs from them by at most "
         f"{number(max(differences), 1)} in the errors shown. The model's own solvers apply eq. (7): their error of "
-        f"restitution under a motion is rounding. The errors of {same} of {len(every)} settings are the same bit for "
+        f"restitution under a motion is rounding. The errors of {same} of {len(every)} levels are the same bit for "
         f"bit in every round{'; not those of ' + ', '.join(differing) if differing else ''}.",
         "On a free base the largest tilt is that of the start and has no error. Errors of the peak displacement and "
         "of the overturning boundary are relative. The boundary is searched: six runs, each at the amplitude where "

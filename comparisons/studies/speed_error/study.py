@@ -73,7 +73,7 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
 
 
 def errors(trial: Trial, values: Mapping[str, Any], shifts: Sequence[float] | None = None) -> dict[str, float]:
-    """Absolute errors by measure, of those the trial asks for and the run can show; and "lost", its lost impacts.
+    """Absolute errors by measure, as far as the trial has them and the run shows them; and "lost", its missed impacts.
 
     Parameters
     ----------

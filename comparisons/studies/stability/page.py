@@ -18,7 +18,7 @@ SIGNS = {
     FAILED: ("✗", FAILED),
     "": ("–", "shade"),
 }
-NOT_TRIED, NONE_FOUND = "not tried", "none found"  # of finer settings
+NOT_TRIED, NONE_FOUND = "not tried", "none found"  # of finer levels
 NOT_RUN = {"result": "not run", "sign": "", "measure": "–", "value": None, "tolerance": None, "remedy": NOT_TRIED}
 MOST, SOME = 0.85, 0.6  # shares of cases from which a solver may be trusted, and is usable with care
 NOTED = 2  # cases named in the note of the first table
@@ -57,22 +57,22 @@ def page(result: Result) -> Page:
                 cells,
                 cases,
                 where(variants, best=True),
-                "Default settings. ✓ right, ~ differs, ≠ another outcome, ✗ failed; under the pointer: the measure "
+                "Default levels. ✓ right, ~ differs, ≠ another outcome, ✗ failed; under the pointer: the measure "
                 "farthest outside its tolerance. 2nd code: the independent second implementation; steps: plain time "
                 "stepping of the equations.",
             ),
             table(
-                "Results with default settings",
+                "Results at default levels",
                 counts,
                 NAME,
                 *(Column(f"{name} [-]", name) for name in (RIGHT, DIFFERS, FAILED)),
-                Column("right with finer settings [-]", FINER),
+                Column("right at finer levels [-]", FINER),
             ),
         ),
         more=(
             _matrix(cells, cases, where(variants, best=False), "The engines’ other variants. –: not run."),
             table(
-                "Where default settings are not right",
+                "Where default levels are not right",
                 wrong,
                 CASE,
                 NAME,
@@ -81,7 +81,7 @@ def page(result: Result) -> Page:
                 Column("value", "value", digits=None),
                 TOLERANCE,
                 Column("also outside", "others"),
-                Column("finer settings that are right", "remedy"),
+                Column("finer level that is right", "remedy"),
             ),
             Head("Measures and cases"),
             table(
@@ -120,8 +120,8 @@ def page(result: Result) -> Page:
             "form. Trajectories are compared up to each scene’s sensitivity horizon and unstable point; beyond, only "
             "outcomes that a change of 10⁻⁴ does not alter. Energy drift and gain are what exceeds the same measure "
             "of the reference.",
-            "Where a result is not right, finer settings are tried in turn. Scenes of ten minutes are run by default "
-            f"variants alone. A run may take {result.settings['time_limit']:g} s.",
+            "Where a result is not right, finer levels are run in turn. Scenes of ten minutes are run by the engines’ "
+            f"main variants only. A run may take {result.settings['time_limit']:g} s.",
         ),
         evidence=tuple(
             (
@@ -148,9 +148,9 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
 
 
 def _cells(result):
-    """{(case, name): row with default settings, the measure farthest outside in it, and what finer settings do}.
+    """{(case, name): row at the default level, its measure farthest outside, and the result of finer levels}.
 
-    These are tried in turn until one is right: the last one counts.
+    These are run in turn until one is right: the last one counts.
     """
     names = [NAME.of(variant) for variant in result.settings["variants"]]
     cells = {(case, name): NOT_RUN for case in result.settings["cases"] for name in names}
@@ -186,7 +186,7 @@ def _remedy(row, finer):
 
 
 def _counts(result, cells):
-    """Each variant with the numbers of its results, of runs, and of finer settings tried and right."""
+    """Each variant with the numbers of its results, of runs, and of finer levels run and right."""
     for variant in result.settings["variants"]:
         rows = [cell for (_, name), cell in cells.items() if name == NAME.of(variant) and cell is not NOT_RUN]
         found = {kind: len(where(rows, result=kind)) for kind in (RIGHT, DIFFERS, FAILED)}
@@ -205,13 +205,13 @@ def _title(cells, cases, engines):
 
 
 def _most(counts):
-    """Who solves most, and what finer settings change."""
+    """The solvers with most right cases, and the effect of finer levels."""
     most = max((row[RIGHT] for row in counts), default=0)
     names = " and ".join(NAME.of(row) for row in counts if row[RIGHT] == most)
     run, right, tried, cured = (sum(row[key] for row in counts) for key in ("run", RIGHT, "tried", FINER))
     return (
         f"Of the solvers that step, most cases are right in {names}: {most}. Of their {run - right} results that are "
-        f"not right, finer settings were tried for {tried} and are right in {cured}."
+        f"not right, finer levels were run for {tried} and are right in {cured}."
     )
 
 
@@ -236,7 +236,7 @@ def _matrix(cells, cases, variants, caption):
             cell = cells[case, name]
             says = f"{_readable(case)}, {name}: {cell['result']}; {cell['measure']} {short(cell['value'])}, tolerance "
             sign, kind = SIGNS[cell["sign"]]
-            chart.cell(i, j, kind, sign, f"{says}{short(cell['tolerance'])}; finer settings: {cell['remedy']}")
+            chart.cell(i, j, kind, sign, f"{says}{short(cell['tolerance'])}; finer levels: {cell['remedy']}")
         charts.append(chart)
     return figure(charts, caption)
 

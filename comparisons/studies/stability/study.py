@@ -1,4 +1,4 @@
-"""The stability study: each hard case in each variant, judged measure by measure, then again with finer settings."""
+"""The stability study: each hard case in each variant, judged measure by measure, then again at finer levels."""
 
 import dataclasses
 import math
@@ -19,8 +19,8 @@ from .cases import HardCase, hard_cases
 from .oracle import LAST_PART, Oracle, column_at, comparable_until, oracle, twin_step
 
 QUICK_LIMIT, TIME_LIMIT = 60.0, 300.0  # s, of one run; of those that end the longest takes 75 s of CPU time
-# s; scenes longer than the first are run with finer settings, longer than the second run at all, in the engines'
-# default variants only: another's ten minutes take 45 to 300 s of CPU time
+# s; only in the engines' main variants are scenes longer than the first run at finer levels, and scenes longer than
+# the second run at all: ten minutes take 45 to 300 s of CPU time in others
 LONG, LONGEST = 60.0, 300.0
 RIGHT, DIFFERS, FAILED = "right", "differs", "failed"
 DEFAULT, FINER = "default settings", "finer settings"  # parts of the rows
@@ -43,7 +43,7 @@ MEASURES = {
     "impacts too few": ("", "than the oracle's with 5 % or more of its largest rate; not whether their times match"),
     "tilt at rest": ("of the slenderness", "where the oracle rests or stands: rattling and drift"),
     "energy drift": ("of m g R (1 − cos γ)", "change between events beyond what the measure shows on the oracle"),
-    "energy gain": ("of the energy scale", "rise from nowhere, beyond what the measure shows on the oracle"),
+    "energy gain": ("of the energy scale", "rise without a source, beyond what the measure shows on the oracle"),
     "energy imbalance": ("of the largest entry", "of the solver's own energy ledger"),
 }
 
@@ -77,33 +77,33 @@ TOLERANCES = {
         "impacts too few": (0, "a count"),
         "tilt at rest": (1e-3, "a hundredth of a swing that anyone would notice"),
         "energy drift": (0.02, "as the tilt: the energy of a swing to 2 %"),
-        "energy gain": (0.02, "energy from nowhere has no excuse but the measure's error"),
+        "energy gain": (0.02, "no physical source; the tolerance is the measure's own error"),
     },
 }
 
 
 @dataclasses.dataclass(frozen=True)
 class Solver:
-    """What solves the cases: an engine's variant, or a code of ours.
+    """A solver of the cases: an engine's variant, or a code of ours.
 
     Parameters
     ----------
     engine, variant, tier : str
-        Of a code of ours variant and tier are "".
+        `tier` is the variant's kind. Of a code of ours both are "".
     kind : str
-        Of its tolerances.
+        Class of its tolerances.
     parameter, default, levels
         The accuracy parameter, if it has one, its default and its levels.
     applies_impact : bool
         It is given eqs (7) and (8).
     settings : dict
-        Its default settings.
+        Settings at the default level.
     step : str or None
         The setting that is a step [s].
     finer : tuple of dict
-        Settings to try in turn where the result is not right.
+        Settings of finer levels, to run in turn where the result is not right.
     best : bool
-        The engine's default variant, or a code of ours.
+        The engine's main variant, or a code of ours.
     """
 
     engine: str
@@ -120,7 +120,7 @@ class Solver:
     best: bool = True
 
     def case(self, hard: HardCase, finer: int | None = None) -> Case:
-        """The run of a hard case; finer: which of the finer settings, None for the default ones."""
+        """The run of a hard case; finer: index of the finer level, None for the default one."""
         settings = {} if self.variant else dict(self.settings)
         if self.engine == "twin":
             settings["max_step"] = twin_step(hard.scene)
@@ -154,19 +154,19 @@ def solvers(engines: Iterable[str]) -> list[Solver]:
             Solver(
                 name,
                 variant,
-                kind.tier,
+                spec.kind,
                 "stepping",
-                kind.accuracy_parameter,
-                kind.default,
-                tuple(sorted(kind.levels)),
-                kind.takes_restitution,
-                dataclasses.asdict(kind.settings),
-                kind.step,
-                kind.finer,
+                spec.accuracy_parameter,
+                spec.default,
+                tuple(sorted(spec.levels)),
+                spec.takes_restitution,
+                dataclasses.asdict(spec.settings),
+                spec.step,
+                spec.finer,
                 variant == get_engine(name).default_variant,
             )
             for name in engines
-            for variant, kind in get_engine(name).variants.items()
+            for variant, spec in get_engine(name).variants.items()
         ),
     ]
 
@@ -291,14 +291,14 @@ def worst(row: Mapping[str, Any]) -> tuple[str, float | None, float]:
 
 
 def plan(request: Request, names: Iterable[str] | None = None, columns: Sequence[Solver] | None = None) -> Plan:
-    """The plan of the study: all cells, then finer settings in turn where the result was not "right".
+    """The plan of the study: all cells, then finer levels in turn where the result was not "right".
 
-    Scenes longer than `LONGEST` are asked of engines' default variants only.
+    Scenes longer than `LONGEST` are run in the engines' main variants only.
 
     Parameters
     ----------
     request : Request
-        quick: the quick cases only, and finer settings of the engines' default variants only.
+        quick: the quick cases only, and finer levels of the engines' main variants only.
     names : iterable of str or None
         Only these cases.
     columns : sequence of Solver or None
@@ -314,7 +314,7 @@ def plan(request: Request, names: Iterable[str] | None = None, columns: Sequence
     left = [(case, column) for case in cases for column in columns if column.best or case.scene.duration <= LONGEST]
     finer, rows = None, []
     while left:
-        label = "hard cases" if finer is None else f"finer settings, round {finer + 1}"
+        label = "hard cases" if finer is None else f"finer levels, round {finer + 1}"
         runs = yield Batch([column.case(case, finer) for case, column in left], measure, label, limit)
         found = [row_of(case, column, run) for (case, column), run in zip(left, runs, strict=True)]
         rows += found

@@ -9,7 +9,7 @@ from ...running.provenance import Result
 
 
 def plan(request: Request) -> Plan:
-    """The plan of the study: rows of `TABLE`, where it is quick of default variants only."""
+    """The plan of the study: rows of `TABLE`; quick: of the engines' main variants only."""
     rows = []
     for engine in request.engines:
         log(f"tolerances: {engine}")

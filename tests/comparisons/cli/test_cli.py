@@ -115,9 +115,9 @@ def test_engines_lists_what_is_there_and_what_is_not(rocking, monkeypatch):
 @pytest.mark.parametrize("name", installed_engines())
 def test_engines_with_a_name_tells_all_of_it(rocking, name):
     engine, (status, out, _) = get_engine(name), rocking("engines", name)
-    assert status == 0 and f"{name} (" in out and f"--variant {engine.default_variant} (default, " in out
+    assert status == 0 and f"{name} (" in out and f"--variant {engine.default_variant} (main, " in out
     for variant, one in engine.variants.items():
-        assert f"--variant {variant} (" in out and one.tier in out
+        assert f"--variant {variant} (" in out and one.kind in out
         assert f"the engine computes: {one.computes}" in out and f"the adapter imposes: {one.imposes}" in out
         assert all(f"{setting}=" in out for setting in vars(one.settings))
         assert f"{one.accuracy_parameter}={one.default:g} (accuracy parameter)" in out
@@ -289,7 +289,8 @@ def test_a_base_that_nothing_holds_is_said_first_and_once(rocking, tmp_path, com
 
 
 CALM = 0.27  # scale at which it peaks at six tenths of uplift
-SENTENCE = "The outcome depends on less than 5% of the motion: as it is the block overturns, at -0.90% it rocks."
+SENSITIVE = "is sensitive to changes of the motion"
+SENTENCE = "The outcome is sensitive to changes of the motion below 5%: the block overturns, but at -0.90% it rocks."
 
 
 @pytest.mark.parametrize("scale", [CLIFF, CALM])
@@ -301,7 +302,7 @@ def test_what_little_of_the_motion_changes_is_said_last_and_once_and_only_where_
     status, out, err = rocking(command[0], file, *command[1:], "--json", found)
     assert status == 0, err
     *_, last = (line for line in out.splitlines() if line.strip())
-    assert ("depends on" in out) == (last == SENTENCE) == (scale == CLIFF) and out.count("depends on less than") < 2
+    assert (SENSITIVE in out) == (last == SENTENCE) == (scale == CLIFF) and out.count(SENSITIVE) < 2
     told = json.loads(found.read_text())
     warnings = [one for one in told.get("responses", [told])[0]["warnings"] if one["kind"] == "motion"]
     assert [(one["quantity"], one["limit"]) for one in warnings] == [("outcome", 0.05)] * (scale == CLIFF)

@@ -28,7 +28,7 @@ def test_every_installed_tuned_default_variant_has_its_rows():
     wanted = set(QUANTITIES) - {"restitution from swings, |mean error|"}  # of one variant alone
     for name in installed_engines():
         engine = get_engine(name)
-        if engine.variants[engine.default_variant].tier == "tuned":
+        if engine.variants[engine.default_variant].kind == "tuned":
             assert {(row.variant, row.quantity) for row in rows(name)} == {
                 (engine.default_variant, quantity) for quantity in wanted
             }

@@ -80,7 +80,9 @@ def test_the_recommended_engine_computes_its_impacts_itself_and_the_cheapest_win
         9.0,
     )  # not “given”: its adapter applies the impact
     words = " ".join(recommendation(found, judgements, "slenderness 0.1 to 0.5"))
-    assert "exudyn set as “fine”: restitution within 1e-05, at 9.0 times" in words and "slenderness 0.1 to 0.5" in words
+    assert (
+        "exudyn, variant “fine”: restitution within 1e-05, at 9.0 times" in words and "slenderness 0.1 to 0.5" in words
+    )
     assert "1 of 1 are not to be trusted (restitution off by 0.20 in exudyn)" in not_to_do(found, judgements)[0]
     assert "No engine that was run here" in " ".join(recommendation([found[1]], judgements, ""))
     words = recommendation(found, judgements, "slenderness 0.1 to 0.5", "slenderness 0.01 is outside the range")

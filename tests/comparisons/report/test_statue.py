@@ -79,7 +79,7 @@ def test_each_scene_has_its_card_first_with_its_outcome_in_the_title(page, scene
 
 def test_the_cliff_is_said_loudly_and_only_where_it_is(page):
     bronze, bust, _ = cards(page)
-    assert "depends on less than 5%" in bronze
+    assert "sensitive to changes of the motion below 5%" in bronze
     assert "depends on" not in bust
 
 

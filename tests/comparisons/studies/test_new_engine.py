@@ -121,7 +121,7 @@ def test_runs_of_it_that_fail_make_rows_that_are_declared_and_shown(crude, tmp_p
 def test_so_they_do_in_the_longer_studies(crude, monkeypatch, tmp_path):
     grid = dataclasses.replace(overturning.QUICK, grounds=("rigid ground",), size=(60, 8))
     monkeypatch.setitem(overturning.STEPPING, "levels", (1e-2,))
-    monkeypatch.setitem(engines.ENGINES["crude"].variants, "euler", dataclasses.replace(crude, tier="tuned"))
+    monkeypatch.setitem(engines.ENGINES["crude"].variants, "euler", dataclasses.replace(crude, kind="tuned"))
     records = str(pairs(tmp_path, 2))
     (paper, _), *_ = answered(simulations(synthetic_motion(), ASK.engines, True), failing(history=True))
     rows = {
@@ -182,7 +182,7 @@ def test_every_study_of_this_project_is_covered():
 
 @pytest.mark.parametrize("crude", [FAKE_ENGINE], indirect=True)
 def test_the_study_of_recorded_motions_runs_it_where_it_is_tuned(crude, monkeypatch, tmp_path):
-    kind = dataclasses.replace(crude, tier="tuned")
+    kind = dataclasses.replace(crude, kind="tuned")
     monkeypatch.setitem(engines.ENGINES["crude"].variants, "euler", kind)
     study = get_study("recorded")
     found = answered(study.plan(ASK, records=str(pairs(tmp_path, 2))), by_model(history=True))[-1]

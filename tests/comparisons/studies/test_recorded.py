@@ -115,7 +115,7 @@ def test_engines_in_question_run_all_and_others_whole_pairs_of_twenty_records():
                 step = asked.send(None)
     except StopIteration:
         pass
-    tiers = {pair: get_engine(pair[0]).variants[pair[1]].tier for pair in sizes if pair[1]}
+    tiers = {pair: get_engine(pair[0]).variants[pair[1]].kind for pair in sizes if pair[1]}
     subjects = {name for name in installed_engines() if get_engine(name).subject}
     assert subjects and {name for name, _ in tiers} >= subjects
     for pair, tier in tiers.items():

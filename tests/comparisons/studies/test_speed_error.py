@@ -213,7 +213,7 @@ def test_a_level_that_failed_or_lost_impacts_has_no_error():
     )
     assert [one["error"] for one in rows] == [1e-5, None, None] and passing(rows, 1e-3) == {}
     (counted,) = cells(result_of(*rows), "failed [-]")
-    assert (counted["levels [-]"], counted["failed [-]"], counted["impacts lost [-]"]) == ("3", "1", "1")
+    assert (counted["levels [-]"], counted["failed [-]"], counted["impacts missed [-]"]) == ("3", "1", "1")
 
 
 @pytest.mark.parametrize(
@@ -251,7 +251,7 @@ def test_observed_order_of_a_second_order_method():
 def test_more_than_needed_stands_beside_what_is_needed():
     rows = [row("a", 2.0, 1e-4), row("a", 6.0, 1e-2, model="more", lost=1), row("a", 3.0, 1e-4, law="bouc-wen")]
     (more,) = cells(result_of(*rows), "modelled")
-    assert (more["CPU time ratio [-]"], more["error with more"]) == ("3.00", "0.010 (lost: 1)")
+    assert (more["CPU time ratio [-]"], more["error with more"]) == ("3.00", "0.010 (missed: 1)")
     assert more["error of the model needed"] == "1.0·10⁻⁴"
     (law,) = cells(result_of(*rows), "peak displacement changed by")
     assert (law["CPU time ratio, median [-]"], law["peak displacement changed by"]) == ("1.50", "1.0 %")
@@ -282,7 +282,7 @@ def test_the_first_table_gets_costs_at_the_defaults_with_their_errors_and_shares
     assert (judgement.key, judgement.rates, mark.words, mark.value) == (COST, False, "76 ×", 76)
     assert mark.note == "error of restitution 1.0·10⁻⁴; engine's own share 40 %"
     (shown,) = cells(result, "engine's own share")
-    assert (shown["engine's own share"], shown["impacts lost [-]"]) == ("40 %", "0")
+    assert (shown["engine's own share"], shown["impacts missed [-]"]) == ("40 %", "0")
     captions = [part.caption for part in STUDY.page(result).opening().tables]
     assert [caption.split(" to keep the ")[-1] for caption in captions[:2]] == [
         "error of restitution, rms [-]",
@@ -323,6 +323,6 @@ def test_a_study_repeats_bit_for_bit_and_the_page_comes_from_its_result_alone(st
     assert whole.parts[:2] == opening.parts and list(map(type, opening.parts)) == [Figure, Table]
     kernel = next(line for line in opening.tables[0].rows if line[0] == "analytic, kernel")
     assert len(kernel) == 1 + len(LEVELS) and all("(1.0 ×; tolerance" in cell for cell in kernel[1:])
-    assert f"{len(result.rows)} of {len(result.rows)} settings" in " ".join(page.how)
+    assert f"{len(result.rows)} of {len(result.rows)} levels" in " ".join(page.how)
     slower = dataclasses.replace(result, rows=[one | {"cpu_high": 3 * one["cpu_low"]} for one in result.rows])
     assert "factor of 3.00 in" in STUDY.page(slower).how[0]

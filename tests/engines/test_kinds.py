@@ -1,4 +1,4 @@
-"""What a tier says of a variant holds: nothing but an assisted one knows what an impact should do."""
+"""What the kind says of a variant holds: only an assisted variant uses the formula of the restitution."""
 
 import json
 import subprocess
@@ -48,13 +48,13 @@ def traces(factor):
     return json.loads(done.stdout.splitlines()[-1])
 
 
-def test_nothing_hangs_on_the_answer():
+def test_only_assisted_variants_use_the_formula_of_the_restitution():
     right, wrong = traces(1.0), traces(0.8)
-    tiers = {
-        f"{name}, {variant}": kind.tier
+    kinds = {
+        f"{name}, {variant}": spec.kind
         for name in installed_engines()
-        for variant, kind in get_engine(name).variants.items()
+        for variant, spec in get_engine(name).variants.items()
     }
-    assert right.keys() == wrong.keys() == tiers.keys()
-    assisted = {name for name, tier in tiers.items() if tier == "assisted"}
+    assert right.keys() == wrong.keys() == kinds.keys()
+    assisted = {name for name, kind in kinds.items() if kind == "assisted"}
     assert {name for name in right if right[name] != wrong[name]} <= assisted <= {"exudyn, switched-joints"}
