@@ -119,10 +119,13 @@ def _differing(where, old, new, shared):
 
 
 def _settings(old, new, engines, shared):
-    """(settings of both, what differs): lists and tables by engine have an entry more, or another one."""
+    """(settings of both, what differs): lists and tables by engine have an entry more, or another one.
+
+    One that an older study did not have yet is added.
+    """
     found, changes = {**new, **old}, []
-    for name in old.keys() & new.keys():
-        ours, theirs = old[name], new[name]
+    for name, ours in old.items():
+        theirs = new.get(name)
         if name == EDITED:
             found[name] = list(dict.fromkeys((*ours, *theirs)))
         elif _by_engine(ours) and _by_engine(theirs):
@@ -135,7 +138,7 @@ def _settings(old, new, engines, shared):
             found[name] = list(dict.fromkeys((*ours, *theirs)))
         else:
             changes += differences(name, ours, theirs)
-    return found, changes + [(name, old[name], None) for name in old.keys() - new.keys()]
+    return found, changes
 
 
 def _by_engine(value):
