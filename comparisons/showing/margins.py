@@ -117,10 +117,8 @@ def draw_margins(scene: Scene, margins: Sequence[Margin], tilt: float) -> Figure
     axis.axvline(0, color="black", linewidth=1)
     axis.set_yticks(range(len(margins)), [f"{margin.quantity}" for margin in margins])
     axis.invert_yaxis()
-    axis.set_xlim(
-        100 * min(margin.bands[0].low for margin in margins), 100 * max(margin.bands[-1].high for margin in margins)
-    )
-    axis.set_xlabel("change of one quantity [%]")
+    low, high = min(margin.bands[0].low for margin in margins), max(margin.bands[-1].high for margin in margins)
+    axis.set(xlim=(100 * low, 100 * high), xlabel="change of one quantity [%]")
     axis.set_title(f"{readable(scene.name, TITLE_CHARACTERS)}: {margins[0].outcome}", loc="left")
     shown = {band.outcome for margin in margins for band in margin.bands}
     handles = [
@@ -283,8 +281,7 @@ def draw_bearings(scene: Scene, scan: BearingScan, stroke: float, tilt: float) -
     ticks = [t for t in (0.3, 0.5, 0.7, 1, 1.5, 2, 3, 4, 5, 7, 10) if scan.periods[0] <= t <= scan.periods[-1] * 1.001]
     axis.set_xticks(ticks, [f"{tick:g}" for tick in ticks], minor=False)
     axis.minorticks_off()
-    axis.set_xlabel(f"secant period at {stroke:g} m [s]")
-    axis.set_ylabel(f"equivalent damping at {stroke:g} m [%]")
+    axis.set(xlabel=f"secant period at {stroke:g} m [s]", ylabel=f"equivalent damping at {stroke:g} m [%]")
     axis.set_title(f"{readable(scene.name, TITLE_CHARACTERS)}: {_wanted(stroke, tilt)}", loc="left", fontsize="medium")
     handles = [Patch(facecolor=HELD, alpha=0.35, label="hold"), *axis.get_legend_handles_labels()[0]]
     lines_label = Patch(facecolor="none", edgecolor="0.5", label="times the nearer limit")
