@@ -25,8 +25,9 @@ from .budget import STEPS_PER_SAMPLE, too_long
 from .errors import SceneError, SettingError
 from .laws import LAWS, NUMBERS
 from .motion import SampledMotion
+from .part import UNITS
 from .rocking import restitution
-from .scene import Scene
+from .scene import KEYS, Scene
 from .solver import simulate
 
 LIMIT_STATES = ("lifts", "tilt", "stroke", "overturns")
@@ -157,11 +158,12 @@ class Quantity:
     changed: Callable[[Scene, float], Scene]
 
 
-def _bearing(name, unit):
+def _bearing(name):
     def value(scene):
         used = scene.bearings and name in ("ka", *LAWS[NUMBERS[scene.bearings.law]].needs)
         return getattr(scene.bearings, name) if used else None
 
+    unit = UNITS.get(f"bearings.{name}", "-")
     return Quantity(unit, value, lambda scene, factor: scene.with_(bearings={name: factor * value(scene)}))
 
 
@@ -210,10 +212,8 @@ QUANTITIES = {
         lambda scene: scene.base and scene.base.mass,  # type: ignore[arg-type, return-value]  # a base or None, likewise
         lambda scene, factor: scene.with_(base={"mass": factor * scene.base.mass}),  # type: ignore[union-attr]  # asked where there is one
     ),
-    "ka": _bearing("ka", "N/m"),
-    "kb": _bearing("kb", "N/m"),
-    "alpha": _bearing("alpha", "-"),
-    "yield force": _bearing("yield_force", "N"),
+    # delta_k: what is left of ka - kb, by definition next to nothing
+    **{name.replace("_", " "): _bearing(name) for name in ("ka", *KEYS) if name != "delta_k"},
 }
 
 

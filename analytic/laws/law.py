@@ -43,6 +43,9 @@ def only_z(z: float, c: Constants) -> tuple[float, float]:
 class Law:
     """One bearing law. Fields with a default are needed by some laws only.
 
+    A law is symmetric: z(-x) = -z(x). ``begin`` is also called from Python, by its ``py_func``, so it calls
+    nothing that is `inner`. Names in ``own`` differ from those of the kernel's `Parameters`.
+
     name : name in scene files.
     needs, ignores : keys of [bearings] beside ka that are required, and that may be there unused; others are errors.
     own : names of its constants beside dk and f0.

@@ -35,7 +35,7 @@ def open_(
     ] = None,
 ) -> None:
     """Open a lesson as a notebook in the browser, a copy whose code can be changed. Ctrl-C ends it."""
-    from ..lessons.export import open_notebook
+    from ..lessons.notebook import open_notebook
     from ..running.files import check_folder
 
     if to is not None:

@@ -1,11 +1,14 @@
 """What `rocking margin` and `rocking design` write."""
 
 from collections.abc import Sequence
-from typing import Self
+from typing import Any, Self
 
-from pydantic import Field
+from pydantic import Field, create_model
+from pydantic.fields import FieldInfo
 
 from analytic import margins
+from analytic.part import UNITS
+from analytic.scene import Bearings
 
 from .form import Form, Part
 
@@ -83,18 +86,22 @@ class Margins(Form):
     motions: list[MotionMargin]
 
 
-class Constants(Part):
-    """Of one bearing, as a scene file has them."""
+def _constant(name: str, given: FieldInfo) -> tuple[Any, Any]:
+    """A key of a scene's bearings as a field: (type, description)."""
+    plain = {"law": str, "count": int}.get(name, float)
+    unit = UNITS.get(f"{Bearings.table}.{name}")
+    return (plain if given.default is not None else plain | None), Field(description=unit)
 
-    law: str
-    count: int
-    ka: float = Field(description="N/m")
-    kb: float | None = Field(description="N/m")
-    alpha: float | None
-    delta_k: float
-    yield_force: float | None = Field(description="N")
-    damping: float = Field(description="N s/m")
-    x_max: float | None = Field(description="m")
+
+_Keys: Any = create_model(
+    "Constants",
+    __base__=Part,
+    **{name: _constant(name, given) for name, given in Bearings.model_fields.items()},  # type: ignore[call-overload]  # by name
+)
+
+
+class Constants(_Keys):
+    """Of one bearing, as a scene file has them."""
 
 
 class Properties(Part):

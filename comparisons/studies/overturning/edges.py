@@ -15,7 +15,6 @@ import numpy as np
 from analytic import PulseMotion, Scene, Start, simulate, simulate_many
 from analytic.bearing import BearingLaw
 from analytic.motion import Motion
-from analytic.pulses import PULSES
 
 from ...running.refine import boundaries, drive
 from ..random_scenes.study import random_scene
@@ -176,9 +175,10 @@ def _nearest(known, rises):
 
 
 SEED = 46
+DRAWN = ("one-sine", "one-cosine", "half-sine", "rectangular", "ricker")  # by name: a new pulse redraws nothing
 FREQUENCY = (1.5, 8.0)  # of the pulses over omega_r, evenly over the logarithm
 APART = 0.02  # relative distance of the next boundary, at least: nearer ones alternate as a fractal's do
-JUMPS = tuple(shape for shape in PULSES if PulseMotion(shape, 1.0, 1.0, start=1.0).jumps)  # they begin with one
+JUMPS = tuple(shape for shape in DRAWN if PulseMotion(shape, 1.0, 1.0, start=1.0).jumps)  # they begin with one
 
 
 def drawn_edges(count: int) -> list[tuple[Scene, Edge]]:
@@ -194,7 +194,7 @@ def drawn_edges(count: int) -> list[tuple[Scene, Edge]]:
         low, high = map(math.log, FREQUENCY)
         frequency = math.exp(np.random.default_rng([SEED, index, 1]).uniform(low, high))
         index += 1
-        for edge in edges(scene, f"drawn block {index}", list(PULSES)[len(found) % len(PULSES)], (frequency,)):
+        for edge in edges(scene, f"drawn block {index}", DRAWN[len(found) % len(DRAWN)], (frequency,)):
             room = min(1 - edge.low / edge.amplitude, edge.high / edge.amplitude - 1)
             if edge.rises and edge.min_normal >= 0 and room >= APART:
                 found.append((scene, edge))

@@ -154,7 +154,7 @@ def trials() -> list[Trial]:
     ]
 
 
-def problems() -> list[Trial]:
+def problem_trials() -> list[Trial]:
     """Problems A and B as trials: of integrators, to fine errors; their references are not the kernel's."""
     return [Trial(name, problem.scene, ("horizon_tilt",)) for name, problem in integrators.PROBLEMS.items()]
 

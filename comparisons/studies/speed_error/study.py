@@ -26,7 +26,7 @@ from ...measuring.errors import (
 )
 from ...running.cases import Case, variant_settings
 from ...running.plan import Batch, Computed, Plan, Request
-from .cases import PLAIN, RUNS, Boundary, Entry, Trial, entries, levels_of, problems, searched, trials
+from .cases import PLAIN, RUNS, Boundary, Entry, Trial, entries, levels_of, problem_trials, searched, trials
 from .growth import TICK, grown, growth_cases
 from .integrators import PROBLEMS, SOLVER, timed
 from .share import own_share
@@ -134,7 +134,7 @@ def plan(
         Name of the one scene that is run; None: all.
     """
     rounds = repeats or (QUICK_REPEATS if request.quick else REPEATS)
-    known = scenes or [*trials(), *problems()]
+    known = scenes or [*trials(), *problem_trials()]
     scenes = [trial for trial in known if scene in (None, trial.name)]
     if not scenes:
         raise SettingError(f"--scene {scene}: no such scene; give one of {', '.join(trial.name for trial in known)}")

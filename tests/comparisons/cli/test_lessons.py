@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from comparisons.lessons import export
+from comparisons.lessons import export, notebook
 from comparisons.lessons.topics import lesson, lessons
 
 
@@ -20,23 +20,23 @@ def test_a_notebook_opens_as_a_copy(rocking, monkeypatch):
 
     def call(command):
         copy = Path(command[-1])
-        assert command[1:4] == ["-m", "marimo", "edit"] and copy.read_text() == export.notebook_of(lessons()[5])
+        assert command[1:4] == ["-m", "marimo", "edit"] and copy.read_text() == notebook.notebook_of(lessons()[5])
         assert "auto_instantiate = true" in copy.with_name("pyproject.toml").read_text()
         return 7
 
-    monkeypatch.setattr(export.subprocess, "call", call)
+    monkeypatch.setattr(notebook.subprocess, "call", call)
     assert rocking("lessons", "open", "chaos")[0] == 7
 
 
 def test_a_folder_called_as_an_option_is_a_folder(rocking, monkeypatch, tmp_path):
     pytest.importorskip("marimo", reason="needs marimo: pip install marimo")
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(export.subprocess, "call", lambda command: command[-1] != str(tmp_path / "-" / "chaos.py"))
+    monkeypatch.setattr(notebook.subprocess, "call", lambda command: command[-1] != str(tmp_path / "-" / "chaos.py"))
     assert rocking("lessons", "open", "chaos", "--to=-")[0] == 0
 
 
 def test_without_marimo_it_says_what_to_install(rocking, monkeypatch):
-    monkeypatch.setattr(export.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(notebook.importlib.util, "find_spec", lambda name: None)
     status, _, err = rocking("lessons", "open", "chaos")
     assert status == 2 and "pip install marimo" in err
 

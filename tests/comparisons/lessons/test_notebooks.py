@@ -7,7 +7,7 @@ import textwrap
 import pytest
 
 from comparisons.lessons import engine_runs
-from comparisons.lessons.export import code_of, notebook_of, open_notebook
+from comparisons.lessons.notebook import code_of, notebook_of, open_notebook
 from comparisons.lessons.topics import NAMES, corner, cost, lesson
 from engines import installed_engines
 

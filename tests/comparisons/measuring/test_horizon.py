@@ -58,7 +58,7 @@ def test_an_outcome_that_a_small_change_turns_is_said(short, sizes):
     assert {size for size, warning in said.items() if warning} == sizes
     for size in sizes:
         assert (said[size].kind, said[size].quantity, said[size].value) == ("model", "outcome", size)
-        assert "with start up by" in said[size].text and "the block overturns, else it rocks" in said[size].text
+        assert "with start up by" in said[size].text and "the block overturns, without it rocks" in said[size].text
 
 
 def test_an_independent_copy_parts_where_it_is_said_and_the_horizon_is_that_of_the_first_one(shaken):

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 from answered import answered, by_model, edit
-from comparisons.report.studies import origin_of
 from fake_study import MADE
 
 from analytic.errors import SettingError
+from comparisons.report.answer import origin_of
 from comparisons.report.gallery import origins
 from comparisons.running.age import age
 from comparisons.running.check import check, differences

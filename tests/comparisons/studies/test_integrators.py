@@ -11,7 +11,7 @@ from comparisons.running.plan import Request
 from comparisons.showing.parts import where
 from comparisons.studies import get_study
 from comparisons.studies.speed_error import integrators, page
-from comparisons.studies.speed_error.cases import entries, problems
+from comparisons.studies.speed_error.cases import entries, problem_trials
 from comparisons.studies.speed_error.integrators import METHODS, PEERS, PROBLEMS, installed, run_of
 from comparisons.studies.speed_error.study import TICK, measure, plan
 
@@ -52,7 +52,7 @@ def few(monkeypatch):
 
 def found(folder):
     """The study's `Result` of the problems, by runs in this process."""
-    asked = plan(Request(quick=True), problems(), grow=False)
+    asked = plan(Request(quick=True), problem_trials(), grow=False)
     return stored(folder, "speed-error", answered(asked, by_runs(folder))[-1])
 
 
@@ -62,7 +62,7 @@ def fine(result):
 
 
 def test_error_and_time_are_of_the_same_runs(few, monkeypatch):
-    case = next(one.case(0) for one in entries(problems(), (), True) if one.engine == "scipy")
+    case = next(one.case(0) for one in entries(problem_trials(), (), True) if one.engine == "scipy")
     called = itertools.count(1)
 
     def run():
@@ -114,6 +114,6 @@ def test_a_stored_run_is_known_by_the_version_of_its_peer(monkeypatch):
     keys = set()
     for version in ("1.0", "2.0"):
         monkeypatch.setattr(integrators, "installed", lambda version=version: {name: version})
-        made = entries(problems(), (), True)
+        made = entries(problem_trials(), (), True)
         keys |= {one.case(0).key(measure) for one in made if one.engine == name[0]}
     assert len(keys) == 2 * len(PROBLEMS) * len(integrators.TOLERANCES[name][1])

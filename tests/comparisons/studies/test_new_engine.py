@@ -175,8 +175,8 @@ def test_the_growth_of_cost_and_the_report_run_it(crude):
 
 
 def test_every_study_of_this_project_is_covered():
-    # surface takes any solver a run at a time: test_surface; kernel takes none; recorded: below; and test_constants
-    own_tests = {"overturning", "caryatid", "tolerances", "surface", "kernel", "recorded", "constants"}
+    # surface takes any solver a run at a time: test_surface; recorded: below; and test_constants
+    own_tests = {"overturning", "caryatid", "tolerances", "surface", "recorded", "constants"}
     assert set(BUILT_IN) == SHORT.keys() | own_tests
 
 

@@ -12,12 +12,12 @@ from page_numbers import number_in
 
 from analytic import PulseMotion, simulate
 from analytic.caryatid import MASS
-from analytic.pulses import PULSES
 from comparisons.running.plan import Request
 from comparisons.running.refine import drive
 from comparisons.showing.parts import where
 from comparisons.studies import get_study
 from comparisons.studies.overturning.edges import (
+    DRAWN,
     FREQUENCY,
     JUMPS,
     Edge,
@@ -199,7 +199,7 @@ def test_boundaries_at_which_the_model_holds_the_corner_down_are_told_apart(tmp_
 
 def test_drawn_blocks_lie_in_the_promised_range_and_have_one_boundary_to_find():
     found = drawn_edges(5)
-    assert [edge.shape for _, edge in found] == list(PULSES) and len({edge.ground for _, edge in found}) == 5
+    assert [edge.shape for _, edge in found] == list(DRAWN) and len({edge.ground for _, edge in found}) == 5
     assert set(JUMPS) == {"one-cosine", "rectangular"}
     for scene, edge in found:
         assert scene.motion is None and not any(scene.start.model_dump().values())

@@ -4,7 +4,7 @@ import pytest
 from answered import edit
 
 from comparisons.running.provenance import RESULTS, ResultError, read_result, write_result
-from comparisons.studies import BUILT_IN
+from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.rows import ROWS, _columns, read_study, wrong_with
 from comparisons.studies.vocabulary import TYPES, Explained, columns_of
 
@@ -15,6 +15,7 @@ CELL = {**{"part": "order", "engine": "exudyn", "variant": "step", "ground": "ri
 def test_rows_of_every_stored_result_are_those_of_its_study(file):
     result = read_study(file)
     assert result.rows == read_result(file).rows and result.kind in ROWS
+    assert all(isinstance(words, str) for words in get_study(result.kind).problems(result))
 
 
 def test_every_study_declares_rows_of_columns_that_are_explained():

@@ -325,4 +325,4 @@ def test_a_study_repeats_bit_for_bit_and_the_page_comes_from_its_result_alone(st
     assert len(kernel) == 1 + len(LEVELS) and all("(1.0 ×; tolerance" in cell for cell in kernel[1:])
     assert f"{len(result.rows)} of {len(result.rows)} levels" in " ".join(page.how)
     slower = dataclasses.replace(result, rows=[one | {"cpu_high": 3 * one["cpu_low"]} for one in result.rows])
-    assert "factor of 3.00 in" in STUDY.page(slower).how[0]
+    assert "factor of 3.00 for" in STUDY.page(slower).how[0]

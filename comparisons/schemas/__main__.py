@@ -1,0 +1,39 @@
+"""``python -m comparisons.schemas``: write the schemas down, after a change of the types."""
+
+import json
+from typing import Any
+
+from ..advice import Choice
+from ..running.files import write_all
+from ..running.provenance import PROJECT_FOLDER
+from ..sheet.score import Score
+from .advice import BearingSearch, Design, Margins
+from .runs import Comparison, New, Record, Report, Run, Sheet, Verification
+from .study import StudyResult
+
+FOLDER = PROJECT_FOLDER / "comparisons" / "schemas"
+FORMS = (
+    Choice,
+    Comparison,
+    Design,
+    Margins,
+    New,
+    Record,
+    Report,
+    Run,
+    Score,
+    Sheet,
+    StudyResult,
+    BearingSearch,
+    Verification,
+)
+
+
+def schemas() -> dict[str, dict[str, Any]]:
+    """{name of the file without ending: schema} of every form."""
+    found = [form.model_json_schema(mode="serialization", by_alias=True) for form in FORMS]
+    return {schema["properties"]["schema"]["default"].replace(" ", "-"): schema for schema in found}
+
+
+if __name__ == "__main__":
+    write_all(FOLDER, {f"{name}.json": json.dumps(schema, indent=2) + "\n" for name, schema in schemas().items()})
