@@ -212,7 +212,7 @@ QUANTITIES = {
         lambda scene: scene.base and scene.base.mass,  # type: ignore[arg-type, return-value]  # a base or None, likewise
         lambda scene, factor: scene.with_(base={"mass": factor * scene.base.mass}),  # type: ignore[union-attr]  # asked where there is one
     ),
-    # delta_k: what is left of ka - kb, by definition next to nothing
+    # not delta_k, which defines the limit force and is negligible beside the stiffnesses
     **{name.replace("_", " "): _bearing(name) for name in ("ka", *KEYS) if name != "delta_k"},
 }
 
