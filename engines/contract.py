@@ -56,7 +56,8 @@ class Variant:
         What the engine computes, and what the adapter imposes beside the bearing force, the ground acceleration and
         the settings; in words.
     takes_restitution : bool
-        The adapter, not the engine, applies the impact, so that a scene may give the restitution.
+        A scene may give the restitution: the adapter applies the impact (kind assisted), or a couple before each
+        landing (`engines.couple`).
     finer : tuple of dict
         Settings to try in turn where a run is not right; by default the levels finer than the default.
     varied : dict
@@ -111,6 +112,11 @@ class Variant:
     def accuracy_parameter(self) -> str:
         """Name of the accuracy parameter."""
         return dataclasses.fields(self.settings)[0].name
+
+    @property
+    def applies_impact(self) -> bool:
+        """Whether the adapter, not the engine, applies every impact."""
+        return self.kind == "assisted"
 
     @property
     def default(self) -> float:

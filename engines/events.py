@@ -96,7 +96,7 @@ def _passes(trace: Trace, swings: Swings, i: int, apart: float, before: float, a
     if following == last + 1 and np.isfinite(before + after):
         return True
     slack = 2 * max(time[last + 1] - time[last], time[following] - time[following - 1])
-    slack += trace.contact_tilt / abs(before) + trace.contact_tilt / abs(after)
+    slack += trace.contact_tilt / abs(before) + trace.contact_tilt / abs(after) + trace.early
     # A hop of a compliant contact after an impact shifts the extrapolated lift, but not the time in contact. A lift so
     # long before the landing that gravity would have changed its rate gives no rate after the impact: the block came to
     # rest, and its new motion has another cause.

@@ -68,6 +68,8 @@ class Trace:
     first_script : bool
         The engine's own motors and dampers are left on. A motion that does not match the bearing force is then a
         warning, not a failure.
+    early : float
+        Time [s] before a landing in which a couple acts (`engines.couple`); flight before it counts as clean.
 
     Raises
     ------
@@ -85,6 +87,7 @@ class Trace:
     settle: float = 0.0
     centre: np.ndarray | None = None
     first_script: bool = False
+    early: float = 0.0
 
     COLUMNS = ("time", "tilt", "tilt_rate", "base_displacement", "base_velocity", "bearing_force")
 
@@ -181,6 +184,9 @@ def to_contact(scene: Scene, trace: Trace, swings: Swings, direction: int) -> tu
     model = ArrayModel.of(scene)
     law, side = model.bearing, swings.side
     index, edge = (swings.last, swings.last) if direction > 0 else (swings.clean, swings.first)
+    if direction > 0 and trace.early:
+        before = np.searchsorted(trace.time, trace.time[swings.last] - trace.early) - 1
+        index = np.clip(before, swings.clean, swings.last)
     ground = scene.motion.acceleration if scene.motion else np.zeros_like
     t, tilt, rate, x, v = (getattr(trace, name)[index].copy() for name in Trace.COLUMNS[:5])
     if len(t) == 0:

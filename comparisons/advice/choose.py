@@ -270,8 +270,8 @@ def _searched(scene, family, names, error, criterion, **options):
         search = Search(scene, family, error, criterion, Path(folder), executor=executor, **options)
         search.run(levels, [1.0], "the scene")
         chosen, whole = search.cheapest(levels)
-        if chosen and criterion == "restitution" and get_engine(chosen[0]).variants[chosen[1]].takes_restitution:
-            search.cheapest([key for key in levels if not get_engine(key[0]).variants[key[1]].takes_restitution])
+        if chosen and criterion == "restitution" and get_engine(chosen[0]).variants[chosen[1]].applies_impact:
+            search.cheapest([key for key in levels if not get_engine(key[0]).variants[key[1]].applies_impact])
         return chosen, whole, [_variant(*kind, search) for kind in kinds]
 
 
@@ -318,7 +318,7 @@ def _variant(name, variant, spec, search):
         engine=name,
         variant=variant,
         tier=spec.kind,
-        applies_impact=spec.takes_restitution,
+        applies_impact=spec.applies_impact,
         order=_order(levels) if search.criterion != "outcome" else None,
         levels=levels,
     )

@@ -163,7 +163,7 @@ def _restitution_row(engine, variant, members, models):
         "engine": engine,
         "variant": variant,
         "tier": spec and spec.kind,
-        "applies_impact": bool(spec and spec.takes_restitution),
+        "applies_impact": bool(spec and spec.applies_impact),
         "runs": len(members),
         "failed": len(members) - len(sound),
         "failures": [row.failure for row in members if row.failed],
@@ -187,7 +187,7 @@ def described_variants(engines: Sequence[str]) -> dict[str, dict[str, dict[str, 
                 "best": variant == get_engine(name).default_variant,
                 "computes": spec.computes,
                 "imposes": spec.imposes,
-                "applies_impact": spec.takes_restitution,
+                "applies_impact": spec.applies_impact,
             }
             for variant, spec in get_engine(name).variants.items()
         }

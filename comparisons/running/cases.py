@@ -144,5 +144,5 @@ def variant_settings(engine: str, variant: str, levels: Iterable[float] | None =
         "parameter": spec.accuracy_parameter,
         "default": spec.default,
         "levels": sorted(spec.levels) if levels is None else levels,
-        "applies_impact": spec.takes_restitution,
+        "applies_impact": spec.applies_impact,
     }

@@ -46,9 +46,10 @@ VARIANTS = {
             "friction": (0.05, 0.1, 0.15, 0.2, 0.3, 0.6, 5.0),
         },
         constants=CONSTANTS,
+        takes_restitution=True,
         computes="motion, contact, impact and rest, by integration",
         imposes="contact law: ours (Hunt-Crossley, Coulomb; plastic as Housner assumes: agreement verifies law and "
-        "integration); a plane; explicit or implicit steps",
+        "integration); a plane; explicit or implicit steps; restitution given: a couple before each landing",
     ),
     "switched-joints": Variant(
         joints.SwitchedJoints(),

@@ -13,6 +13,7 @@ CONSTANTS = {
     "pivoting_step": "implicit step, while the block pivots or stands [s]",
     f"{HERE}.corners:RELAX": "time for the corners to relax after an impact, over sqrt(m/k)",
     f"{HERE}.corners:MOST_RELAX": "the same, over sqrt(R/g), at most",
+    f"{HERE}.corners:ACTS": "time before a landing in which the couple of a given restitution acts, over RELAX's",
     f"{HERE}.corners:SLOP": "change of the anchor that is ignored, over the sticking spring's stretch",
     f"{HERE}.corners:LEAST_STEP": "explicit step at which exudyn gives up [s]",
     f"{HERE}.phases:ENTER": "least number of steps to the impact at which implicit steps begin",

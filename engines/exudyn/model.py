@@ -10,13 +10,22 @@ from typing import TYPE_CHECKING, Any
 import exudyn as exu
 import numpy as np
 from exudyn.advancedUtilities import CreateSymbolicUserFunction
-from exudyn.itemInterface import MarkerBodyPosition, ObjectConnectorCartesianSpringDamper
+from exudyn.itemInterface import (
+    MarkerBodyPosition,
+    MarkerBodyRigid,
+    ObjectConnectorCartesianSpringDamper,
+    ObjectConnectorTorsionalSpringDamper,
+)
 from numba import njit
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 if TYPE_CHECKING:
     from analytic import Block, Scene
     from analytic.bearing import BearingLaw
     from analytic.motion import Motion
+
+    from ..couple import Couple
 
 Real = exu.symbolic.Real
 
@@ -75,6 +84,24 @@ class Bearing:
         return [law.count * total, Real(0.0), Real(0.0)]
 
 
+def _strengths(kept: float) -> tuple[float, float]:
+    """(c, d) of dy/dx = (c + d a/y) s (1 - s) - a/y, s = x/y: rate and tilt over those at the couple's begin.
+
+    a: pull toward the ground, in the same units, small. From y(1) = 1 the rate becomes `kept` times what it would be
+    without the couple, y(0)^2 = kept^2 (1 + 2 a).
+    """
+
+    def at_ground(c, d=0.0, a=0.0):
+        def slope(x, y):
+            return (c + d * a / y) * x / y * (1 - x / y) - a / y
+
+        y = solve_ivp(slope, (1.0, 0.0), [1.0], rtol=1e-10, atol=1e-13).y[0, -1]
+        return y - kept * math.sqrt(1 + 2 * a)
+
+    c = brentq(at_ground, -20.0, 20.0)
+    return c, brentq(lambda d: at_ground(c, d, 1e-3), -100.0, 100.0)
+
+
 @njit("f8(f8, f8[::1], f8[::1], f8, f8, f8, f8, f8)", cache=True)  # compiled when it is imported
 def _anchor(
     anchor: float, q: np.ndarray, v: np.ndarray, b: float, h: float, stiffness: float, hardening: float, stretch: float
@@ -131,6 +158,39 @@ class Anchor:
                 mbs.SetObjectParameter(connector, "offset", [at, 0.0, 0.0])
 
 
+class Twist:
+    """The couple of a given restitution, as a torsional connector; see `engines.couple`.
+
+    It rises and falls as s (1 - s), s = |tilt/rate|/acts, since a step would set the corners swinging. Its part against
+    the pull toward the ground takes that of the time acts before, committed after each step.
+    """
+
+    def __init__(self, couple: Couple, least: float) -> None:
+        """least: tilt [rad] of the block in contact, without couple."""
+        self.couple, self.least, self.connector = couple, least, None
+        self.begin: tuple[float, float] | None = None  # time and speed
+
+    def torque(self, rotation: Any, rate: Any, pull: Any) -> Any:
+        """Symbolic torque against the block's rotation [N m]."""
+        acts, (rate_part, pull_part) = self.couple.acts, _strengths(self.couple.kept)
+        left = -rotation / (acts * rate)
+        part = (rate_part / acts) * rate + pull_part * pull * exu.symbolic.sign(rate)
+        bump = exu.symbolic.IfThenElse(left < 1.0, self.couple.inertia * left * (1.0 - left) * part, Real(0.0))
+        closing = exu.symbolic.IfThenElse(rotation * rate < 0.0, bump, Real(0.0))
+        return exu.symbolic.IfThenElse(exu.symbolic.abs(rotation) > self.least, closing, Real(0.0))
+
+    def commit(self, mbs: exu.MainSystem, t: float, rotation: float, rate: float) -> None:
+        """After a step to time t: the mean pull [rad/s2] since twice `acts` before the landing."""
+        acts, speed = self.couple.acts, abs(rate)
+        if rotation * rate >= 0 or abs(rotation) > 2 * acts * speed:
+            self.begin = None
+        elif abs(rotation) > acts * speed:
+            if self.begin is None:
+                self.begin = t, speed
+            elif t > self.begin[0]:
+                mbs.SetObjectParameter(self.connector, "damping", (speed - self.begin[1]) / (t - self.begin[0]))
+
+
 @dataclass
 class Model:
     """An exudyn system of one scene. `keep` holds the expression trees, which exudyn does not own."""
@@ -143,6 +203,7 @@ class Model:
     base: exu.ObjectIndex
     bearing: Bearing | None = None
     anchor: Anchor | None = None
+    twist: Twist | None = None
     loads: list = field(default_factory=list)  # (number, motion whose segment it follows)
     connectors: dict = field(default_factory=dict)
     keep: list = field(default_factory=list)
@@ -162,6 +223,17 @@ class Model:
         self.connectors[name] = number
         self.expected[number, "activeConnector"] = True
         return number
+
+    def add_twist(self, twist: Twist) -> None:
+        """Connect ground and block by a given restitution's couple."""
+
+        def torque(mbs, t, item, rotation, rate, stiffness, damping, offset):
+            return twist.torque(rotation, rate, damping)
+
+        markers = [self.mbs.AddMarker(MarkerBodyRigid(bodyNumber=body)) for body in (self.ground, self.block)]
+        twist.connector = self.mbs.AddObject(ObjectConnectorTorsionalSpringDamper(markerNumbers=markers))
+        self._make_symbolic(twist.connector, torque, "springTorqueUserFunction", self.mbs.SetObjectParameter)
+        self.twist = twist
 
     def load(self, item: Any, function: Callable[..., Any], motion: Motion) -> None:
         """A load with a symbolic value, whose vector holds the segment's parameters of the motion."""

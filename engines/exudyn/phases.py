@@ -58,7 +58,8 @@ class Rule:
     """Parameters of the steps of a variant.
 
     explicit: settings of the explicit solver. longest, step: longest explicit and implicit step [s]. sink: penetration
-    of a corner under half the weight [m]. settle: relaxation time after a change of contact [s].
+    of a corner under half the weight [m]. settle: relaxation time after a change of contact [s]. early: time before a
+    landing whose steps are explicit in any case [s].
     """
 
     explicit: exu.SimulationSettings
@@ -66,6 +67,7 @@ class Rule:
     step: float
     sink: float
     settle: float
+    early: float = 0.0
 
 
 @njit("i8(f8[::1], f8, f8, f8)", cache=True)  # compiled when it is imported
@@ -134,7 +136,7 @@ class Phases:
         if state == BOTH:
             return True
         tilt, fall = abs(q.item(2)), v.item(2) * math.copysign(1.0, q.item(2))
-        ahead = (LEAVE if self.implicit else ENTER) * self.step
+        ahead = (LEAVE if self.implicit else ENTER) * self.step + self.rule.early
         return tilt + fall * ahead - 0.5 * self.pull * ahead * ahead > 0.0
 
     def run(self) -> Failure | None:

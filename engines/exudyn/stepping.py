@@ -145,7 +145,7 @@ def step_through(
 
 def _recorder(model, steps, limit):
     """Function to call after each step: stores it in `steps` and returns whether to continue, up to `limit` steps."""
-    bearing, anchor, system = model.bearing, model.anchor, model.mbs.systemData
+    bearing, anchor, twist, system = model.bearing, model.anchor, model.twist, model.mbs.systemData
     times, states, forces = steps.times, steps.states, steps.forces
     coordinates, velocities = system.GetODE2Coordinates, system.GetODE2Coordinates_t
 
@@ -158,6 +158,8 @@ def _recorder(model, steps, limit):
             forces.append(bearing.commit(mbs, q.item(3)))
         if anchor is not None:
             anchor.commit(mbs, q, v)
+        if twist is not None:
+            twist.commit(mbs, t, q.item(2), v.item(2))
         # False for NaN, too
         steps.ended = not (-OVERTURNED < q.item(2) < OVERTURNED and len(times) <= limit and not steps.interrupts)
         return not steps.ended

@@ -32,8 +32,10 @@ VARIANTS = {
         ImpactAware(),
         kind="tuned",
         levels=(2e-3, 6e-4, 2e-4, 1e-4),
+        takes_restitution=True,
         computes="motion, contact, impact and rest",
-        imposes="a plane, by joints; the steps, by gaps and closing speeds",
+        imposes="a plane, by joints; the steps, by gaps and closing speeds; restitution given: a couple before each "
+        "landing",
     ),
     "fixed-step": Variant(
         FixedStep(1e-4),

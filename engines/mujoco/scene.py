@@ -169,6 +169,10 @@ class MujocoBodies:
         v, vx, vz, rate = self.velocity()
         return tilt, rate, x, z, vx, vz, base, v
 
+    def twist(self, moment: float) -> None:
+        """See `engines.stepping.Bodies`; MuJoCo keeps it until the next one."""
+        self.push[-1] = moment
+
     def weigh(self, added: float) -> None:
         """See `engines.stepping.Bodies`."""
         self.model.dof_M0[0] = self.model.body_mass[1] = self.base.mass + added

@@ -30,8 +30,10 @@ VARIANTS = {
         kind="tuned",
         levels=(7e-3, 3e-3, 1e-3, 5e-4),
         constants=CONSTANTS,
+        takes_restitution=True,
         computes="motion, contact, impact and rest",
-        imposes="a plane, by joints; the steps, by gaps and closing speeds",
+        imposes="a plane, by joints; the steps, by gaps and closing speeds; restitution given: a couple before each "
+        "landing",
     ),
     "fixed-step": Variant(
         FixedStep(1e-4),

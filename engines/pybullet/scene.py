@@ -266,6 +266,11 @@ class BulletBodies:
         b, v = base[0][:2] if base else (0.0, 0.0)
         return tilt, rate, length * x, length * z, speed * vx, speed * vz, length * b, speed * v
 
+    def twist(self, moment: float) -> None:
+        """See `engines.stepping.Bodies`; Bullet forgets it after the step."""
+        axis = 0.0, moment / self.units.length, 0.0
+        pybullet.applyExternalTorque(self.body, self.joints[2], axis, pybullet.LINK_FRAME, self.client)
+
     def weigh(self, added: float) -> None:
         """See `engines.stepping.Bodies`."""
         pybullet.changeDynamics(self.body, self.base, mass=self.mass + added, physicsClientId=self.client)

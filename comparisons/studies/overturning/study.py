@@ -128,7 +128,7 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
     held = [
         Setting(name, variant, settings.get(spec.accuracy_parameter, spec.default), settings)
         for name, variant, spec in variants
-        if spec.takes_restitution
+        if spec.applies_impact
         for settings in (spec.finer[0] if spec.finer else {},)
     ]
     first_scripts = [
@@ -164,7 +164,7 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
 
 def _described(engine: str, variant: str, spec: Variant) -> dict[str, Any]:
     """A variant as listed in the settings; levels: those that are run."""
-    tried = () if spec.takes_restitution or spec.kind == "defaults" else spec.levels
+    tried = () if spec.applies_impact or spec.kind == "defaults" else spec.levels
     return variant_settings(engine, variant, tried) | {"friction": spec.friction}
 
 

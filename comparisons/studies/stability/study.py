@@ -159,7 +159,7 @@ def solvers(engines: Iterable[str]) -> list[Solver]:
                 spec.accuracy_parameter,
                 spec.default,
                 tuple(sorted(spec.levels)),
-                spec.takes_restitution,
+                spec.applies_impact,
                 dataclasses.asdict(spec.settings),
                 spec.step,
                 spec.finer,
