@@ -169,6 +169,8 @@ class Engine:
     tolerances : str or None
         Name of a module whose ``TOLERANCES``, {variant: tuple of `ToleranceRow`}, are the engine's rows of the
         tolerance table.
+    script : str or None
+        ``package:file``: the template of a script of one scene, see `engines.scripting`.
     subject : bool
         The studies are about this engine; engines that are no subject are shown for comparison.
     origin : str
@@ -184,6 +186,7 @@ class Engine:
     dashes: str | tuple[float, tuple[float, ...]] = "-"
     imported: str | None = None
     tolerances: str | None = None
+    script: str | None = None
     subject: bool = False
     origin: str = ""
 

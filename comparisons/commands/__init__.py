@@ -5,7 +5,7 @@ Heavy modules (engines, scipy, matplotlib) are imported inside the functions, so
 
 # Groups of commands in the order of ``rocking --help``; each command is in one group.
 GROUPS = {
-    "To run and compare": ("run", "compare", "engines"),
+    "To run and compare": ("run", "compare", "engines", "script"),
     "To read and learn": ("report", "lessons"),
     "For advice on a scene": ("choose", "margin", "design"),
     "For makers of engines and codes": ("verify", "sheet", "score"),

@@ -9,6 +9,7 @@ ENGINE = Engine(
     adapter="engines.pybullet.adapter",
     imported="engines.pybullet.imported",
     tolerances="engines.pybullet.tolerances",
+    script="engines.pybullet:script.py.jinja",
     colour="#0072B2",
     marker="^",
     dashes=":",
