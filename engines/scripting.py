@@ -18,7 +18,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 import analytic
 from analytic.bearing import BearingLaw
 from analytic.decision import motion_end, shortest_duration
-from analytic.errors import SceneError, SettingError
+from analytic.errors import SceneError, SettingError, cut
 from analytic.motion import SampledMotion
 from analytic.rocking import momentum_restitution
 
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 SHARED = Path(__file__).with_name("script")
 LAWS = ("algebraic", "bouc-wen", "bilinear", "linear")  # written out in script/bearings.py.jinja
+UNSAFE = str.maketrans({"\\": "/", '"': "'"})  # in a docstring
 PULSES = ("one-sine", "one-cosine", "half-sine", "rectangular", "ricker")  # and in script/motion.py.jinja
 
 
@@ -56,7 +57,7 @@ def write_script(engine: Engine, scene: Scene, name: str | None = None) -> dict[
     if engine.script is None:
         raise SettingError(f"{engine.name} has no script: its record names no template")
     _check(scene)
-    name = name or f"{scene.name or 'scene'}-{engine.name}"
+    name = name or re.sub(r"[^\w.-]+", "-", f"{scene.name or 'scene'}-{engine.name}")
     sampled = scene.motion if isinstance(scene.motion, SampledMotion) else None
     record = f"{name}-motion.txt" if sampled else None
     environment = Environment(
@@ -102,7 +103,7 @@ def _context(engine: Engine, scene: Scene, name: str, record: str | None) -> dic
     return {
         "engine": engine.name,
         "scene": scene,
-        "title": f"{scene.name or 'A scene'}: a rocking block {_support(scene)}",
+        "title": f"{cut(scene.name or 'A scene', 30).translate(UNSAFE)}: a rocking block {_support(scene)}",
         "friction": scene.friction,
         "name": name,
         "record": record,
@@ -119,8 +120,6 @@ def _context(engine: Engine, scene: Scene, name: str, record: str | None) -> dic
         "base_moved": bool(start.base_displacement or start.base_velocity),
         "tail": None if scene.duration else _tail(scene),
         "unit_radius": UNIT_RADIUS,
-        "accelerations": False,  # a template sets these two where its engine needs them
-        "settles": False,
     }
 
 
@@ -133,7 +132,8 @@ def _support(scene: Scene) -> str:
 def _tail(scene: Scene) -> float:
     """Time after the motion [s] that decides the outcome: that of the analytic model's run."""
     model = analytic.simulate(scene, history=False)
-    end = max(model.end.time, shortest_duration(scene)) - motion_end(scene)
+    later = 2 * math.pi / scene.rocking_frequency if model.outcome == "overturns" else 0.0  # the engine's fall may be
+    end = max(model.end.time + later, shortest_duration(scene)) - motion_end(scene)
     return math.ceil(end * 1000) / 1000
 
 
