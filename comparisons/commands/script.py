@@ -9,7 +9,7 @@ SUFFIX = ".py"
 
 
 def command(
-    engine: Annotated[str, typer.Argument(help="An engine that has a script: exudyn or pybullet.")],
+    engine: Annotated[str, typer.Argument(help="An engine that has a script.")],
     scene: Annotated[str, typer.Argument(help="Scene file (TOML), or the name of a shipped scene.")],
     output: Annotated[str | None, typer.Option(metavar="FILE", help="The script; by default SCENE-ENGINE.py.")] = None,
 ) -> None:

@@ -1,0 +1,246 @@
+"""A scene's script is exact, short and alone, and holds what the scene needs."""
+
+import math
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from engine_cases import needs
+from scripts import code_lines, measured, ran, run_alone, written
+
+from analytic import Bearings, PulseMotion, load_scene
+from analytic.errors import SceneError, SettingError
+from analytic.pairing import paired
+from analytic.synthetic import synthetic_motion
+from engines import ENGINES
+from engines.scripting import write_script
+
+PROJECT = Path(__file__).parents[2]
+ABLE = [name for name, engine in ENGINES.items() if engine.script]
+ISOLATED, RIGID = load_scene("caryatid-isolated"), load_scene("caryatid-rigid")
+CARYATID = ISOLATED.block.radius
+
+
+def block_of(slenderness, radius=CARYATID, **parts):
+    """The isolated block of another shape and size, its base and bearings scaled with it."""
+    k = radius / CARYATID
+    base = {"mass": ISOLATED.base.mass * k**3}
+    bearings = {"ka": ISOLATED.bearings.ka * k**2, "kb": ISOLATED.bearings.kb * k**2}
+    block = {"slenderness": slenderness, "radius": radius, "mass": ISOLATED.block.mass * k**3}
+    return ISOLATED.with_(block=block, base=base, bearings=bearings).with_(**parts)
+
+
+def on_ground(scene):
+    return scene.with_(base=None, bearings=None)
+
+
+def released(scene, share=0.6):
+    return scene.with_(motion=None, start={"tilt": share * scene.block.slenderness})
+
+
+def pulse(scene, shape="one-sine", size=1.3, speed=2.2, **parts):
+    """The scene under a pulse of `size` g tan(slenderness), `speed` times the rocking frequency."""
+    amplitude = size * scene.gravity * math.tan(scene.block.slenderness)
+    return scene.with_(motion=PulseMotion(shape, amplitude, speed * scene.rocking_frequency, **parts))
+
+
+def law(name, **values):
+    return Bearings(law=name, count=4, ka=6.22e4, **values)
+
+
+def upward(scene, **parts):
+    """The scene with half of its pulse as vertical motion."""
+    one = scene.motion
+    up = PulseMotion(one.shape, 0.5 * one.amplitude, one.frequency, one.start, **parts)
+    return scene.with_(motion=PulseMotion(one.shape, one.amplitude, one.frequency, one.start, one.phase, up))
+
+
+SHAPES = ("one-sine", "one-cosine", "half-sine", "rectangular", "ricker")
+RECORD = synthetic_motion("duzce-like", 620)
+FEW = {
+    "rigid, released": released(on_ground(block_of(0.2))),
+    "rigid, pulse": pulse(on_ground(block_of(0.35)), size=1.2, speed=3.0),
+    "isolated, released": released(block_of(0.3, 0.3)),
+    "isolated, record": block_of(0.15),
+    "rigid, given": released(on_ground(block_of(0.2).with_(block={"restitution": 0.85}))),
+}
+OTHERS = {
+    "rigid, record, vertical": on_ground(block_of(0.35)).with_(
+        motion=paired(RECORD, synthetic_motion("duzce-like", 3).scaled(0.4))
+    ),
+    "isolated, record, vertical": block_of(0.2, motion=paired(RECORD, synthetic_motion("duzce-like", 3).scaled(0.6))),
+    "isolated, given, record": block_of(0.15).with_(block={"restitution": 0.8}),
+    "isolated, given, pulse": pulse(block_of(0.2).with_(block={"restitution": 0.75}), size=1.5),
+    "bouc-wen": block_of(0.2, bearings=law("bouc-wen", kb=6.22e3, alpha=44.69)),
+    "bilinear": block_of(0.2, bearings=law("bilinear", kb=6.22e3, yield_force=700.0)),
+    "linear, damped": pulse(block_of(0.2, bearings=Bearings(law="linear", count=4, ka=1.2e4, damping=800.0))),
+    "algebraic, damped": block_of(0.2).with_(bearings={"damping": 300.0}),
+    "sliding": released(block_of(0.2, bearings=None)),
+    "base displaced": block_of(0.2, motion=None, start={"base_displacement": 0.2, "base_velocity": -0.3, "tilt": 0.05}),
+    "inertia": released(block_of(0.2).with_(block={"corner_inertia": 1.8 * ISOLATED.block.mass * CARYATID**2})),
+    "friction": pulse(on_ground(block_of(0.2, friction=0.8))),
+    "duration": released(on_ground(block_of(0.2, duration=2.0))),
+    "phase": upward(pulse(block_of(0.2), phase=0.5, start=0.3), phase=0.3),
+    **{f"rigid, {shape}": pulse(on_ground(block_of(0.2)), shape, 1.25, 3.0) for shape in SHAPES},
+    **{f"isolated, {shape}, vertical": upward(pulse(block_of(0.2), shape, 1.2)) for shape in SHAPES},
+}
+GRID = {  # 24 scenes
+    **{
+        f"rigid, {how.__name__}, {slenderness}, {radius}": how(on_ground(block_of(slenderness, radius)))
+        for how in (released, pulse)
+        for slenderness, radius in ((0.1, 0.1), (0.1, 10.0), (0.2, CARYATID), (0.35, 0.1), (0.5, 10.0))
+    },
+    **{
+        f"isolated, {how.__name__}, {slenderness}, {radius}": how(block_of(slenderness, radius))
+        for how in (released, pulse)
+        for slenderness, radius in ((0.1, 0.1), (0.2, 10.0), (0.35, CARYATID), (0.5, CARYATID))
+    },
+    **{f"rigid, record, {slenderness}": on_ground(block_of(slenderness)) for slenderness in (0.2, 0.35)},
+    **{f"isolated, record, {slenderness}": block_of(slenderness) for slenderness in (0.1, 0.2, 0.35)},
+    "isolated, given, 0.2": released(block_of(0.2).with_(block={"restitution": 0.75})),
+}
+every_engine = pytest.mark.parametrize("engine", ABLE)
+
+
+def rms(errors):
+    return float(np.sqrt(np.mean(np.square(errors)))) if len(errors) else 0.0
+
+
+def check(engine, scene, folder):
+    """Assert the accuracy that is promised of scripts, and that they print what the project reads."""
+    needs(engine)
+    found = ran(engine, scene, folder)
+    seen, model, given = found.seen, found.model, scene.block.restitution is not None
+    assert (seen.failure, seen.outcome) == (None, model.outcome)
+    assert found.said.startswith(seen.outcome) or f"\n{seen.outcome}" in found.said  # PyBullet prints on import
+    assert rms(found.errors) <= (4e-4 if scene.base or given else 3e-5)
+    assert rms(found.jumps) <= 1e-3
+    if scene.base:
+        assert seen.peak_base_displacement == pytest.approx(model.peak_base_displacement, rel=3e-4)
+    if model.outcome == "overturns":
+        assert seen.overturning_time == pytest.approx(model.overturning_time, rel=2e-3)
+    elif model.outcome == "rocks":
+        assert seen.peak_tilt == pytest.approx(model.peak_tilt, rel=1e-3)
+    check_print(scene, found)
+
+
+def check_print(scene, found):
+    """Assert that outcome, peaks and impacts as printed are those that the project reads from the same steps."""
+    said, seen = found.said, found.seen
+    peak = float(re.search(r"tilt ([\d.]+) of the slenderness", said)[1])
+    assert seen.outcome == "overturns" or peak == pytest.approx(seen.peak_tilt_ratio, abs=2e-5)
+    if scene.base:
+        base = float(re.search(r"base ([\d.]+) m", said)[1])
+        assert base == pytest.approx(seen.peak_base_displacement, rel=1e-4, abs=2e-6)
+    listed = [tuple(map(float, one)) for one in re.findall(r"impact at ([\d.]+) s: e (-?[\d.]+), ", said)]
+    assert len(listed) == len(found.errors)
+    measured_at = {round(one.time, 4): one for one in seen.impacts}
+    for time, e in listed:
+        one = min(measured_at.values(), key=lambda each: abs(each.time - time))
+        assert (time, e) == pytest.approx((one.time, one.rate_after / one.rate_before), abs=2e-4)
+
+
+@every_engine
+@pytest.mark.parametrize("name", FEW)
+def test_a_script_is_exact(engine, name, tmp_path):
+    check(engine, FEW[name], tmp_path)
+
+
+@pytest.mark.slow
+@every_engine
+@pytest.mark.parametrize("name", GRID | OTHERS)
+def test_scripts_are_exact(engine, name, tmp_path):
+    check(engine, (GRID | OTHERS)[name], tmp_path)
+
+
+@every_engine
+def test_scripts_are_formatted_and_short(engine, tmp_path):
+    scenes = FEW | OTHERS | {"long name": ISOLATED.with_(name='a "long" name \\' * 20, duration=9.0)}
+    for number, (name, scene) in enumerate(scenes.items()):
+        text = written(engine, scene, tmp_path, f"script{number}").read_text()
+        most = 160 if scene.base else 110 if scene.motion is None else 115
+        further = (scene.block.restitution is not None) + bool(scene.motion and scene.motion.vertical)
+        assert code_lines(text) <= most + 8 * further, name
+    ruff = [sys.executable, "-m", "ruff"]
+    configured = ["--no-cache", "--config", str(PROJECT / "pyproject.toml"), str(tmp_path)]
+    for command in (["check"], ["format", "--diff"]):
+        done = subprocess.run([*ruff, *command, *configured], capture_output=True, text=True)
+        assert done.returncode == 0, done.stdout + done.stderr
+
+
+@every_engine
+def test_a_script_holds_only_what_its_scene_needs(engine, tmp_path):
+    plain = written(engine, FEW["rigid, released"], tmp_path).read_text()
+    for word in (
+        "bearing_force(",
+        "hysteretic",
+        "mb",
+        "share",
+        "ground_velocity",
+        "vertical_velocity",
+        "given",
+        "couple",
+        "loadtxt",
+    ):
+        assert not re.search(rf"\b{re.escape(word)}", plain), word
+    whole = written(engine, OTHERS["isolated, given, record"], tmp_path).read_text()
+    for word in ("hysteretic", "mb", "ground_velocity", "given", "loadtxt"):
+        assert word in whole
+    assert "hysteretic" not in written(engine, OTHERS["linear, damped"], tmp_path).read_text()
+
+
+@every_engine
+def test_numbers_at_the_head_are_all_that_a_reader_changes(engine, tmp_path):
+    """A script whose numbers are changed runs the scene of these numbers."""
+    needs(engine)
+    script = written(engine, pulse(block_of(0.2), size=1.5), tmp_path)
+    text = script.read_text()
+    other = ISOLATED.with_(
+        block={"mass": 9000.0, "radius": 1.6, "slenderness": 0.16},
+        base={"mass": 500.0},
+        bearings={"count": 6, "ka": 9e4, "kb": 8e3},
+        motion=PulseMotion("one-sine", 2.9, 5.0),
+    )
+    for old, new in {
+        r"g, m, R, gamma = .*": "g, m, R, gamma = 9.81, 9000.0, 1.6, 0.16",
+        r"mb = [\d.]+": "mb = 500.0",
+        r"count, ka, kb = .*": "count, ka, kb = 6, 9e4, 8e3",
+        r"amplitude, omega, begin = .*": "amplitude, omega, begin = 2.9, 5.0, 0.0",
+    }.items():
+        text, count = re.subn(old, new, text)
+        assert count == 1
+    script.write_text(text)
+    found = measured(other, script, run_alone(script, "--csv", tmp_path / "history.csv"))
+    assert found.seen.outcome == found.model.outcome and rms(found.errors) <= 4e-4 and len(found.errors)
+    assert found.seen.peak_base_displacement == pytest.approx(found.model.peak_base_displacement, rel=5e-3)
+
+
+@every_engine
+def test_a_script_draws_its_history(engine, tmp_path):
+    needs(engine)
+    script = written(engine, FEW["rigid, released"].with_(duration=0.3), tmp_path)
+    assert "still moving" in run_alone(script, "--plot", tmp_path / "tilt.svg")
+    assert "tilt [rad]" in (tmp_path / "tilt.svg").read_text()
+
+
+@every_engine
+def test_what_is_not_to_be_had_is_said(engine):
+    scene = released(block_of(0.2))
+    with pytest.raises(SceneError, match=r"block.restitution = 0.9: above 0.817\d+ of eq. \(7\)"):
+        write_script(ENGINES[engine], scene.with_(block={"restitution": 0.9}))
+
+
+def test_an_engine_without_a_template_has_no_script():
+    with pytest.raises(SettingError, match="mujoco has no script"):
+        write_script(ENGINES["mujoco"], RIGID)
+
+
+def test_a_record_stands_beside_its_script():
+    files = write_script(ENGINES[ABLE[0]], ISOLATED.with_(name="a/b c"))
+    assert list(files) == [f"a-b-c-{ABLE[0]}.py", f"a-b-c-{ABLE[0]}-motion.txt"]
+    rows = np.loadtxt(files[f"a-b-c-{ABLE[0]}-motion.txt"].splitlines())
+    assert np.array_equal(rows[:, 1], ISOLATED.motion.samples)
+    assert rows[:, 0] == pytest.approx(np.arange(len(rows)) * ISOLATED.motion.dt)
