@@ -73,7 +73,7 @@ OTHERS = {
     ),
     "isolated, record, vertical": block_of(0.2, motion=paired(RECORD, synthetic_motion("duzce-like", 3).scaled(0.6))),
     "isolated, given, record": block_of(0.15).with_(block={"restitution": 0.8}),
-    "isolated, given, pulse": pulse(block_of(0.2).with_(block={"restitution": 0.75}), size=1.5),
+    "isolated, given, pulse": pulse(block_of(0.2).with_(block={"restitution": 0.75}), size=1.2),
     "bouc-wen": block_of(0.2, bearings=law("bouc-wen", kb=6.22e3, alpha=44.69)),
     "bilinear": block_of(0.2, bearings=law("bilinear", kb=6.22e3, yield_force=700.0)),
     "linear, damped": pulse(block_of(0.2, bearings=Bearings(law="linear", count=4, ka=1.2e4, damping=800.0))),
@@ -81,7 +81,7 @@ OTHERS = {
     "sliding": released(block_of(0.2, bearings=None)),
     "base displaced": block_of(0.2, motion=None, start={"base_displacement": 0.2, "base_velocity": -0.3, "tilt": 0.05}),
     "inertia": released(block_of(0.2).with_(block={"corner_inertia": 1.8 * ISOLATED.block.mass * CARYATID**2})),
-    "friction": pulse(on_ground(block_of(0.2, friction=0.8))),
+    "friction": released(on_ground(block_of(0.2, friction=0.8))),
     "duration": released(on_ground(block_of(0.2, duration=2.0))),
     "phase": upward(pulse(block_of(0.2), phase=0.5, start=0.3), phase=0.3),
     **{f"rigid, {shape}": pulse(on_ground(block_of(0.2)), shape, 1.25, 3.0) for shape in SHAPES},
@@ -121,7 +121,7 @@ def check(engine, scene, folder):
     if scene.base:
         assert seen.peak_base_displacement == pytest.approx(model.peak_base_displacement, rel=3e-4)
     if model.outcome == "overturns":
-        assert seen.overturning_time == pytest.approx(model.overturning_time, rel=2e-3)
+        assert seen.overturning_time == pytest.approx(model.overturning_time, rel=1e-3)
     elif model.outcome == "rocks":
         assert seen.peak_tilt == pytest.approx(model.peak_tilt, rel=1e-3)
     check_print(scene, found)
@@ -136,11 +136,11 @@ def check_print(scene, found):
         base = float(re.search(r"base ([\d.]+) m", said)[1])
         assert base == pytest.approx(seen.peak_base_displacement, rel=1e-4, abs=2e-6)
     listed = [tuple(map(float, one)) for one in re.findall(r"impact at ([\d.]+) s: e (-?[\d.]+), ", said)]
-    assert len(listed) == len(found.errors)
-    measured_at = {round(one.time, 4): one for one in seen.impacts}
-    for time, e in listed:
-        one = min(measured_at.values(), key=lambda each: abs(each.time - time))
-        assert (time, e) == pytest.approx((one.time, one.rate_after / one.rate_before), abs=2e-4)
+    same = [(one, e) for time, e in listed for one in seen.impacts if abs(one.time - time) < 1e-4]
+    assert abs(len(listed) - len(found.errors)) <= 1  # one may be as faint as the limit
+    assert len(same) >= len(listed) - 1
+    for one, e in same:
+        assert e == pytest.approx(one.rate_after / one.rate_before, abs=2e-4)
 
 
 @every_engine
@@ -224,6 +224,12 @@ def test_a_script_draws_its_history(engine, tmp_path):
     script = written(engine, FEW["rigid, released"].with_(duration=0.3), tmp_path)
     assert "still moving" in run_alone(script, "--plot", tmp_path / "tilt.svg")
     assert "tilt [rad]" in (tmp_path / "tilt.svg").read_text()
+
+
+@every_engine
+def test_a_script_is_written_where_its_engine_is_absent(engine, monkeypatch):
+    monkeypatch.setitem(sys.modules, ENGINES[engine].package, None)  # cannot be imported
+    assert f"import {ENGINES[engine].package}" in "".join(write_script(ENGINES[engine], RIGID).values())
 
 
 @every_engine
