@@ -7,6 +7,7 @@ bearing law, the reading of impacts, and the printing.
 
 from __future__ import annotations
 
+import json
 import math
 import re
 from importlib.resources import files
@@ -106,7 +107,7 @@ def _context(engine: Engine, scene: Scene, name: str, record: str | None) -> dic
         "title": f"{cut(scene.name or 'A scene', 30).translate(UNSAFE)}: a rocking block {_support(scene)}",
         "friction": scene.friction,
         "name": name,
-        "record": record,
+        "record": record and json.dumps(record, ensure_ascii=False),  # a string in quotes
         "pulse": scene.motion if scene.motion and not record else None,
         "vertical": scene.motion.vertical if scene.motion else None,
         "block": block,

@@ -253,6 +253,12 @@ def test_an_engine_without_a_template_has_no_script():
         write_script(ENGINES["mujoco"], RIGID)
 
 
+def test_a_record_is_named_as_its_script_is(tmp_path):
+    name = 'own "record" ö'
+    compile(script := written(ABLE[0], ISOLATED, tmp_path, name).read_text(), name, "exec")
+    assert r'with_name("own \"record\" ö-motion.txt")' in script
+
+
 def test_a_record_stands_beside_its_script():
     files = write_script(ENGINES[ABLE[0]], ISOLATED.with_(name="a/b c"))
     assert list(files) == [f"a-b-c-{ABLE[0]}.py", f"a-b-c-{ABLE[0]}-motion.txt"]
