@@ -27,8 +27,8 @@ runpy.run_path(sys.argv[0], run_name="__main__")
 project = {"analytic", "engines", "comparisons"} & {name.partition(".")[0] for name in sys.modules}
 assert not project, project
 """
-# Impacts below this rate, over slenderness sqrt(g/R), are listed by no script and measured in no test, unless the script
-# says its own: the error of compliant corners goes as the inverse square of the rate.
+# Impacts below this rate, over slenderness sqrt(g/R), are listed by no script and measured in no test, unless the
+# script says its own: the error of compliant corners goes as the inverse square of the rate.
 FAINT = 0.05
 
 
