@@ -121,8 +121,6 @@ def _context(engine: Engine, scene: Scene, name: str, record: str | None) -> dic
         "base_moved": bool(start.base_displacement or start.base_velocity),
         "tail": None if scene.duration else _tail(scene),
         "unit_radius": UNIT_RADIUS,
-        "accelerations": False,  # a template sets these two where its engine needs them
-        "settles": False,
     }
 
 

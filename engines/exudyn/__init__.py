@@ -8,6 +8,7 @@ ENGINE = Engine(
     install="pip install exudyn",
     adapter="engines.exudyn.adapter",
     tolerances="engines.exudyn.tolerances",
+    script="engines.exudyn:script.py.jinja",
     colour="#E69F00",
     marker="s",
     dashes="--",
