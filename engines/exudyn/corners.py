@@ -33,7 +33,7 @@ Real = exu.symbolic.Real
 RELAX, MOST_RELAX = 75.0, 0.06
 # Change of the anchor that is not passed to exudyn, over the stretch of the sticking spring under the block's weight.
 SLOP = 1e-3
-# Time before a landing in which a couple acts, over the relaxation time: the corners give way under it and come back at
+# Time before a landing in which a couple acts, over the relaxation time: it presses the corners in, and they return at
 # the rebound speed. With .1, .2 and .3 e is 3e-3, 1.3e-3 and 7e-4 too large for a restitution .8 times that of (7); on
 # a light base, whose pull on the block changes meanwhile, it is .65, 1 and 1.7 times as far off.
 ACTS = 0.21

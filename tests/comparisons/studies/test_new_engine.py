@@ -32,7 +32,7 @@ from engines.simulating import Simulator
 
 ASK = Request(("crude",), quick=True)
 DECIDING = FAKE_ENGINE.replace("takes_restitution=True,", "").replace("step: float", "span: float")
-DECIDING = DECIDING.replace("settings.step", "settings.span")
+DECIDING = DECIDING.replace("settings.step", "settings.span").replace('kind="assisted"', 'kind="tuned"')
 COLOUR = "#d55e00"
 # study: what its plan is given so that it stays short
 SHORT = {
@@ -141,7 +141,7 @@ def test_the_overturning_study_runs_and_shows_it(crude, monkeypatch, tmp_path):
     found = answered(study.plan(ASK, grid), by_model())[-1]
     section = shown(study, found, tmp_path)
     assert section.tables[0].rows[0][:2] == ["crude, euler", "trusted"] and drawn(section)
-    assert crude.takes_restitution != bool(where(found.rows, part="refinement", engine="crude"))
+    assert crude.applies_impact != bool(where(found.rows, part="refinement", engine="crude"))
 
 
 @pytest.mark.parametrize("crude", [FAKE_ENGINE], indirect=True)
