@@ -37,13 +37,13 @@ class _Lowering(NativeLowering):
 
     def run_pass(self, state):
         state.flags.no_compile = True
-        state.library = _Linked(state.targetctx.codegen(), state.func_id.func_qualname)
+        state["library"] = _Linked(state.targetctx.codegen(), state.func_id.func_qualname)
         super().run_pass(state)
         made = state["cr"]
         # as numba does with machine code; callers find the function by this key, which nothing calls
         where, name = made.fndesc.lookup_module(), made.fndesc.qualname
-        key = _dynfunc.make_function(where, name, "", 0, made.env, (state.library,))
-        state.targetctx.insert_user_function(key, made.fndesc, [state.library])
+        key = _dynfunc.make_function(where, name, "", 0, made.env, (state["library"],))
+        state.targetctx.insert_user_function(key, made.fndesc, [state["library"]])
         state["cr"] = made._replace(cfunc=key)
         return True
 
