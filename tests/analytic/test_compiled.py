@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from from_python import from_python
 from numba import njit
+from numba.core.registry import cpu_target
 
 from analytic import kernel
 from analytic.compiled import compiling, entry, inner
@@ -78,7 +79,7 @@ def test_an_inner_function_is_no_machine_code_but_in_its_entry():
 
     assert called(2.0) == 9.0
     linked = [next(iter(function.overloads.values())) for function in (twice, four_times)]
-    engine = linked[0].library.codegen._engine
+    engine = cpu_target.target_context.codegen()._engine
     assert [engine.is_symbol_defined(one.fndesc.mangled_name) for one in linked] == [False, False]
     (whole,) = called.overloads.values()
     assert engine.is_symbol_defined(whole.fndesc.mangled_name)
