@@ -69,6 +69,11 @@ class Couple:
         """T/T0: how much longer the block needs to the ground."""
         return -math.log(self.kept) / (1 - self.kept) if abs(1 - self.kept) > 1e-9 else 1.0
 
+    @property
+    def lasts(self) -> float:
+        """Time from its begin to the landing [s]."""
+        return self.acts * self.longer
+
     def moment(self, step: float, tilt: float, rate: float) -> float:
         """The couple [N m] in a step [s] from this state, implicit in the rate at its end; asked for at every step."""
         (last, before), change = self.steps, rate - self.rate

@@ -292,7 +292,7 @@ def run_of(
     else:
         trace = trace_of(rows, scene, contact_tilt(scene, largest, smallest, depth), smeared=SMEARED)
         if couple := couple_of(scene):
-            trace = replace(trace, early=couple.acts * couple.longer)
+            trace = replace(trace, early=couple.lasts)
     failure = failure_of(scene, rows, ended)
     if ended not in ENDS:
         reason, _, why = ended.partition(": ")

@@ -36,7 +36,8 @@ def command(
     if output is not None and Path(output).suffix != SUFFIX:
         raise SettingError(f"--output {output}: end the name in {SUFFIX}")
     what = load_scene(scene)
-    compile_kernels()
+    if what.duration is None:  # the script ends where the model's run does
+        compile_kernels()
     files = write_script(ENGINES[engine], what, Path(output).stem if output else None)
     folder = Path(output).parent if output else Path()
     places = {str(folder / file): text for file, text in files.items()}

@@ -120,7 +120,7 @@ def run(scene: Scene, settings: CompliantCorners) -> Run:
         MOST_RELAX * math.sqrt(scene.block.radius / scene.gravity),
     )
     couple = Couple.of(scene, ACTS * settle)
-    early = couple.acts * couple.longer if couple else 0.0
+    early = couple.lasts if couple else 0.0
     model, contact_tilt = assemble(scene, settings, couple)
     explicit = solver_settings(
         scene,

@@ -17,8 +17,6 @@ from exudyn.itemInterface import (
     ObjectConnectorTorsionalSpringDamper,
 )
 from numba import njit
-from scipy.integrate import solve_ivp
-from scipy.optimize import brentq
 
 if TYPE_CHECKING:
     from analytic import Block, Scene
@@ -90,6 +88,9 @@ def _strengths(kept: float) -> tuple[float, float]:
     a: pull toward the ground, in the same units, small. From y(1) = 1 the rate becomes `kept` times what it would be
     without the couple, y(0)^2 = kept^2 (1 + 2 a).
     """
+
+    from scipy.integrate import solve_ivp  # not at every start: only a given restitution needs it
+    from scipy.optimize import brentq
 
     def at_ground(c, d=0.0, a=0.0):
         def slope(x, y):
