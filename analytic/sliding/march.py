@@ -1,0 +1,426 @@
+"""March through the modes of a block that may slide: a Taylor series integrator with events, as the kernel (compiled).
+
+Modes, their equations and ends: `equations`, `choice`, `impact`. Between two events all is smooth, and events are
+located as roots of the step's polynomials.
+"""
+
+import math
+
+import numpy as np
+
+from .. import layout as L
+from ..compiled import entry, inner
+from ..events import LONGEST_LAST_HOP, TOUCH, find_fall, upper_bound
+from ..laws import law_function
+from ..polynomial import MAX_ORDER, SCRATCH, first_root, value
+from ..steps import end_of_base, end_of_block, gravity_of_step, ground_of_step, stretch_of_ground
+from ..taylor import allowed_step
+from . import layout as S
+from .choice import choose
+from .equations import accelerations, mode_series
+from .impact import kinetic, level_impact, one_corner, within
+from .layout import (
+    CONE,
+    FALLEN,
+    FLIGHT,
+    LANDING,
+    LEVEL,
+    LOSS,
+    ROCK,
+    SLIDE,
+    SLIDE_ROCK,
+    STICK,
+    STOP,
+    Block,
+    Contact,
+    Start,
+)
+from .reading import read
+
+PATIENCE = 1000
+ROUNDING = 4e-16
+# Share of the friction, or of the threshold of uplift, by which a jump of the ground exceeds it if it is no rounding.
+ONSET = 1e-9
+FARTHEST = 4.0
+mark, begin_step = law_function("mark"), law_function("begin")
+
+
+def arrays(capacity, outputs):
+    """Workspace of a run."""
+    return (
+        np.zeros((S.ROWS, MAX_ORDER + 2)),
+        np.empty(SCRATCH),
+        np.empty((capacity, 6)),
+        np.empty((capacity, 2)),
+        np.empty((outputs, 8)),
+        np.zeros(S.TOTALS),
+    )
+
+
+@inner
+def bearing_start(par, base, branch, moving, P):
+    """As `steps.bearing_of_step`, with the direction in which the base begins to move."""
+    (x, v, z), (direction, x_c, mark_c) = base, branch
+    P[L.X, 0], P[L.V, 0] = x, v
+    P[L.F, 0] = par.count * (par.kb * x + z + par.damping * v)
+    if moving != direction and moving != 0:
+        direction, x_c = moving, x
+        mark_c = mark(par.law, direction, z, par.constants)
+    travel = mark_c + direction * (x - x_c)
+    P[L.Q, 0], factors, corner = begin_step(par.law, direction, z, travel, par.constants)
+    return L.Branch(direction, x_c, mark_c), factors, corner
+
+
+@inner
+def crossing(limit, side, refused, order, h, P, work):
+    """First time at which limit N + side H falls below 0 in the step, or -1."""
+    event, across, normal = P[L.EVENT], P[S.H], P[S.N]
+    for k in range(order + 1):
+        event[k] = limit * normal[k] + side * across[k]
+    if refused and abs(event[0]) <= TOUCH * limit * abs(normal[0]):
+        event[0] = 0.0
+        if event[1] < 0:
+            return -1.0
+    return first_root(event, order, h, work)
+
+
+@inner
+def next_event(par, contact, block, refused, direction, step, P, work):
+    """(kind of the first event in the step, its time since the start, side)."""
+    found, h, order, event, phi, side = L.NONE, step.h, step.order, P[L.EVENT], P[L.PHI], 0.0
+    mode, s, sigma = block.mode, block.s, block.sigma
+    if mode == ROCK or mode == SLIDE_ROCK or mode == FLIGHT:
+        root = find_fall(phi, s, 0.0, order, h, event, work)
+        if root >= 0 and not (mode == FLIGHT and root == 0):
+            found, h = LEVEL if mode == FLIGHT else L.IMPACT, root
+        top = upper_bound(phi, s, order, h)
+        if top > par.gamma > s * block.tilt:
+            root = find_fall(phi, -s, par.gamma, order, h, event, work)
+            if root >= 0:
+                found, h = L.PASSAGE, root
+        if top > 0.5 * math.pi:
+            root = find_fall(phi, -s, 0.5 * math.pi, order, h, event, work)
+            if root >= 0:
+                found, h = L.OVERTURNING, root
+    if mode == FLIGHT:
+        root = find_fall(P[S.GAP], 1.0, 0.0, order, h, event, work)
+        if root >= 0:
+            found, h = LANDING, root
+    if mode == STICK or mode == ROCK:
+        for sign in (1.0, -1.0):
+            if mode == STICK and par.slope <= contact.mu:
+                root = crossing(par.slope, sign, refused == L.UPLIFT, order, h, P, work)
+                if root >= 0:
+                    found, h, side = L.UPLIFT, root, sign
+            else:
+                root = crossing(contact.mu, sign, refused == CONE, order, h, P, work)
+                if root >= 0:
+                    found, h, side = CONE, root, sign
+    if sigma != 0:
+        root = find_fall(P[S.SPEED], sigma, 0.0, order, h, event, work)
+        if root >= 0:
+            found, h = STOP, root
+        if refused != LOSS:
+            root = find_fall(P[S.N], 1.0, 0.0, order, h, event, work)
+            if root >= 0:
+                found, h = LOSS, root
+    if direction != 0:
+        root = find_fall(P[L.V], direction, 0.0, order, h, event, work)
+        if root > 0:
+            found, h = L.REVERSAL, root
+        if step.corner < math.inf:
+            root = find_fall(P[L.Q], -direction, step.corner, order, h, event, work)
+            if root >= 0:
+                found, h = L.CORNER, root
+    return found, h, side
+
+
+@inner
+def impossible(par, contact, block, start):
+    """Whether the mode no longer holds at the start of a step, as after a jump of the ground's acceleration."""
+    mode = block.mode
+    if mode == FLIGHT:
+        return False
+    _, _, _, across, normal = accelerations(
+        par, contact, mode, block.s, block.sigma, block.tilt, block.rate, start.gravity, start.ground, start.force
+    )
+    edge = 1 + ONSET
+    if mode == STICK:
+        return abs(across) > min(contact.mu, par.slope) * normal * edge or normal < 0
+    if mode == ROCK:
+        return abs(across) > contact.mu * normal * edge or normal < 0
+    return normal < 0
+
+
+@inner
+def fresh_series(fresh, block, P):
+    """Sets to 0 what is 0 at an onset that was just located; returns whether it is no onset, but a graze."""
+    if fresh == CONE:
+        P[S.SPEED, 0], P[S.SPEED, 1], P[S.SLIP, 1], P[S.SLIP, 2] = 0.0, 0.0, 0.0, 0.0
+        return not block.sigma * P[S.SPEED, 2] > 0
+    if fresh == L.UPLIFT:
+        P[L.W, 0], P[L.W, 1], P[L.PHI, 1], P[L.PHI, 2] = 0.0, 0.0, 0.0, 0.0
+        return not block.s * P[L.W, 2] > 0
+    if fresh == LOSS:
+        P[S.RISE, 0], P[S.RISE, 1], P[S.GAP, 0], P[S.GAP, 1], P[S.GAP, 2] = 0.0, 0.0, 0.0, 0.0, 0.0
+        return not P[S.RISE, 2] > 0
+    return False
+
+
+@inner
+def state_series(block, P):
+    """State of the block as entries 0."""
+    P[L.PHI, 0], P[L.W, 0], P[S.SLIP, 0], P[S.SPEED, 0] = block.tilt, block.rate, block.slip, block.speed
+    P[S.GAP, 0], P[S.RISE, 0] = block.gap, block.rise
+
+
+@inner
+def usable_step(par, block, order, h, tolerance, P):
+    """The step that the series allow [s]."""
+    if block.s != 0:
+        h = allowed_step(P[L.W], order, tolerance, min(h, FARTHEST / math.sqrt(par.p2)))
+    if block.sigma != 0 or block.mode == FLIGHT:
+        h = allowed_step(P[S.DRIFT], order, tolerance, h)
+    if par.on_base:
+        h = allowed_step(P[L.F], order, tolerance, allowed_step(P[L.V], order, tolerance, h))
+    return h
+
+
+@inner
+def struck(par, contact, block, base, found, rest_rate, start_of, t, into):
+    """(block, base, status) after an impact. start_of : accelerations' `Start` at that time."""
+    impacts, totals = into[2], into[5]
+    P, v = into[0], base.v
+    c, n = par.R * math.cos(block.s * par.gamma - block.tilt), par.R * math.sin(block.s * par.gamma - block.tilt)
+    rate, drift, climb = block.rate, block.speed + c * block.rate, block.rise + n * block.rate
+    s, count, status = block.s, 1, L.COMPLETE
+    if found == L.IMPACT:
+        kind, after, across, up, push, count = level_impact(par, contact, s, rate, drift, climb)
+        if contact.given and (kind != S.NEW_STICKS or block.sigma != 0):
+            status = S.GIVEN_LEAVES
+        s = 0.0 if kind >= S.BOTH_STICK else -s
+        tilt, speed = 0.0, across if s == 0 else across - par.R * math.cos(par.gamma) * after
+        slips = kind == S.NEW_SLIPS or kind == S.BOTH_SLIP
+    else:
+        kind, tilt = S.LANDS, block.tilt
+        after, across, up, push, normal = one_corner(par, contact, c, n, 0.0, rate, drift, climb, False)
+        slips = not within(push, normal, contact.mu)
+        if slips:
+            sigma = math.copysign(1.0, drift - c * rate)
+            after, across, up, push, normal = one_corner(par, contact, c, n, sigma, rate, drift, climb, False)
+            if not sigma * (across - c * after) > 0:
+                sigma = -sigma
+                after, across, up, push, normal = one_corner(par, contact, c, n, sigma, rate, drift, climb, False)
+        speed = across - c * after
+    if not slips:
+        speed = 0.0
+    jump = -push / contact.mb if par.on_base else 0.0
+    totals[S.IMPACT_LOSS] += kinetic(par, contact, rate, drift, climb, v) - kinetic(
+        par, contact, after, across, up, v + jump
+    )
+    number = int(totals[S.IMPACTS])
+    if number < impacts.shape[0]:
+        impacts[number, 0], impacts[number, 1], impacts[number, 2] = t, rate, after
+        impacts[number, 3], impacts[number, 4], impacts[number, 5] = jump, kind, speed
+    totals[S.IMPACTS] += 1
+    if count != 1:
+        totals[S.DOUBTS] += 1
+    base = L.Base(base.x, v + jump, base.z)
+    start = Start(start_of.gravity, start_of.ground, par.count * (par.kb * base.x + base.z + par.damping * base.v))
+    block = Block(STICK, s, 0.0, tilt, after, block.slip, speed, 0.0, 0.0)
+    block, doubt = settled(par, contact, block, rest_rate, start)
+    if doubt != 1:
+        totals[S.DOUBTS] += 1
+    return block, base, status
+
+
+@inner
+def settled(par, contact, block, rest_rate, start):
+    """The block after an impact, in its next mode; a block so slow that its swings end at once lies level."""
+    after, count = block, 1
+    if block.s != 0:
+        after, count = choose(par, contact, block, start)
+        if block.tilt == 0 and abs(block.rate) < rest_rate and after.mode != FLIGHT:
+            back, _, _, _, _ = accelerations(
+                par, contact, after.mode, after.s, after.sigma, 0.0, block.rate, start.gravity, start.ground, start.force
+            )
+            short = LONGEST_LAST_HOP / math.sqrt(par.p2)
+            if after.s * back < 0 and 2 * abs(block.rate) <= -after.s * back * short:
+                block = Block(STICK, 0.0, 0.0, 0.0, 0.0, block.slip, block.speed, 0.0, 0.0)
+    if block.s == 0:
+        after, count = choose(par, contact, block, start)
+    return after, count
+
+
+@inner
+def after_event(par, contact, block, found, side, start):
+    """(block in its mode after an event that is no impact, number of modes that were admissible)."""
+    _, s, sigma, tilt, rate, slip, speed, gap, rise = block
+    weak = 1e-9 * par.m * par.g
+    if found == CONE or found == L.UPLIFT:
+        _, _, _, across, normal = accelerations(
+            par, contact, block.mode, s, sigma, tilt, rate, start.gravity, start.ground, start.force
+        )
+        if normal < weak:
+            return Block(FLIGHT, s if s != 0 else 1.0, 0.0, tilt, rate, slip, 0.0, 0.0, 0.0), 1
+        # side N + H = 0 falls: H is -side limit N, and the block moves to side
+        if found == L.UPLIFT:
+            return Block(ROCK, side, 0.0, 0.0, 0.0, slip, 0.0, 0.0, 0.0), 1
+        return Block(SLIDE if s == 0 else SLIDE_ROCK, s, side, tilt, rate, slip, 0.0, 0.0, 0.0), 1
+    if found == STOP:
+        return choose(par, contact, Block(STICK, s, 0.0, tilt, rate, slip, 0.0, 0.0, 0.0), start)
+    if found == LOSS:
+        return Block(FLIGHT, s if s != 0 else 1.0, 0.0, tilt, rate, slip, speed, 0.0, 0.0), 1
+    # LEVEL: the other corner becomes the lower one; gap and slip are those of both, their rates are not
+    b = par.R * math.sin(par.gamma)
+    return Block(FLIGHT, -s, 0.0, 0.0, rate, slip, speed, gap, rise + 2 * s * b * rate), 1
+
+
+@entry
+def march(par, contact, ground, upright, options, into):
+    """One run; fills totals, impacts, modes and history of `into`."""
+    P, work, impacts, changes, history, totals = into
+    shaking = ground.shaking
+    base, branch = L.Base(par.x, par.v, par.z), L.Branch(0.0, par.x, 1.0)
+    none, nothing = math.floor(0.0), 0.0
+    s = math.copysign(1.0, par.tilt if par.tilt != 0 else par.rate) if par.tilt != 0 or par.rate != 0 else 0.0
+    block = Block(none + STICK, s, nothing, par.tilt, par.rate, nothing, nothing, nothing, nothing)
+    previous, unsettled = block, True
+    status, t, segment, begin, written, idle, steps, highest = L.COMPLETE, 0.0, none, 0.0, none, none, none, none
+    fresh, refused, last_mode = none + L.NONE, none + L.NONE, none - 1
+    totals[S.UNSTABLE_TIME], totals[S.NORMAL] = 0.0 if abs(par.tilt) >= par.gamma else -1.0, 1.0
+    totals[S.PEAK_TILT], totals[S.PEAK_X] = abs(par.tilt), abs(par.x)
+    rest_rate = options.rest_rate * math.sqrt(par.p2)
+    while begin < par.duration and block.mode != FALLEN and status == L.COMPLETE:
+        stretch = stretch_of_ground(ground, upright, segment, begin, options.order, par.duration)
+        finish, order = stretch.end, stretch.order
+        segment += 1
+        length, tau = finish - begin, 0.0
+        while tau < length:
+            h, t = length - tau, begin + tau
+            if h <= ROUNDING * finish:
+                break
+            steps += 1
+            if steps > options.most_steps:
+                status = L.SPENT
+                break
+            highest, h = ground_of_step(shaking, stretch, tau, h, P[L.GROUND])
+            gravity = par.g
+            if upright is not None:
+                gravity_of_step(shaking, par.g, stretch, tau, P[L.GRAVITY])
+                gravity = P[L.GRAVITY, 0]
+            force = par.count * (par.kb * base.x + base.z + par.damping * base.v)
+            start = Start(gravity, P[L.GROUND, 0] if highest >= 0 else 0.0, force)
+            if unsettled or fresh == L.NONE and refused == L.NONE and impossible(par, contact, block, start):
+                if unsettled or block.sigma == 0:
+                    block, count = choose(par, contact, block, start)
+                    if count != 1:
+                        totals[S.DOUBTS] += 1
+                else:
+                    block = Block(
+                        none + FLIGHT, block.s if block.s != 0 else 1.0, nothing, block.tilt, block.rate, block.slip,
+                        block.speed, nothing, nothing,
+                    )  # fmt: skip
+                unsettled = False
+            factors, corner = (0.0, 0.0, 0.0), math.inf
+            if par.on_base:
+                moving = math.copysign(1.0, base.v)
+                if base.v == 0:
+                    _, _, _, across, _ = accelerations(
+                        par, contact, block.mode, block.s, block.sigma, block.tilt, block.rate, gravity, start.ground, force
+                    )
+                    begins = -(force + across) / contact.mb - start.ground
+                    if begins == 0 and highest >= 1:
+                        begins = -P[L.GROUND, 1]
+                    moving = 0.0 if begins == 0 else math.copysign(1.0, begins)
+                branch, factors, corner = bearing_start(par, base, branch, moving, P)
+            state_series(block, P)
+            mode_series(order, par, contact, block, factors, highest, upright, P)
+            if fresh != L.NONE and fresh_series(fresh, block, P):
+                block, refused, fresh = previous, fresh, none + L.NONE
+                totals[S.CHANGES] -= 1
+                last_mode = block.mode
+                continue
+            h = usable_step(par, block, order, h, options.tolerance, P)
+            if not (math.isfinite(h) and h > 0):
+                status = L.NOT_FINITE if not math.isfinite(h) else L.STUCK
+                break
+            if block.mode != last_mode:
+                number = int(totals[S.CHANGES])
+                if number < changes.shape[0]:
+                    changes[number, 0], changes[number, 1] = t, block.mode
+                totals[S.CHANGES] += 1
+                last_mode = block.mode
+            step = L.Step(t, h, order, highest, gravity, factors, corner)
+            found, h, side = next_event(par, contact, block, refused, branch.direction, step, P, work)
+            idle = idle + 1 if tau + h <= tau else none
+            if idle > PATIENCE:
+                status = L.STUCK
+                break
+            step = L.Step(t, h, order, highest, gravity, factors, corner)
+            written = read(par, contact, upright, block, step, options, into, written)
+            tilt, rate, speed, gap, rise = block.tilt, block.rate, nothing, nothing, nothing
+            if block.s != 0:
+                body = L.Body(block.s, tilt, rate)
+                tilt, rate, totals[S.PEAK_TILT] = end_of_block(body, step, totals[S.PEAK_TILT], P, work)
+            slip = value(P[S.SLIP], order, h)
+            if block.sigma != 0 or block.mode == FLIGHT:
+                speed = value(P[S.SPEED], order, h)
+            if block.mode == FLIGHT:
+                gap, rise = value(P[S.GAP], order, h), value(P[S.RISE], order, h)
+            if block.sigma != 0:
+                totals[S.PATH] += abs(slip - block.slip)
+            totals[S.PEAK_SLIP] = max(totals[S.PEAK_SLIP], abs(slip))
+            if par.on_base:
+                base = end_of_base(par, found, base, branch, step, P)
+                totals[S.PEAK_X] = max(totals[S.PEAK_X], abs(base.x))
+            if block.mode >= ROCK:
+                totals[S.LIFTED] = 1.0
+            if found == L.PASSAGE:
+                tilt = block.s * par.gamma
+                if totals[S.UNSTABLE_TIME] < 0:
+                    totals[S.UNSTABLE_TIME] = t + h
+            if found == L.IMPACT or found == LEVEL:
+                tilt = 0.0
+            if found == STOP:
+                speed = 0.0
+            if abs(tilt) <= par.gamma:
+                totals[S.FALL_TIME] = t + h
+            block = Block(block.mode, block.s, block.sigma, tilt, rate, slip, speed, gap, rise)
+            if h > 0:
+                fresh, refused = none + L.NONE, none + L.NONE
+            tau = length if found == L.NONE and h == length - tau else tau + h
+            t = begin + tau
+            if found == L.OVERTURNING:
+                block = Block(none + FALLEN, block.s, nothing, block.s * 0.5 * math.pi, rate, slip, speed, gap, rise)
+                break
+            if found >= CONE or found == L.IMPACT or found == L.UPLIFT:
+                level = value(P[L.GROUND], highest, h) if highest >= 0 else 0.0
+                if upright is not None:
+                    gravity = value(P[L.GRAVITY], max(highest, 0), h)
+                force = par.count * (par.kb * base.x + base.z + par.damping * base.v)
+                start = Start(gravity, level, force)
+                previous = block
+                if found == L.IMPACT or found == LANDING:
+                    block, base, status = struck(par, contact, block, base, found, rest_rate, start, t, into)
+                    last_mode = none - 1
+                else:
+                    block, count = after_event(par, contact, block, found, side, start)
+                    if count != 1:
+                        totals[S.DOUBTS] += 1
+                    if found == CONE or found == L.UPLIFT or found == LOSS:
+                        fresh = none + (LOSS if block.mode == FLIGHT else found)
+            if not (math.isfinite(block.tilt) and math.isfinite(base.x) and math.isfinite(block.slip)):
+                status = L.NOT_FINITE
+            if status != L.COMPLETE:
+                break
+        if block.mode != FALLEN and status == L.COMPLETE:
+            begin, t = finish, finish
+    totals[S.STATUS], totals[S.END_MODE], totals[S.TIME], totals[S.STEPS] = status, block.mode, t, steps
+    totals[S.END_TILT], totals[S.END_RATE], totals[S.END_SLIP], totals[S.END_SPEED] = (
+        block.tilt, block.rate, block.slip, block.speed
+    )  # fmt: skip
+    totals[S.END_X], totals[S.END_V], totals[S.END_Z] = base
+    totals[S.END_GAP], totals[S.END_RISE], totals[S.WRITTEN] = block.gap, block.rise, written
+    if block.mode == FALLEN:
+        totals[S.PEAK_TILT] = 0.5 * math.pi
