@@ -28,7 +28,7 @@ def write_history(par, body, step, output_step, arrays, written):
 
 
 @inner
-def _integral_of_product(f, highest, g, order, h):
+def integral_of_product(f, highest, g, order, h):
     """Integral over [0, h] of f g, of orders `highest` and `order`, with all terms of the product.
 
     Truncated at the order of its factors, the product would be less accurate than they are, by up to two to that order.
@@ -113,7 +113,7 @@ def read_lifting(par, step, P, totals):
         rising[k] = 0.0
         for j in range(k + 1):
             rising[k] += P[L.S, j] * P[L.W, k - j]
-    totals[L.INPUT] -= par.m * par.R * _integral_of_product(lift, max(highest, 0), rising, order, h)
+    totals[L.INPUT] -= par.m * par.R * integral_of_product(lift, max(highest, 0), rising, order, h)
 
 
 @inner
@@ -128,10 +128,10 @@ def read_energy(par, body, step, P, totals):
                 for j in range(k + 1):
                     turning += P[L.C, j] * P[L.W, k - j]
             momentum[k] = par.m * par.R * turning + (par.M * P[L.V, k] if par.on_base else 0.0)
-        totals[L.INPUT] -= _integral_of_product(P[L.GROUND], min(highest, order), momentum, order, h)
+        totals[L.INPUT] -= integral_of_product(P[L.GROUND], min(highest, order), momentum, order, h)
     if par.count > 0:
         for k in range(order + 1):
             hysteretic[k] = P[L.F, k] - par.count * (par.kb * P[L.X, k] + par.damping * P[L.V, k])
-        totals[L.HYSTERETIC] += _integral_of_product(hysteretic, order, P[L.V], order, h)
+        totals[L.HYSTERETIC] += integral_of_product(hysteretic, order, P[L.V], order, h)
         if par.damping > 0:
-            totals[L.VISCOUS] += par.count * par.damping * _integral_of_product(P[L.V], order, P[L.V], order, h)
+            totals[L.VISCOUS] += par.count * par.damping * integral_of_product(P[L.V], order, P[L.V], order, h)

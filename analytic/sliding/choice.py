@@ -4,66 +4,45 @@ import math
 
 from ..compiled import inner
 from .equations import accelerations
-from .layout import FLIGHT, ROCK, SLIDE, SLIDE_ROCK, STICK, Block
+from .layout import FLIGHT, ROCK, Block
 
 
 @inner
-def _admissible(par, mu, mode, s, sigma, level, found):
-    alpha, slipping, rising, across, normal = found
-    if mode == FLIGHT:
+def _admissible(par, contact, block, start, level):
+    _, slipping, rising, across, normal = found = accelerations(par, contact, block, start)
+    if block.mode == FLIGHT:
         return rising > 0
     if normal < 0:
         return False
-    if sigma == 0 and abs(across) > mu * normal:
+    if block.sigma == 0:
+        if abs(across) > contact.mu * normal:
+            return False
+    elif block.speed == 0 and not block.sigma * slipping > 0:
         return False
-    if sigma != 0 and not sigma * slipping > 0:
-        return False
-    if s == 0:  # the resultant is between the corners
+    if block.s == 0:  # the resultant is between the corners
         return abs(across) <= par.slope * normal
-    return not level or s * alpha > 0
+    return not level or block.s * found[0] > 0
 
 
 @inner
 def choose(par, contact, block, start):
-    """(block in its next mode, number of admissible modes). Its mode, and in full contact its side, are chosen anew.
+    """(block in its next mode, number of admissible modes), by the accelerations; one that slides goes on to slide.
 
-    A corner that slides goes on to slide; else the accelerations decide. block.s : 0 for a block that lies level, with
-    tilt rate 0.
+    block.s : 0 for a block that lies level, with tilt rate 0. Without an admissible mode the friction is above the
+    bound of Painleve (`bounds`).
     """
-    level, moving = block.s == 0, block.speed != 0
-    mu, none = contact.mu, math.floor(0.0)
-    found, count = block, none
-    for which in range(9):  # the modes of a block in full contact, of one about its left and about its right corner
-        mode, s = STICK, 0.0
-        if which < 3:
-            mode = STICK if which == 0 else SLIDE
-            if not level:
-                continue
-        else:
-            s = 1.0 if which < 6 else -1.0
-            mode = ROCK if which % 3 == 0 else SLIDE_ROCK
-            if not level and s != block.s:
-                continue
-        sigma = 0.0 if which % 3 == 0 else (1.0 if which % 3 == 1 else -1.0)
-        if moving and sigma != math.copysign(1.0, block.speed):
+    level, found, count = block.s == 0, block, math.floor(0.0)
+    for which in range(10):  # in full contact, about its left corner, about its right one, in flight
+        side, slips = which // 3, which % 3
+        s, sigma = (0.0, -1.0, 1.0)[side % 3], (0.0, 1.0, -1.0)[slips]
+        mode = ROCK + min(slips, 1) if side > 0 else min(slips, 1)
+        if side == 3:
+            mode, s = FLIGHT, 1.0 if level else block.s  # of a level block both corners rise alike
+        elif not level and s != block.s or block.speed != 0 and sigma != math.copysign(1.0, block.speed):
             continue
-        there = accelerations(
-            par, contact, mode, s, sigma, block.tilt, block.rate, start.gravity, start.ground, start.force
-        )
-        if moving:  # its friction has its direction
-            there = there[0], sigma, there[2], there[3], there[4]
-        if _admissible(par, mu, mode, s, sigma, level, there):
+        tried = Block(mode, s, sigma, block.tilt, block.rate, block.slip, block.speed, block.gap, block.rise)
+        if _admissible(par, contact, tried, start, level):
             count += 1
             if count == 1:
-                found = Block(
-                    mode, s, sigma, block.tilt, block.rate, block.slip, block.speed, block.gap, block.rise
-                )
-    s = 1.0 if level else block.s  # of a level block both corners rise alike
-    there = accelerations(
-        par, contact, FLIGHT, s, 0.0, block.tilt, block.rate, start.gravity, start.ground, start.force
-    )
-    if _admissible(par, mu, FLIGHT, s, 0.0, level, there):
-        count += 1
-        if count == 1:
-            found = Block(FLIGHT, s, 0.0, block.tilt, block.rate, block.slip, block.speed, block.gap, block.rise)
+                found = tried
     return found, count

@@ -25,8 +25,10 @@ _bearing_term = law_function("term")
 
 
 @inner
-def accelerations(par, contact, mode, s, sigma, tilt, rate, gravity, ground, force):
-    """(phi'', u'', eta'', H, N) at an instant. gravity, ground: g + a_v and a_g [m/s2]; force: of all bearings [N]."""
+def accelerations(par, contact, block, start):
+    """(phi'', u'', eta'', H, N) at an instant, by (S1) to (S4); start: what acts on block and base then."""
+    mode, s, sigma, tilt, rate = block.mode, block.s, block.sigma, block.tilt, block.rate
+    gravity, ground, force = start
     m, mu, R = par.m, contact.mu, par.R
     angle = s * par.gamma - tilt
     c, n = R * math.cos(angle), R * math.sin(angle)

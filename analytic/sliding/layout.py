@@ -30,9 +30,10 @@ Start = namedtuple("Start", "gravity ground force")
 # Slots of the totals.
 (
     STATUS, END_MODE, TIME, STEPS, PEAK_TILT, PEAK_X, PEAK_SLIP, PATH, UNSTABLE_TIME, FALL_TIME, FRICTION, NORMAL,
-    PEAK_ACCELERATION, INPUT, HYSTERETIC, VISCOUS, FRICTION_WORK, IMPACT_LOSS, IMPACTS, CHANGES, DOUBTS, LIFTED,
+    PEAK_ACCELERATION, INPUT, HYSTERETIC, VISCOUS, FRICTION_WORK, IMPACT_LOSS, IMPACTS, CHANGES, LIFTED, CERTAIN,
     END_TILT, END_RATE, END_SLIP, END_SPEED, END_X, END_V, END_Z, END_GAP, END_RISE, WRITTEN,
 ) = range(32)  # fmt: skip
 TOTALS = 32
-# Endings, after those of the kernel: an impact of a given restitution leaves the cone, or comes while the block slides.
-GIVEN_LEAVES = 5
+# Endings, after those of the kernel: an impact of a given restitution leaves the cone, or comes while the block slides;
+# no mode is admissible, or more than one.
+GIVEN_LEAVES, NO_MODE = 5, 6

@@ -13,28 +13,15 @@ from ..compiled import entry, inner
 from ..events import LONGEST_LAST_HOP, TOUCH, find_fall, upper_bound
 from ..laws import law_function
 from ..polynomial import MAX_ORDER, SCRATCH, first_root, value
+from ..readings import gravity_at
 from ..steps import end_of_base, end_of_block, gravity_of_step, ground_of_step, stretch_of_ground
-from ..taylor import allowed_step
+from ..taylor import QUIET, allowed_step
 from . import layout as S
 from .choice import choose
+from .ending import at_rest, conclude
 from .equations import accelerations, mode_series
 from .impact import kinetic, level_impact, one_corner, within
-from .layout import (
-    CONE,
-    FALLEN,
-    FLIGHT,
-    LANDING,
-    LEVEL,
-    LOSS,
-    ROCK,
-    SLIDE,
-    SLIDE_ROCK,
-    STICK,
-    STOP,
-    Block,
-    Contact,
-    Start,
-)
+from .layout import CONE, FALLEN, FLIGHT, LANDING, LEVEL, LOSS, ROCK, SLIDE, SLIDE_ROCK, STICK, STOP, Block, Start
 from .reading import read
 
 PATIENCE = 1000
@@ -55,20 +42,6 @@ def arrays(capacity, outputs):
         np.empty((outputs, 8)),
         np.zeros(S.TOTALS),
     )
-
-
-@inner
-def bearing_start(par, base, branch, moving, P):
-    """As `steps.bearing_of_step`, with the direction in which the base begins to move."""
-    (x, v, z), (direction, x_c, mark_c) = base, branch
-    P[L.X, 0], P[L.V, 0] = x, v
-    P[L.F, 0] = par.count * (par.kb * x + z + par.damping * v)
-    if moving != direction and moving != 0:
-        direction, x_c = moving, x
-        mark_c = mark(par.law, direction, z, par.constants)
-    travel = mark_c + direction * (x - x_c)
-    P[L.Q, 0], factors, corner = begin_step(par.law, direction, z, travel, par.constants)
-    return L.Branch(direction, x_c, mark_c), factors, corner
 
 
 @inner
@@ -141,9 +114,7 @@ def impossible(par, contact, block, start):
     mode = block.mode
     if mode == FLIGHT:
         return False
-    _, _, _, across, normal = accelerations(
-        par, contact, mode, block.s, block.sigma, block.tilt, block.rate, start.gravity, start.ground, start.force
-    )
+    _, _, _, across, normal = accelerations(par, contact, block, start)
     edge = 1 + ONSET
     if mode == STICK:
         return abs(across) > min(contact.mu, par.slope) * normal * edge or normal < 0
@@ -205,8 +176,6 @@ def struck(par, contact, block, base, found, rest_rate, at, t, into):
     else:
         kind, (after, across, up, push), slips = S.LANDS, landed(par, contact, c, n, rate, drift, climb), False
         slips = abs(across - c * after) > 0
-    if count != 1:
-        totals[S.DOUBTS] += 1
     jump = -push / contact.mb if par.on_base else 0.0
     speed = across - c * after if slips else 0.0
     number = int(totals[S.IMPACTS])
@@ -217,8 +186,8 @@ def struck(par, contact, block, base, found, rest_rate, at, t, into):
     force = at.force + par.count * par.damping * jump
     lifted = Block(STICK, s, 0.0, block.tilt, after, block.slip, speed, 0.0, 0.0)
     end, left, doubt = settled(par, contact, lifted, rest_rate, Start(at.gravity, at.ground, force))
-    if doubt != 1:
-        totals[S.DOUBTS] += 1
+    if count != 1 or doubt != 1:
+        status = S.NO_MODE
     if s != 0 and end.s == 0 and end.mode != FLIGHT:  # without the swings that were left out
         across, up, after = end.speed, 0.0, 0.0
     totals[S.IMPACT_LOSS] += kinetic(par, contact, rate, drift, climb, v) - kinetic(
@@ -251,9 +220,7 @@ def settled(par, contact, block, rest_rate, start):
     if block.s != 0:
         after, count = choose(par, contact, block, start)
         if block.tilt == 0 and abs(block.rate) < rest_rate and after.mode != FLIGHT:
-            back, _, _, _, _ = accelerations(
-                par, contact, after.mode, after.s, after.sigma, 0.0, block.rate, start.gravity, start.ground, start.force
-            )
+            back, _, _, _, _ = accelerations(par, contact, after, start)
             short = LONGEST_LAST_HOP / math.sqrt(par.p2)
             if after.s * back < 0 and 2 * abs(block.rate) <= -after.s * back * short:
                 speed, h = 0.0, par.R * math.cos(par.gamma)
@@ -276,9 +243,7 @@ def after_event(par, contact, block, found, side, start):
     _, s, sigma, tilt, rate, slip, speed, gap, rise = block
     weak = 1e-9 * par.m * par.g
     if found == CONE or found == L.UPLIFT:
-        _, _, _, across, normal = accelerations(
-            par, contact, block.mode, s, sigma, tilt, rate, start.gravity, start.ground, start.force
-        )
+        _, _, _, _, normal = accelerations(par, contact, block, start)
         if normal < weak:
             return Block(FLIGHT, s if s != 0 else 1.0, 0.0, tilt, rate, slip, 0.0, 0.0, 0.0), 1
         # side N + H = 0 falls: H is -side limit N, and the block moves to side
@@ -294,151 +259,168 @@ def after_event(par, contact, block, found, side, start):
     return Block(FLIGHT, -s, 0.0, 0.0, rate, slip, speed, gap, rise + 2 * s * b * rate), 1
 
 
+@inner
+def acting(par, base, upright, highest, h, P):
+    """What acts at h [s] in the step, a `Start`."""
+    ground = value(P[L.GROUND], highest, h) if highest >= 0 else 0.0
+    force = par.count * (par.kb * base.x + base.z + par.damping * base.v)
+    return Start(gravity_at(par, upright, P, highest, h), ground, force)
+
+
+@inner
+def bearing_of_step(par, contact, block, base, branch, start, highest, P):
+    """As `steps.bearing_of_step`: (branch, factors of the bearing's series, the bearing's next corner)."""
+    (x, v, z), (direction, x_c, mark_c) = base, branch
+    P[L.X, 0], P[L.V, 0], P[L.F, 0], moving = x, v, start.force, math.copysign(1.0, v)
+    if v == 0:  # that of the first derivative that is not zero
+        _, _, _, across, _ = accelerations(par, contact, block, start)
+        begins = -(start.force + across) / contact.mb - start.ground
+        if begins == 0 and highest >= 1:
+            begins = -P[L.GROUND, 1]
+        moving = 0.0 if begins == 0 else math.copysign(1.0, begins)
+    if moving != direction and moving != 0:
+        direction, x_c = moving, x
+        mark_c = mark(par.law, direction, z, par.constants)
+    travel = mark_c + direction * (x - x_c)
+    P[L.Q, 0], factors, corner = begin_step(par.law, direction, z, travel, par.constants)
+    return L.Branch(direction, x_c, mark_c), factors, corner
+
+
+@inner
+def end_of_step(par, block, found, step, P, totals, work):
+    """The block at the end of a step, in its old mode; keeps peaks and the way that it slid."""
+    tilt, rate, order, h = block.tilt, block.rate, step.order, step.h
+    if block.s != 0:
+        tilt, rate, totals[S.PEAK_TILT] = end_of_block(
+            L.Body(block.s, tilt, rate), step, totals[S.PEAK_TILT], P, work
+        )
+    slip, speed, gap, rise = value(P[S.SLIP], order, h), value(P[S.SPEED], order, h), 0.0, 0.0
+    if block.mode == FLIGHT:
+        gap, rise = value(P[S.GAP], order, h), value(P[S.RISE], order, h)
+    elif block.sigma != 0:
+        totals[S.PATH] += abs(slip - block.slip)
+    else:
+        speed = 0.0
+    totals[S.PEAK_SLIP] = max(totals[S.PEAK_SLIP], abs(slip))
+    if block.mode >= ROCK:
+        totals[S.LIFTED] = 1.0
+    if found == L.PASSAGE:
+        tilt = block.s * par.gamma
+        if totals[S.UNSTABLE_TIME] < 0:
+            totals[S.UNSTABLE_TIME] = step.t + h
+    elif found == L.IMPACT or found == LEVEL:
+        tilt = 0.0
+    elif found == STOP:
+        speed = 0.0
+    if abs(tilt) <= par.gamma:
+        totals[S.FALL_TIME] = step.t + h
+    return Block(block.mode, block.s, block.sigma, tilt, rate, slip, speed, gap, rise)
+
+
+@inner
+def noted(block, last, t, into):
+    """Stores the time at which a mode began; returns the mode."""
+    changes, totals = into[3], into[5]
+    if block.mode != last:
+        number = int(totals[S.CHANGES])
+        if number < changes.shape[0]:
+            changes[number, 0], changes[number, 1] = t, block.mode
+        totals[S.CHANGES] += 1
+    return block.mode
+
+
+# One long function, as two loops share their state.
 @entry
-def march(par, contact, ground, upright, options, into):
-    """One run; fills totals, impacts, modes and history of `into`."""
-    P, work, impacts, changes, history, totals = into
-    shaking = ground.shaking
-    base, branch = L.Base(par.x, par.v, par.z), L.Branch(0.0, par.x, 1.0)
-    none, nothing = math.floor(0.0), 0.0
+def march(par, resting, contact, ground, upright, options, into):
+    """One run from rest or from the start that `par` holds; fills totals, impacts, modes and history of `into`.
+
+    resting : `par` with the smaller of slope and friction in place of the slope: what a level block bears at rest.
+    upright : an argument of its own, see steps.py.
+    """
+    P, work, totals, shaking = into[0], into[1], into[5], ground.shaking
+    base, branch, none = L.Base(par.x, par.v, par.z), L.Branch(0.0, par.x, 1.0), math.floor(0.0)
     s = math.copysign(1.0, par.tilt if par.tilt != 0 else par.rate) if par.tilt != 0 or par.rate != 0 else 0.0
-    block = Block(none + STICK, s, nothing, par.tilt, par.rate, nothing, nothing, nothing, nothing)
-    previous, unsettled = block, True
+    block = Block(none + STICK, s, 0.0 * s, par.tilt, par.rate, 0.0 * s, 0.0 * s, 0.0 * s, 0.0 * s)
+    previous, fresh, refused, last = block, none + L.NONE, none + L.NONE, none - 1
     status, t, segment, begin, written, idle, steps, highest = L.COMPLETE, 0.0, none, 0.0, none, none, none, none
-    fresh, refused, last_mode = none + L.NONE, none + L.NONE, none - 1
     totals[S.UNSTABLE_TIME], totals[S.NORMAL] = 0.0 if abs(par.tilt) >= par.gamma else -1.0, 1.0
     totals[S.PEAK_TILT], totals[S.PEAK_X] = abs(par.tilt), abs(par.x)
     rest_rate = options.rest_rate * math.sqrt(par.p2)
     while begin < par.duration and block.mode != FALLEN and status == L.COMPLETE:
         stretch = stretch_of_ground(ground, upright, segment, begin, options.order, par.duration)
         finish, order = stretch.end, stretch.order
+        after = options.decide and stretch.kind == QUIET and begin >= shaking.end
         segment += 1
         length, tau = finish - begin, 0.0
         while tau < length:
             h, t = length - tau, begin + tau
             if h <= ROUNDING * finish:
                 break
+            if after and t < options.shortest * (1 - ROUNDING):
+                h = min(h, options.shortest - t)
+            elif after and at_rest(resting, block, base, totals):
+                status = L.DECIDED
+                break
             steps += 1
             if steps > options.most_steps:
                 status = L.SPENT
                 break
             highest, h = ground_of_step(shaking, stretch, tau, h, P[L.GROUND])
-            gravity = par.g
             if upright is not None:
                 gravity_of_step(shaking, par.g, stretch, tau, P[L.GRAVITY])
-                gravity = P[L.GRAVITY, 0]
-            force = par.count * (par.kb * base.x + base.z + par.damping * base.v)
-            start = Start(gravity, P[L.GROUND, 0] if highest >= 0 else 0.0, force)
-            if unsettled or fresh == L.NONE and refused == L.NONE and impossible(par, contact, block, start):
-                if unsettled or block.sigma == 0:
-                    block, count = choose(par, contact, block, start)
-                    if count != 1:
-                        totals[S.DOUBTS] += 1
-                else:
-                    block = Block(
-                        none + FLIGHT, block.s if block.s != 0 else 1.0, nothing, block.tilt, block.rate, block.slip,
-                        block.speed, nothing, nothing,
-                    )  # fmt: skip
-                unsettled = False
+            start = acting(par, base, upright, highest, 0.0, P)
+            if steps == 1 or fresh == L.NONE and refused == L.NONE and impossible(par, contact, block, start):
+                block, count = choose(par, contact, block, start)
+                if count != 1:
+                    status = S.NO_MODE
+                    break
             factors, corner = (0.0, 0.0, 0.0), math.inf
             if par.on_base:
-                moving = math.copysign(1.0, base.v)
-                if base.v == 0:
-                    _, _, _, across, _ = accelerations(
-                        par, contact, block.mode, block.s, block.sigma, block.tilt, block.rate, gravity, start.ground, force
-                    )
-                    begins = -(force + across) / contact.mb - start.ground
-                    if begins == 0 and highest >= 1:
-                        begins = -P[L.GROUND, 1]
-                    moving = 0.0 if begins == 0 else math.copysign(1.0, begins)
-                branch, factors, corner = bearing_start(par, base, branch, moving, P)
+                branch, factors, corner = bearing_of_step(par, contact, block, base, branch, start, highest, P)
             state_series(block, P)
             mode_series(order, par, contact, block, factors, highest, upright, P)
             if fresh != L.NONE and fresh_series(fresh, block, P):
                 block, refused, fresh = previous, fresh, none + L.NONE
-                totals[S.CHANGES] -= 1
-                last_mode = block.mode
                 continue
             h = usable_step(par, block, order, h, options.tolerance, P)
             if not (math.isfinite(h) and h > 0):
                 status = L.NOT_FINITE if not math.isfinite(h) else L.STUCK
                 break
-            if block.mode != last_mode:
-                number = int(totals[S.CHANGES])
-                if number < changes.shape[0]:
-                    changes[number, 0], changes[number, 1] = t, block.mode
-                totals[S.CHANGES] += 1
-                last_mode = block.mode
-            step = L.Step(t, h, order, highest, gravity, factors, corner)
+            last = noted(block, last, t, into)
+            step = L.Step(t, h, order, highest, start.gravity, factors, corner)
             found, h, side = next_event(par, contact, block, refused, branch.direction, step, P, work)
             idle = idle + 1 if tau + h <= tau else none
             if idle > PATIENCE:
                 status = L.STUCK
                 break
-            step = L.Step(t, h, order, highest, gravity, factors, corner)
-            written = read(par, contact, upright, block, step, options, into, written)
-            tilt, rate, speed, gap, rise = block.tilt, block.rate, nothing, nothing, nothing
-            if block.s != 0:
-                body = L.Body(block.s, tilt, rate)
-                tilt, rate, totals[S.PEAK_TILT] = end_of_block(body, step, totals[S.PEAK_TILT], P, work)
-            slip = value(P[S.SLIP], order, h)
-            if block.sigma != 0 or block.mode == FLIGHT:
-                speed = value(P[S.SPEED], order, h)
-            if block.mode == FLIGHT:
-                gap, rise = value(P[S.GAP], order, h), value(P[S.RISE], order, h)
-            if block.sigma != 0:
-                totals[S.PATH] += abs(slip - block.slip)
-            totals[S.PEAK_SLIP] = max(totals[S.PEAK_SLIP], abs(slip))
+            step = L.Step(t, h, order, highest, start.gravity, factors, corner)
+            written = read(par, upright, block, step, options, into, written)
+            block = end_of_step(par, block, found, step, P, totals, work)
             if par.on_base:
                 base = end_of_base(par, found, base, branch, step, P)
                 totals[S.PEAK_X] = max(totals[S.PEAK_X], abs(base.x))
-            if block.mode >= ROCK:
-                totals[S.LIFTED] = 1.0
-            if found == L.PASSAGE:
-                tilt = block.s * par.gamma
-                if totals[S.UNSTABLE_TIME] < 0:
-                    totals[S.UNSTABLE_TIME] = t + h
-            if found == L.IMPACT or found == LEVEL:
-                tilt = 0.0
-            if found == STOP:
-                speed = 0.0
-            if abs(tilt) <= par.gamma:
-                totals[S.FALL_TIME] = t + h
-            block = Block(block.mode, block.s, block.sigma, tilt, rate, slip, speed, gap, rise)
             if h > 0:
                 fresh, refused = none + L.NONE, none + L.NONE
             tau = length if found == L.NONE and h == length - tau else tau + h
-            t = begin + tau
+            t, previous, count = begin + tau, block, 1
             if found == L.OVERTURNING:
-                block = Block(none + FALLEN, block.s, nothing, block.s * 0.5 * math.pi, rate, slip, speed, gap, rise)
+                block = Block(none + FALLEN, block.s, 0.0, block.s * 0.5 * math.pi, block.rate, block.slip, block.speed, block.gap, block.rise)
                 break
-            if found >= CONE or found == L.IMPACT or found == L.UPLIFT:
-                level = value(P[L.GROUND], highest, h) if highest >= 0 else 0.0
-                if upright is not None:
-                    gravity = value(P[L.GRAVITY], max(highest, 0), h)
-                force = par.count * (par.kb * base.x + base.z + par.damping * base.v)
-                start = Start(gravity, level, force)
-                previous = block
-                if found == L.IMPACT or found == LANDING:
-                    block, base, status = struck(par, contact, block, base, found, rest_rate, start, t, into)
-                    last_mode = none - 1
-                else:
-                    block, count = after_event(par, contact, block, found, side, start)
-                    if count != 1:
-                        totals[S.DOUBTS] += 1
-                    if found == CONE or found == L.UPLIFT or found == LOSS:
-                        fresh = none + (LOSS if block.mode == FLIGHT else found)
+            start = acting(par, base, upright, highest, h, P)
+            if found == L.IMPACT or found == LANDING:
+                block, base, status = struck(par, contact, block, base, found, rest_rate, start, t, into)
+                last = none - 1
+            elif found >= CONE or found == L.UPLIFT:
+                block, count = after_event(par, contact, block, found, side, start)
+                if found == CONE or found == L.UPLIFT or found == LOSS:
+                    fresh = none + (LOSS if block.mode == FLIGHT else found)
+            if count != 1:
+                status = S.NO_MODE
             if not (math.isfinite(block.tilt) and math.isfinite(base.x) and math.isfinite(block.slip)):
                 status = L.NOT_FINITE
             if status != L.COMPLETE:
                 break
         if block.mode != FALLEN and status == L.COMPLETE:
             begin, t = finish, finish
-    totals[S.STATUS], totals[S.END_MODE], totals[S.TIME], totals[S.STEPS] = status, block.mode, t, steps
-    totals[S.END_TILT], totals[S.END_RATE], totals[S.END_SLIP], totals[S.END_SPEED] = (
-        block.tilt, block.rate, block.slip, block.speed
-    )  # fmt: skip
-    totals[S.END_X], totals[S.END_V], totals[S.END_Z] = base
-    totals[S.END_GAP], totals[S.END_RISE], totals[S.WRITTEN] = block.gap, block.rise, written
-    if block.mode == FALLEN:
-        totals[S.PEAK_TILT] = 0.5 * math.pi
+    totals[S.STATUS], totals[S.TIME], totals[S.STEPS], totals[S.WRITTEN] = status, t, steps, written
+    conclude(par, resting, contact, shaking.end, block, base, totals)

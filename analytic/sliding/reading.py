@@ -1,11 +1,9 @@
 """Dense output of a step of the march: history, forces and energy ledger (compiled)."""
 
-import math
-
 from .. import layout as L
 from ..compiled import inner
 from ..polynomial import value
-from ..readings import _integral_of_product
+from ..readings import integral_of_product
 from . import layout as S
 from .layout import CLIMB, DRIFT, FLIGHT, SPEED, H, N
 
@@ -13,7 +11,7 @@ PROBES = 4
 
 
 @inner
-def read(par, contact, upright, block, step, options, into, written):
+def read(par, upright, block, step, options, into, written):
     """Write the step to history, diagnostics and ledger; returns the rows of the history written."""
     P, history, totals, h, order, highest = into[0], into[4], into[5], step.h, step.order, step.highest
     while written < history.shape[0] and written * options.output_step <= step.t + h:
@@ -36,18 +34,18 @@ def read(par, contact, upright, block, step, options, into, written):
     if highest >= 0:  # -int a_g (M x' + m drift) + a_v m climb dt
         for k in range(order + 1):
             momentum[k] = par.m * P[DRIFT, k] + (par.M * P[L.V, k] if par.on_base else 0.0)
-        totals[S.INPUT] -= _integral_of_product(P[L.GROUND], min(highest, order), momentum, order, h)
+        totals[S.INPUT] -= integral_of_product(P[L.GROUND], min(highest, order), momentum, order, h)
     if upright is not None:
         for k in range(max(highest, 0) + 1):
             part[k] = P[L.GRAVITY, k]
         part[0] -= par.g
-        totals[S.INPUT] -= par.m * _integral_of_product(part, max(highest, 0), P[CLIMB], order, h)
+        totals[S.INPUT] -= par.m * integral_of_product(part, max(highest, 0), P[CLIMB], order, h)
     if block.sigma != 0:
-        totals[S.FRICTION_WORK] -= _integral_of_product(P[H], order, P[SPEED], order, h)
+        totals[S.FRICTION_WORK] -= integral_of_product(P[H], order, P[SPEED], order, h)
     if par.count > 0:
         for k in range(order + 1):
             part[k] = P[L.F, k] - par.count * (par.kb * P[L.X, k] + par.damping * P[L.V, k])
-        totals[S.HYSTERETIC] += _integral_of_product(part, order, P[L.V], order, h)
+        totals[S.HYSTERETIC] += integral_of_product(part, order, P[L.V], order, h)
         if par.damping > 0:
-            totals[S.VISCOUS] += par.count * par.damping * _integral_of_product(P[L.V], order, P[L.V], order, h)
+            totals[S.VISCOUS] += par.count * par.damping * integral_of_product(P[L.V], order, P[L.V], order, h)
     return written
