@@ -12,6 +12,7 @@ import math
 import re
 from importlib.resources import files
 from pathlib import Path
+from textwrap import shorten
 from typing import TYPE_CHECKING, Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
@@ -19,7 +20,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 import analytic
 from analytic.bearing import BearingLaw
 from analytic.decision import motion_end, shortest_duration
-from analytic.errors import SceneError, SettingError, cut
+from analytic.errors import SceneError, SettingError
 from analytic.motion import SampledMotion
 from analytic.rocking import momentum_restitution
 
@@ -89,12 +90,12 @@ def _check(scene: Scene) -> None:
             "motion.pulse", motion.shape, "is not written out in scripts", f"choose one of {', '.join(PULSES)}"
         )
     natural = momentum_restitution(scene)
-    if given is not None and not given <= natural:
+    if given is not None and not 0 < given <= natural:
         raise SceneError(
             "block.restitution",
             given,
-            f"above {natural:.6g} of eq. (7): no couple before the landing can give it without lifting the block",
-            "give less, or leave it out",
+            f"not above 0 and up to {natural:.6g} of eq. (7): no couple before the landing gives more without a lift",
+            "give one between, or leave it out",
         )
 
 
@@ -104,7 +105,7 @@ def _context(engine: Engine, scene: Scene, name: str, record: str | None) -> dic
     return {
         "engine": engine.name,
         "scene": scene,
-        "title": f"{cut(scene.name or 'A scene', 30).translate(UNSAFE)}: a rocking block {_support(scene)}",
+        "title": f"{shorten(scene.name or 'A scene', 60)}: a rocking block {_support(scene)}".translate(UNSAFE),
         "friction": scene.friction,
         "name": name,
         "record": record and json.dumps(record, ensure_ascii=False),  # a string in quotes
@@ -113,9 +114,10 @@ def _context(engine: Engine, scene: Scene, name: str, record: str | None) -> dic
         "block": block,
         "base": scene.base,
         "bearings": scene.bearings,
+        "f0": BearingLaw.of(scene.bearings).constants.f0,
         "memory": scene.bearings is not None and BearingLaw.of(scene.bearings).unit.memory,
         "inertia": None if block.corner_inertia is None else block.corner_inertia / (block.mass * block.radius**2),
-        "given": block.restitution is not None,
+        "given": block.restitution is not None and block.restitution < momentum_restitution(scene),
         "start": start,
         "moved": bool(start.tilt or start.tilt_rate),
         "base_moved": bool(start.base_displacement or start.base_velocity),

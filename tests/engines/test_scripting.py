@@ -12,9 +12,10 @@ from engine_cases import needs
 from scripts import code_lines, measured, ran, run_alone, written
 
 import analytic
-from analytic import Bearings, PulseMotion, load_scene
+from analytic import Bearings, PulseMotion, SampledMotion, load_scene
 from analytic.errors import SceneError, SettingError
 from analytic.pairing import paired
+from analytic.rocking import RockingModel
 from analytic.synthetic import synthetic_motion
 from engines import ENGINES
 from engines.scripting import write_script
@@ -168,8 +169,8 @@ def test_scripts_are_formatted_and_short(engine, tmp_path):
     scenes = FEW | OTHERS | {"long name": ISOLATED.with_(name='a "long" name \\' * 20, duration=9.0)}
     for number, (name, scene) in enumerate(scenes.items()):
         text = written(engine, scene, tmp_path, f"script{number}").read_text()
-        most = 160 if scene.base else 110 if scene.motion is None else 115
         motion, block = scene.motion, scene.block
+        most = 160 if scene.base else 110 if motion is None else 115 if isinstance(motion, PulseMotion) else 120
         further = (block.restitution is not None) + (scene.friction is not None) + bool(motion and motion.vertical)
         further += bool(motion and motion.jumps and not scene.base)  # exudyn's corners start as the jump needs them
         assert code_lines(text) <= most + 8 * further, name
@@ -244,7 +245,7 @@ def test_a_script_is_written_where_its_engine_is_absent(engine, monkeypatch):
 @every_engine
 def test_what_is_not_to_be_had_is_said(engine):
     scene = released(block_of(0.2))
-    with pytest.raises(SceneError, match=r"block.restitution = 0.9: above 0.817\d+ of eq. \(7\)"):
+    with pytest.raises(SceneError, match=r"block.restitution = 0.9: not above 0 and up to 0.817\d+ of eq. \(7\)"):
         write_script(ENGINES[engine], scene.with_(block={"restitution": 0.9}))
 
 
@@ -265,3 +266,39 @@ def test_a_record_stands_beside_its_script():
     rows = np.loadtxt(files[f"a-b-c-{ABLE[0]}-motion.txt"].splitlines())
     assert np.array_equal(rows[:, 1], ISOLATED.motion.samples)
     assert rows[:, 0] == pytest.approx(np.arange(len(rows)) * ISOLATED.motion.dt)
+
+
+@every_engine
+def test_a_restitution_of_equation_7_needs_no_couple(engine):
+    scene = released(on_ground(block_of(0.2)))
+    plain = write_script(ENGINES[engine], scene, "script")
+    natural = RockingModel.of(scene).restitution
+    assert write_script(ENGINES[engine], scene.with_(block={"restitution": natural}), "script") == plain
+
+
+@every_engine
+@pytest.mark.parametrize("damage", [("0.005 ", "1e9 "), ("0.01 ", "nan "), ("0.015 ", "0.015 nan #")])
+def test_a_damaged_record_stops_a_script(engine, damage, tmp_path):
+    needs(engine)
+    script = written(engine, FEW["isolated, record"], tmp_path)
+    record = script.with_name("script-motion.txt")
+    record.write_text(record.read_text().replace(*(f"\n{text}" for text in damage), 1))
+    with pytest.raises(AssertionError, match="the record needs numbers, and times that increase"):
+        run_alone(script)
+
+
+@every_engine
+def test_a_record_of_uneven_times_is_the_same_motion(engine, tmp_path):
+    """The zeros before the motion left out."""
+    needs(engine)
+    scene = on_ground(block_of(0.2)).with_(motion=PulseMotion("half-sine", 3.0, 6.0, start=1.0), duration=2.5)
+    motion = SampledMotion(0.01, scene.motion.acceleration(np.arange(301) * 0.01))
+    script = written(engine, scene.with_(motion=motion), tmp_path)
+    run_alone(script, "--csv", tmp_path / "even.csv")
+    record = script.with_name("script-motion.txt")
+    head, *rows = record.read_text().splitlines()
+    assert not any(float(row.split()[1]) for row in rows[:100])
+    record.write_text("\n".join([head, rows[0], *rows[90:]]))
+    run_alone(script, "--csv", tmp_path / "uneven.csv")
+    one, other = (np.loadtxt(tmp_path / name, delimiter=",", skiprows=1) for name in ("even.csv", "uneven.csv"))
+    assert abs(other[:, 1]).max() == pytest.approx(abs(one[:, 1]).max(), rel=1e-9)
