@@ -1,6 +1,6 @@
 """The response of a simulation, the same for every solver.
 
-An outcome is “stands” (never lifted), “rocks” (lifted, stayed upright), “overturns” or “failed” (with the reason). A
+An outcome is “stands” (never lifted), “slides” (slid on its support, never lifted), “rocks” (lifted, stayed upright), “overturns” or “failed” (with the reason). A
 run continues until its outcome is *decided*: the remaining energy can no longer overturn the block, or the block is
 certain to overturn (``analytic/decision.py`` derives the rule), and the peaks are final. A run that a ``duration`` ends
 earlier is **undecided**: tables say “undecided (rocks so far)”, JSON has ``"decided": false``. A longer duration would
@@ -39,7 +39,7 @@ from typing import Any, Self, TextIO
 
 import numpy as np
 
-OUTCOMES = ("stands", "rocks", "overturns", "failed")
+OUTCOMES = ("stands", "slides", "rocks", "overturns", "failed")
 # Quantities of a `Difference`, in words. Restitution: at the matched impact with the largest error. Missing and extra
 # impacts: numbers of impacts that count, with and without a match. Loss: 1 - e^2. Times: of a block that overturns; a
 # fall begins at the last passage of the slenderness.
@@ -98,13 +98,15 @@ class History:
     base_velocity: np.ndarray
     bearing_force: np.ndarray
     ground_acceleration: np.ndarray
+    slip: np.ndarray | None = None  # m, of the block on its support; None of a block that does not slide
 
     COLUMNS = (*(column.name for column in dataclasses.fields(State)), "ground_acceleration")
 
     def to_csv(self, path: str | PathLike[str] | TextIO) -> None:
         """Write the columns with a header line; `path` is a file name or an open text file."""
-        table = np.column_stack([getattr(self, name) for name in self.COLUMNS])
-        np.savetxt(path, table, delimiter=",", header=",".join(self.COLUMNS), comments="", fmt="%.17g")
+        names = self.COLUMNS if self.slip is None else (*self.COLUMNS, "slip")
+        table = np.column_stack([getattr(self, name) for name in names])
+        np.savetxt(path, table, delimiter=",", header=",".join(names), comments="", fmt="%.17g")
 
 
 @dataclass(frozen=True)
@@ -112,7 +114,7 @@ class Energy:
     """Energy balance [J] of a run, in the ground's frame.
 
     kinetic and potential (gravity and the bearings' elastic part kb x) are changes from start to end; input is the work
-    of the inertial load; hysteretic, viscous and impact_loss are dissipated energies.
+    of the inertial load; hysteretic, viscous, impact_loss and friction are dissipated energies.
     """
 
     kinetic: float
@@ -121,11 +123,28 @@ class Energy:
     hysteretic: float
     viscous: float
     impact_loss: float
+    friction: float = 0.0
 
     @property
     def imbalance(self) -> float:
         """input - (changes + losses) [J]; zero for an exact solution."""
-        return self.input - (self.kinetic + self.potential + self.hysteretic + self.viscous + self.impact_loss)
+        losses = self.hysteretic + self.viscous + self.impact_loss + self.friction
+        return self.input - (self.kinetic + self.potential + losses)
+
+
+@dataclass(frozen=True)
+class Sliding:
+    """Slip of the block's corner along its support: largest and last [m], whole way [m], friction work [J], modes.
+
+    modes: (time [s], mode) of each change: "stick", "slide" (both corners), "rock", "slide-rock", "flight". The slip is
+    positive toward +x, and goes on in the last fall.
+    """
+
+    peak: float
+    end: float
+    path: float
+    work: float
+    modes: tuple[tuple[float, str], ...]
 
 
 @dataclass(frozen=True)
@@ -224,6 +243,7 @@ class Response:
     comparable: str = UNCOMPARED  # whether it was compared with the model; see `COMPARED`
     failure: Failure | None = None
     energy: Energy | None = None
+    sliding: Sliding | None = None  # of a block that slides, or may: the scene gives a friction that is used up
     history: History | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
@@ -270,7 +290,7 @@ class Response:
         values may lack cpu_seconds. history: the `History` of the response.
         """
         values = {name: value for name, value in values.items() if name != "impact_count"}
-        failure, energy = values.get("failure"), values.get("energy")
+        failure, energy, sliding = (values.get(name) for name in ("failure", "energy", "sliding"))
         if failure is not None:
             failure = Failure(**{**failure, "last_state": failure["last_state"] and _of(State, failure["last_state"])})
         numbers = {part.name: _number(values.get(part.name)) for part in dataclasses.fields(cls) if part.type is float}
@@ -288,6 +308,7 @@ class Response:
                 "end": _of(State, values["end"]),
                 "failure": failure,
                 "energy": energy and Energy(**energy),
+                "sliding": sliding and Sliding(**{**sliding, "modes": tuple((t, mode) for t, mode in sliding["modes"])}),
                 "history": history,
             }
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import math
 import time
-from dataclasses import replace
+from dataclasses import astuple, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -191,6 +191,15 @@ def simulate(
     if most > chosen.capacity:
         totals, *result = kernel.run(par, shaking, chosen._replace(capacity=most))
     cpu = time.process_time() - begin
+    if scene.friction is not None:
+        from .sliding import run as sliding
+
+        if sliding.is_needed(scene, totals):
+            known = dict(
+                engine="analytic", variant="kernel", scene=scene.name, settings=settings, versions=dict(versions())
+            )
+            response, table = sliding.response(scene, par, shaking, chosen, known)
+            return replace(response, history=_history(scene, table[:, :7], response.end, response.sliding.end) if history else None)
     response = _response(scene, par, totals, result, cpu, settings, history)
     if totals[layout.WILL_OVERTURN] and totals[layout.MODE] == layout.ROCKING:  # ends during the fall
         later = par._replace(duration=par.duration + longest_duration(scene))
@@ -337,10 +346,11 @@ def _energy(scene: Scene, par: Parameters, totals: np.ndarray, end: State) -> En
     )
 
 
-def _history(scene: Scene, table: np.ndarray, end: State) -> History:
-    last = np.array([[end.time, end.tilt, end.tilt_rate, end.base_displacement, end.base_velocity, end.bearing_force]])
+def _history(scene: Scene, table: np.ndarray, end: State, *slip: float) -> History:
+    """slip : at the end [m], of a block that slides."""
+    last = np.array([[*astuple(end), *slip]])
     if not len(table) or table[-1, 0] < end.time:
         table = np.vstack([table, last])
     columns = np.ascontiguousarray(table.T)
     shaking = np.zeros(len(table)) if scene.motion is None else scene.motion.acceleration(columns[0])
-    return History(*[*columns, shaking])
+    return History(*columns[:6], shaking, columns[6] if slip else None)

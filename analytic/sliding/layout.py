@@ -27,13 +27,14 @@ Contact = namedtuple("Contact", "mu mb centre given")
 Block = namedtuple("Block", "mode s sigma tilt rate slip speed gap rise")
 # A step from t: its length, gravity g + a_v, a_g and the bearings' force at its start.
 Start = namedtuple("Start", "gravity ground force")
-# Slots of the totals.
+# Slots of the totals. OVER_TIME: where a later run overturned. HELD: up to the last |tilt| of at most the slenderness.
 (
     STATUS, END_MODE, TIME, STEPS, PEAK_TILT, PEAK_X, PEAK_SLIP, PATH, UNSTABLE_TIME, FALL_TIME, FRICTION, NORMAL,
     PEAK_ACCELERATION, INPUT, HYSTERETIC, VISCOUS, FRICTION_WORK, IMPACT_LOSS, IMPACTS, CHANGES, LIFTED, CERTAIN,
-    END_TILT, END_RATE, END_SLIP, END_SPEED, END_X, END_V, END_Z, END_GAP, END_RISE, WRITTEN,
-) = range(32)  # fmt: skip
-TOTALS = 32
+    END_TILT, END_RATE, END_SLIP, END_SPEED, END_X, END_V, END_Z, END_GAP, END_RISE, WRITTEN, OVER_TIME,
+    HELD_X, HELD_FRICTION, HELD_NORMAL, HELD_ACCELERATION,
+) = range(37)  # fmt: skip
+TOTALS = 37
 # Endings, after those of the kernel: an impact of a given restitution leaves the cone, or comes while the block slides;
 # no mode is admissible, or more than one.
 GIVEN_LEAVES, NO_MODE = 5, 6

@@ -33,7 +33,7 @@ mark, begin_step = law_function("mark"), law_function("begin")
 
 
 def arrays(capacity, outputs):
-    """Workspace of a run."""
+    """Workspace of a run: `capacity` events of a kind are kept, and rows of the history."""
     return (
         np.zeros((S.ROWS, MAX_ORDER + 2)),
         np.empty(SCRATCH),
@@ -312,9 +312,14 @@ def end_of_step(par, block, found, step, P, totals, work):
         tilt = 0.0
     elif found == STOP:
         speed = 0.0
-    if abs(tilt) <= par.gamma:
-        totals[S.FALL_TIME] = step.t + h
     return Block(block.mode, block.s, block.sigma, tilt, rate, slip, speed, gap, rise)
+
+
+@inner
+def hold(t, totals):
+    """Keeps peaks before what may be the last fall."""
+    totals[S.FALL_TIME], totals[S.HELD_X], totals[S.HELD_FRICTION] = t, totals[S.PEAK_X], totals[S.FRICTION]
+    totals[S.HELD_NORMAL], totals[S.HELD_ACCELERATION] = totals[S.NORMAL], totals[S.PEAK_ACCELERATION]
 
 
 @inner
@@ -345,6 +350,7 @@ def march(par, resting, contact, ground, upright, options, into):
     status, t, segment, begin, written, idle, steps, highest = L.COMPLETE, 0.0, none, 0.0, none, none, none, none
     totals[S.UNSTABLE_TIME], totals[S.NORMAL] = 0.0 if abs(par.tilt) >= par.gamma else -1.0, 1.0
     totals[S.PEAK_TILT], totals[S.PEAK_X] = abs(par.tilt), abs(par.x)
+    hold(0.0, totals)
     rest_rate = options.rest_rate * math.sqrt(par.p2)
     while begin < par.duration and block.mode != FALLEN and status == L.COMPLETE:
         stretch = stretch_of_ground(ground, upright, segment, begin, options.order, par.duration)
@@ -399,6 +405,8 @@ def march(par, resting, contact, ground, upright, options, into):
             if par.on_base:
                 base = end_of_base(par, found, base, branch, step, P)
                 totals[S.PEAK_X] = max(totals[S.PEAK_X], abs(base.x))
+            if abs(block.tilt) <= par.gamma:
+                hold(step.t + h, totals)
             if h > 0:
                 fresh, refused = none + L.NONE, none + L.NONE
             tau = length if found == L.NONE and h == length - tau else tau + h

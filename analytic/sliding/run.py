@@ -1,0 +1,200 @@
+"""The response of a block that slides: when the march is needed, the march, and what it found."""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .. import layout as L
+from ..bearing import BearingLaw
+from ..decision import longest_duration
+from ..errors import SceneError
+from ..limits import limit_warnings
+from ..response import Energy, Failure, Impact, Response, Sliding, State, about_record
+from . import layout as S
+from .bounds import paradoxical_friction, slipping_friction
+from .march import arrays, march
+
+if TYPE_CHECKING:
+    from ..layout import Ground, Options, Parameters
+    from ..scene import Scene
+
+# The demand is evaluated at points of each step, and exceeds them by less; above this share of it the march decides.
+NEAR = 0.999
+
+
+def is_needed(scene: Scene, totals: np.ndarray) -> bool:
+    """Whether the kernel's run, with its totals, is no answer: a friction is given that it exceeds.
+
+    A block that falls slides at the end of its fall.
+    """
+    if scene.friction is None:
+        return False
+    falls = totals[L.MODE] == L.OVERTURNED or totals[L.WILL_OVERTURN] > 0
+    strikes = totals[L.IMPACTS] > 0 and scene.friction < slipping_friction(scene) / NEAR
+    return bool(falls or strikes or totals[L.FRICTION] > NEAR * scene.friction or totals[L.NORMAL] <= 0)
+
+
+def contact(scene: Scene) -> S.Contact:
+    """The numbers of the contact."""
+    mass = scene.base.mass if scene.base else math.inf
+    return S.Contact(float(scene.friction), mass, scene.block.centre_inertia, scene.block.restitution is not None)
+
+
+def marched(
+    scene: Scene, par: Parameters, ground: Ground, options: Options, rows: int = 0
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """(totals, impacts, changes of mode, history) of a march, by the slots of `layout`.
+
+    Raises
+    ------
+    SceneError
+        The motion of the block is not determined (`checked`).
+    """
+    touch = contact(scene)
+    resting = par._replace(slope=min(par.slope, touch.mu))
+    into = arrays(options.capacity if options.record else 0, rows)
+    while True:
+        march(par, resting, touch, ground._replace(upright=None), ground.upright, options, into)
+        _, _, impacts, changes, history, totals = into
+        most = int(max(totals[S.IMPACTS], totals[S.CHANGES]))
+        if not options.record or most <= len(impacts):
+            break
+        into = arrays(most, rows)
+    check(scene, totals)
+    counts = [int(totals[slot]) for slot in (S.IMPACTS, S.CHANGES, S.WRITTEN)]
+    return totals, *(table[:count] for table, count in zip((impacts, changes, history), counts, strict=True))
+
+
+def check(scene: Scene, totals: np.ndarray) -> None:
+    """Raise `SceneError` where the motion of the block is not determined."""
+    mu, name = scene.friction, scene.name or None
+    assert mu is not None
+    limit, bound = slipping_friction(scene), paradoxical_friction(scene)
+    by_hand = scene.start.tilt != 0 or scene.start.tilt_rate != 0
+    if by_hand and mu < limit and totals[S.IMPACTS] > 0:
+        problem = (
+            f"below {limit:.4g}, where an impact of a block released by hand depends on the law of impact with friction"
+        )
+        raise SceneError("friction", mu, problem, f"give {limit:.4g} or more, or let the block start at rest", name)
+    if totals[S.STATUS] == S.GIVEN_LEAVES:
+        problem = f"at {totals[S.TIME]:.6g} s needs more than the friction {mu:.4g}, or comes to a block that slides"
+        remedy = "leave it out, or give a larger friction"
+        raise SceneError("block.restitution", scene.block.restitution, problem, remedy, name)
+    if totals[S.STATUS] == S.NO_MODE and mu > bound:
+        problem = f"above {bound:.4g}, where a block that slides, as at {totals[S.TIME]:.6g} s, may have no motion"
+        raise SceneError("friction", mu, problem, f"give {bound:.4g} or less (Painleve's bound)", name)
+
+
+def response(
+    scene: Scene, par: Parameters, ground: Ground, options: Options, known: dict[str, Any]
+) -> tuple[Response, np.ndarray]:
+    """(response without its history, rows of the history: columns of `History` less the last, slip and its rate).
+
+    known : fields of `Response` that are known before the run.
+    """
+    rows = int(math.floor(par.duration / options.output_step * (1 + 1e-14))) + 1 if options.output_step > 0 else 0
+    begin = time.process_time()
+    totals, impacts, changes, table = marched(scene, par, ground, options, rows)
+    fallen = totals[S.END_MODE] == S.FALLEN
+    if not fallen and abs(totals[S.END_TILT]) > par.gamma and totals[S.TIME] >= ground.shaking.end:  # while it falls?
+        later = par._replace(duration=par.duration + longest_duration(scene))
+        further, *_ = marched(scene, later, ground, options._replace(record=False, output_step=0.0))
+        if further[S.END_MODE] == S.FALLEN:
+            totals[S.CERTAIN], fallen = 1.0, True
+            totals[S.FALL_TIME], totals[S.OVER_TIME] = further[S.FALL_TIME], further[S.TIME]
+    cpu = time.process_time() - begin
+    tilt, rate, slip, _, x, v, z = totals[S.END_TILT : S.END_Z + 1].tolist()
+    law, gamma = BearingLaw.of(scene.bearings), scene.block.slenderness
+    end = State(float(totals[S.TIME]), tilt, rate, x, v, law.force(x, z, v))
+    failure = None
+    if totals[S.STATUS] not in (L.COMPLETE, L.DECIDED):
+        failure = Failure(_REASONS[int(totals[S.STATUS])], last_state=end)
+    uplifts, rests, unstable = *_turns(changes), float(totals[S.UNSTABLE_TIME])
+    if failure:
+        outcome = "failed"
+    elif fallen:
+        outcome = "overturns"
+    elif totals[S.LIFTED]:
+        outcome = "rocks"
+    else:
+        outcome = "slides" if totals[S.PATH] > 0 else "stands"
+    found = Response(
+        outcome=outcome,
+        overturning_time=float(totals[S.OVER_TIME] or end.time) if fallen else None,
+        unstable_time=unstable if unstable >= 0 else None,
+        fall_time=float(totals[S.FALL_TIME]) if fallen else None,
+        peak_tilt=float(totals[S.PEAK_TILT]),
+        peak_tilt_ratio=float(totals[S.PEAK_TILT]) / gamma,
+        peak_base_displacement=float(totals[S.PEAK_X]),
+        peak_base_acceleration=float(totals[S.PEAK_ACCELERATION]),
+        impacts=tuple(Impact(*row) for row in impacts[:, :4].tolist()),
+        uplifts=uplifts,
+        rests=rests,
+        friction_demand=float(totals[S.FRICTION]),
+        min_normal_ratio=float(totals[S.NORMAL]),
+        end=end,
+        cpu_seconds=cpu,
+        steps=int(totals[S.STEPS]),
+        failure=failure,
+        decided=failure is None and bool(totals[S.CERTAIN]),
+        warnings=(*about_record(scene.motion), *limit_warnings(scene, float(totals[S.PEAK_X]))),
+        energy=_energy(scene, par, totals, end),
+        sliding=Sliding(
+            peak=float(totals[S.PEAK_SLIP]),
+            end=slip,
+            path=float(totals[S.PATH]),
+            work=float(totals[S.FRICTION_WORK]),
+            modes=tuple((t, S.MODES[int(mode)]) for t, mode in changes.tolist()),
+        ),
+        **known,
+    )
+    return found, table
+
+
+_REASONS = {
+    L.STUCK: "the step became too small to advance",
+    L.NOT_FINITE: "the state is not finite",
+    L.SPENT: "too many steps",
+    S.NO_MODE: "not exactly one mode of contact is admissible",
+}
+
+
+def _turns(changes: np.ndarray) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Times at which the block lifts from full contact, and at which it returns to it [s]."""
+    level = changes[:, 1] < S.ROCK
+    turns = np.flatnonzero(level[1:] != level[:-1]) + 1
+    return tuple(changes[turns[~level[turns]], 0].tolist()), tuple(changes[turns[level[turns]], 0].tolist())
+
+
+def _energy(scene: Scene, par: Parameters, totals: np.ndarray, end: State) -> Energy:
+    """Changes from the start, in the ground's frame."""
+    start, m, R, gamma = scene.start, par.m, par.R, par.gamma
+    mb, centre = (scene.base.mass if scene.base else 0.0), scene.block.centre_inertia
+
+    def kinetic(tilt, rate, v, speed, rise):
+        angle = math.copysign(gamma, tilt if tilt != 0 else rate) - tilt
+        drift, climb = speed + R * math.cos(angle) * rate, rise + R * math.sin(angle) * rate
+        return 0.5 * (m * ((v + drift) ** 2 + climb**2) + centre * rate**2 + mb * v * v)
+
+    def potential(tilt, x, gap):
+        rise = 2 * math.sin(gamma - 0.5 * abs(tilt)) * math.sin(0.5 * abs(tilt))
+        return m * par.g * (R * rise + gap) + 0.5 * par.count * par.kb * x * x
+
+    now, then = (end.base_velocity, start.base_velocity) if scene.base else (0.0, 0.0)
+    return Energy(
+        kinetic=kinetic(end.tilt, end.tilt_rate, now, totals[S.END_SPEED], totals[S.END_RISE])
+        - kinetic(start.tilt, start.tilt_rate, then, 0.0, 0.0),
+        potential=float(
+            potential(end.tilt, end.base_displacement, totals[S.END_GAP])
+            - potential(start.tilt, start.base_displacement, 0.0)
+        ),
+        input=float(totals[S.INPUT]),
+        hysteretic=float(totals[S.HYSTERETIC]),
+        viscous=float(totals[S.VISCOUS]),
+        impact_loss=float(totals[S.IMPACT_LOSS]),
+        friction=float(totals[S.FRICTION_WORK]),
+    )
