@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Self
@@ -14,10 +14,12 @@ from . import kernel, layout
 from .budget import STEPS, most_steps
 from .compiled import compiling
 from .decision import CAP_PERIODS, longest_duration
-from .kernel import ROW, SIZE, row_of
-from .layout import Shaking
+from .kernel import OWN, ROW, SIZE, row_of
+from .laws import Constants
+from .layout import Parameters, Shaking
 from .motion import PulseMotion, SampledMotion
 from .scene import Block, Scene
+from .sliding.bounds import contact_of
 from .solver import REST_RATE, TOLERANCE, ground, options, parameters
 
 if TYPE_CHECKING:
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
 
     from .layout import Ground, Options
     from .motion import Motion
+    from .sliding.layout import Contact
 
 # Chunks per worker, so that a slow chunk does not leave the other cores idle.
 CHUNKS_PER_WORKER = 8
@@ -34,7 +37,8 @@ CHUNKS_PER_WORKER = 8
 class Outcomes:
     """Outcomes of many runs, arrays of one common shape.
 
-    overturns, lifted : bool. failed : bool, the kernel failed or exceeded its budget. peak_tilt [rad];
+    overturns, lifted, slid : bool. failed : bool, the model failed, exceeded its budget, or does not determine how the
+    block slides. peak_tilt [rad]; peak_slip [m], 0 without a friction;
     peak_base_displacement [m], up to the last passage of |tilt| = slenderness where it overturns.
     impacts : int, until the outcome was certain. decided : bool, False where the duration ended before it was certain.
     friction_demand [-], min_normal_ratio [-]: as in `Response`, if they were asked for, else NaN.
@@ -49,11 +53,13 @@ class Outcomes:
     decided: np.ndarray
     friction_demand: np.ndarray
     min_normal_ratio: np.ndarray
+    slid: np.ndarray
+    peak_slip: np.ndarray
 
     @property
     def names(self) -> np.ndarray:
         """The outcomes as `Response.outcome` names them, array of str."""
-        rest = np.where(self.lifted, "rocks", "stands")
+        rest = np.where(self.lifted, "rocks", np.where(self.slid, "slides", "stands"))
         return np.where(self.failed, "failed", np.where(self.overturns, "overturns", rest))
 
     @classmethod
@@ -72,25 +78,41 @@ class Outcomes:
             column(layout.CERTAIN) > 0,
             column(layout.FRICTION) if contact else np.full(shape, np.nan),
             column(layout.NORMAL) if contact else np.full(shape, np.nan),
+            column(layout.SLID) > 0,
+            column(layout.PEAK_SLIP),
         )
 
 
 def run_rows(
-    rows: np.ndarray, pulses: np.ndarray, shaking: Ground, chosen: Options, workers: int | None = None
+    rows: np.ndarray,
+    pulses: np.ndarray,
+    shaking: Ground,
+    chosen: Options,
+    workers: int | None = None,
+    contacts: Sequence[Contact | None] = (),
 ) -> np.ndarray:
     """Totals, shape (n, TOTALS), of n runs that share the kind and samples of one ground motion.
 
-    rows : (n,), of dtype `ROW`, see `row_of`. pulses : (n, fields of Shaking).
+    rows : (n,), of dtype `ROW`, see `row_of`. pulses : (n, fields of Shaking). contacts : n, of blocks that may slide.
     The result does not depend on the number of workers (threads; the kernel holds no lock).
     """
     n = len(rows)
-    totals = np.empty((n, layout.TOTALS))
+    totals = np.zeros((n, layout.TOTALS))
     numbers = rows.view(float).reshape(n, SIZE)
     workers = workers or os.cpu_count() or 1
 
     def run(part):
         kernel.run_rows(numbers[part], pulses[part], shaking, chosen, kernel.arrays(totals[part]))
+        for i, contact in enumerate(contacts[part], part.start):
+            par = Parameters(*numbers[i, :OWN], Constants(*numbers[i, OWN:]))  # type: ignore[call-arg]  # of one length
+            if contact is not None and sliding.is_needed(par, contact, totals[i]):
+                sliding.outcome(par, contact, shaking._replace(shaking=Shaking(*pulses[i])), chosen, totals[i])
 
+    if any(contacts):
+        from .sliding import run as sliding
+
+        sliding.compile_march(shaking.upright is not None)
+        chosen = chosen._replace(record=True)  # the friction demand decides whether it slides
     with compiling():
         run(slice(0, 1))  # compiled or loaded before threads start
     size = max(1, -(-n // (workers * CHUNKS_PER_WORKER)))
@@ -149,7 +171,8 @@ def simulate_many(
         shakings = [ground(scenes[i].motion, factors[i]) for i in members]
         rows = np.array([row_of(parameters(scenes[i])) for i in members], dtype=ROW)
         pulses = np.array([shaking.shaking for shaking in shakings])
-        totals[members] = run_rows(rows, pulses, shakings[0], chosen, workers)
+        contacts = [contact_of(scenes[i]) for i in members]
+        totals[members] = run_rows(rows, pulses, shakings[0], chosen, workers, contacts)
     return Outcomes.of(totals, (len(scenes),), contact)
 
 
@@ -196,7 +219,8 @@ def overturning_map(
     rows = np.full(len(pulses), np.array(row_of(parameters(scene)), dtype=ROW))
     if scene.duration is None:
         rows["duration"] = pulses[:, Shaking._fields.index("end")] + longest_duration(scene.with_(motion=None))
-    totals = run_rows(rows, pulses, pulse(frequencies[0]), _outcome_options(tolerance, REST_RATE, STEPS), workers)
+    chosen, contacts = _outcome_options(tolerance, REST_RATE, STEPS), [contact_of(scene)] * len(rows)
+    totals = run_rows(rows, pulses, pulse(frequencies[0]), chosen, workers, contacts)
     return Outcomes.of(totals, (len(amplitudes), len(frequencies)))
 
 

@@ -35,8 +35,10 @@ COMPLETE, DECIDED, STUCK, NOT_FINITE, SPENT = range(5)
     END_V,
     END_Z,
     WRITTEN,
-) = range(27)
-TOTALS = 27
+    SLID,
+    PEAK_SLIP,
+) = range(29)
+TOTALS = 29
 # Rows of the workspace: Taylor coefficients of tilt, rate, sin and cos, base displacement and velocity, bearing memory,
 # bearing force, absolute base acceleration, ground acceleration, gravity (used under vertical motion); then scratch.
 (PHI, W, S, C, X, V, Q, F, ABSOLUTE, GROUND, GRAVITY, EVENT, PRODUCT_A, PRODUCT_B) = range(14)

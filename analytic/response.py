@@ -1,11 +1,11 @@
 """The response of a simulation, the same for every solver.
 
-An outcome is “stands” (never lifted), “slides” (slid on its support, never lifted), “rocks” (lifted, stayed upright), “overturns” or “failed” (with the reason). A
-run continues until its outcome is *decided*: the remaining energy can no longer overturn the block, or the block is
-certain to overturn (``analytic/decision.py`` derives the rule), and the peaks are final. A run that a ``duration`` ends
-earlier is **undecided**: tables say “undecided (rocks so far)”, JSON has ``"decided": false``. A longer duration would
-not change a decided outcome. A base that oscillates below a block that will not lift again is followed for a hundred
-periods.
+An outcome is “stands” (never lifted), “slides” (slid on its support, never lifted), “rocks” (lifted, stayed upright),
+“overturns” or “failed” (with the reason). A run continues until its outcome is *decided*: the remaining energy can no
+longer overturn the block, or the block is certain to overturn (``analytic/decision.py`` derives the rule), and the
+peaks are final. A run that a ``duration`` ends earlier is **undecided**: tables say “undecided (rocks so far)”, JSON
+has ``"decided": false``. A longer duration would not change a decided outcome. A base that oscillates below a block
+that will not lift again is followed for a hundred periods.
 
 If the block overturns, base peaks and contact forces are those up to the last passage of |tilt| = slenderness. During
 the fall that follows a real block slides.
@@ -308,7 +308,8 @@ class Response:
                 "end": _of(State, values["end"]),
                 "failure": failure,
                 "energy": energy and Energy(**energy),
-                "sliding": sliding and Sliding(**{**sliding, "modes": tuple((t, mode) for t, mode in sliding["modes"])}),
+                "sliding": sliding
+                and Sliding(**{**sliding, "modes": tuple((t, mode) for t, mode in sliding["modes"])}),
                 "history": history,
             }
         )

@@ -31,6 +31,7 @@ from .motion import SampledMotion
 from .pulses import SERIES
 from .response import Caution, Energy, Failure, History, Impact, Response, State, about_record
 from .rocking import RockingModel
+from .sliding.bounds import contact_of
 from .taylor import LINEAR_GROUND, PULSE, QUIET, SHORT_ORDER
 
 if TYPE_CHECKING:
@@ -191,15 +192,14 @@ def simulate(
     if most > chosen.capacity:
         totals, *result = kernel.run(par, shaking, chosen._replace(capacity=most))
     cpu = time.process_time() - begin
-    if scene.friction is not None:
+    if contact := contact_of(scene):
         from .sliding import run as sliding
 
-        if sliding.is_needed(scene, totals):
-            known = dict(
-                engine="analytic", variant="kernel", scene=scene.name, settings=settings, versions=dict(versions())
-            )
-            response, table = sliding.response(scene, par, shaking, chosen, known)
-            return replace(response, history=_history(scene, table[:, :7], response.end, response.sliding.end) if history else None)
+        if sliding.is_needed(par, contact, totals):
+            known = dict(settings=settings, versions=dict(versions()), scene=scene.name)
+            response, table = sliding.response(scene, par, contact, shaking, chosen, known)
+            end = response.end, response.sliding.end  # type: ignore[union-attr]  # it has one
+            return replace(response, history=_history(scene, table[:, :7], *end) if history else None)
     response = _response(scene, par, totals, result, cpu, settings, history)
     if totals[layout.WILL_OVERTURN] and totals[layout.MODE] == layout.ROCKING:  # ends during the fall
         later = par._replace(duration=par.duration + longest_duration(scene))
@@ -353,4 +353,4 @@ def _history(scene: Scene, table: np.ndarray, end: State, *slip: float) -> Histo
         table = np.vstack([table, last])
     columns = np.ascontiguousarray(table.T)
     shaking = np.zeros(len(table)) if scene.motion is None else scene.motion.acceleration(columns[0])
-    return History(*columns[:6], shaking, columns[6] if slip else None)
+    return History(*columns[:6], shaking, columns[6] if slip else None)  # type: ignore[call-arg]  # of six

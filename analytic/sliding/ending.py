@@ -48,5 +48,6 @@ def conclude(par, resting, contact, end_of_motion, block, base, totals):
     totals[S.END_SPEED], totals[S.END_GAP], totals[S.END_RISE] = block.speed, block.gap, block.rise
     totals[S.END_X], totals[S.END_V], totals[S.END_Z] = base
     if mode == FALLEN:
-        totals[S.PEAK_TILT], totals[S.PEAK_X], totals[S.FRICTION] = 0.5 * math.pi, totals[S.HELD_X], totals[S.HELD_FRICTION]
+        totals[S.PEAK_TILT], totals[S.PEAK_X] = 0.5 * math.pi, totals[S.HELD_X]
+        totals[S.FRICTION] = totals[S.HELD_FRICTION]
         totals[S.NORMAL], totals[S.PEAK_ACCELERATION] = totals[S.HELD_NORMAL], totals[S.HELD_ACCELERATION]

@@ -55,16 +55,24 @@ def accelerations(par, contact, block, start):
 
 
 @inner
+def weight_term(par, upright, k, highest, G):
+    """Term k of the series of g + a_v."""
+    if upright is None:
+        return par.g if k == 0 else 0.0
+    return G[k] if k <= max(highest, 0) else 0.0
+
+
+@inner
 def mode_series(order, par, contact, block, factors, highest, upright, P):
     """Fill all rows up to `order` (H and N, too); entry 0 of PHI, W, SLIP, SPEED, GAP, RISE, X, V, F is given."""
-    mode, s, sigma = block.mode, block.s, block.sigma
+    mode, sigma = block.mode, block.sigma
     A, G, phi, w, S, C = P[L.GROUND], P[L.GRAVITY], P[L.PHI], P[L.W], P[L.S], P[L.C]
     x, v, q, F, absolute, drift, climb, across, normal = (
         P[L.X], P[L.V], P[L.Q], P[L.F], P[L.ABSOLUTE], P[DRIFT], P[CLIMB], P[H], P[N]
     )  # fmt: skip
-    m, mb, R, mu, pivots, sliding = par.m, contact.mb, par.R, contact.mu, s != 0, sigma != 0
+    m, mb, R, mu, pivots, sliding = par.m, contact.mb, par.R, contact.mu, block.s != 0, sigma != 0
     moving = m * mb / par.M if par.on_base else m
-    angle = s * par.gamma - phi[0]
+    angle = block.s * par.gamma - phi[0]
     S[0], C[0] = math.sin(angle), math.cos(angle)
     drift[0] = P[SPEED, 0] + R * C[0] * w[0]
     climb[0] = P[RISE, 0] + R * S[0] * w[0]
@@ -75,10 +83,7 @@ def mode_series(order, par, contact, block, factors, highest, upright, P):
             z = _bearing_term(par.law, k, factors, x, v, q)
             F[k] = par.count * (par.kb * x[k] + z + par.damping * v[k])
         shaking = A[k] if k <= highest else 0.0
-        if upright is None:
-            weight = par.g if k == 0 else 0.0
-        else:
-            weight = G[k] if k <= max(highest, 0) else 0.0
+        weight = weight_term(par, upright, k, highest, G)
         push, alpha = -F[k] / mb if par.on_base else shaking, 0.0
         if mode == FLIGHT:
             across[k], normal[k] = 0.0, 0.0
@@ -121,7 +126,7 @@ def mode_series(order, par, contact, block, factors, highest, upright, P):
 
 @inner
 def _corner_series(order, par, block, P):
-    """Slip and gap of the corner from the velocity of the centre of mass: u' = drift - c phi', eta' = climb - n phi'."""
+    """Slip and gap of the corner: u' = drift - c phi', eta' = climb - n phi', velocities of the centre of mass."""
     w, S, C = P[L.W], P[L.S], P[L.C]
     for k in range(1, order + 1):
         across, up = 0.0, 0.0

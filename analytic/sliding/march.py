@@ -10,9 +10,8 @@ import numpy as np
 
 from .. import layout as L
 from ..compiled import entry, inner
-from ..events import LONGEST_LAST_HOP, TOUCH, find_fall, upper_bound
 from ..laws import law_function
-from ..polynomial import MAX_ORDER, SCRATCH, first_root, value
+from ..polynomial import MAX_ORDER, SCRATCH, value
 from ..readings import gravity_at
 from ..steps import end_of_base, end_of_block, gravity_of_step, ground_of_step, stretch_of_ground
 from ..taylor import QUIET, allowed_step
@@ -20,14 +19,13 @@ from . import layout as S
 from .choice import choose
 from .ending import at_rest, conclude
 from .equations import accelerations, mode_series
-from .impact import kinetic, level_impact, one_corner, within
-from .layout import CONE, FALLEN, FLIGHT, LANDING, LEVEL, LOSS, ROCK, SLIDE, SLIDE_ROCK, STICK, STOP, Block, Start
+from .layout import CONE, FALLEN, FLIGHT, LANDING, LEVEL, LOSS, ROCK, STICK, STOP, Block, Start
 from .reading import read
+from .strike import struck
+from .transitions import after_event, fresh_series, impossible, next_event
 
 PATIENCE = 1000
 ROUNDING = 4e-16
-# Share of the friction, or of the threshold of uplift, by which a jump of the ground exceeds it if it is no rounding.
-ONSET = 1e-9
 FARTHEST = 4.0
 mark, begin_step = law_function("mark"), law_function("begin")
 
@@ -42,100 +40,6 @@ def arrays(capacity, outputs):
         np.empty((outputs, 8)),
         np.zeros(S.TOTALS),
     )
-
-
-@inner
-def crossing(limit, side, refused, order, h, P, work):
-    """First time at which limit N + side H falls below 0 in the step, or -1."""
-    event, across, normal = P[L.EVENT], P[S.H], P[S.N]
-    for k in range(order + 1):
-        event[k] = limit * normal[k] + side * across[k]
-    if refused and abs(event[0]) <= TOUCH * limit * abs(normal[0]):
-        event[0] = 0.0
-        if event[1] < 0:
-            return -1.0
-    return first_root(event, order, h, work)
-
-
-@inner
-def next_event(par, contact, block, refused, direction, step, P, work):
-    """(kind of the first event in the step, its time since the start, side)."""
-    found, h, order, event, phi, side = L.NONE, step.h, step.order, P[L.EVENT], P[L.PHI], 0.0
-    mode, s, sigma = block.mode, block.s, block.sigma
-    if mode == ROCK or mode == SLIDE_ROCK or mode == FLIGHT:
-        root = find_fall(phi, s, 0.0, order, h, event, work)
-        if root >= 0 and not (mode == FLIGHT and root == 0):
-            found, h = LEVEL if mode == FLIGHT else L.IMPACT, root
-        top = upper_bound(phi, s, order, h)
-        if top > par.gamma > s * block.tilt:
-            root = find_fall(phi, -s, par.gamma, order, h, event, work)
-            if root >= 0:
-                found, h = L.PASSAGE, root
-        if top > 0.5 * math.pi:
-            root = find_fall(phi, -s, 0.5 * math.pi, order, h, event, work)
-            if root >= 0:
-                found, h = L.OVERTURNING, root
-    if mode == FLIGHT:
-        root = find_fall(P[S.GAP], 1.0, 0.0, order, h, event, work)
-        if root >= 0:
-            found, h = LANDING, root
-    if mode == STICK or mode == ROCK:
-        for sign in (1.0, -1.0):
-            if mode == STICK and par.slope <= contact.mu:
-                root = crossing(par.slope, sign, refused == L.UPLIFT, order, h, P, work)
-                if root >= 0:
-                    found, h, side = L.UPLIFT, root, sign
-            else:
-                root = crossing(contact.mu, sign, refused == CONE, order, h, P, work)
-                if root >= 0:
-                    found, h, side = CONE, root, sign
-    if sigma != 0:
-        root = find_fall(P[S.SPEED], sigma, 0.0, order, h, event, work)
-        if root >= 0:
-            found, h = STOP, root
-        if refused != LOSS:
-            root = find_fall(P[S.N], 1.0, 0.0, order, h, event, work)
-            if root >= 0:
-                found, h = LOSS, root
-    if direction != 0:
-        root = find_fall(P[L.V], direction, 0.0, order, h, event, work)
-        if root > 0:
-            found, h = L.REVERSAL, root
-        if step.corner < math.inf:
-            root = find_fall(P[L.Q], -direction, step.corner, order, h, event, work)
-            if root >= 0:
-                found, h = L.CORNER, root
-    return found, h, side
-
-
-@inner
-def impossible(par, contact, block, start):
-    """Whether the mode no longer holds at the start of a step, as after a jump of the ground's acceleration."""
-    mode = block.mode
-    if mode == FLIGHT:
-        return False
-    _, _, _, across, normal = accelerations(par, contact, block, start)
-    edge = 1 + ONSET
-    if mode == STICK:
-        return abs(across) > min(contact.mu, par.slope) * normal * edge or normal < 0
-    if mode == ROCK:
-        return abs(across) > contact.mu * normal * edge or normal < 0
-    return normal < 0
-
-
-@inner
-def fresh_series(fresh, block, P):
-    """Sets to 0 what is 0 at an onset that was just located; returns whether it is no onset, but a graze."""
-    if fresh == CONE:
-        P[S.SPEED, 0], P[S.SPEED, 1], P[S.SLIP, 1], P[S.SLIP, 2] = 0.0, 0.0, 0.0, 0.0
-        return not block.sigma * P[S.SPEED, 2] > 0
-    if fresh == L.UPLIFT:
-        P[L.W, 0], P[L.W, 1], P[L.PHI, 1], P[L.PHI, 2] = 0.0, 0.0, 0.0, 0.0
-        return not block.s * P[L.W, 2] > 0
-    if fresh == LOSS:
-        P[S.RISE, 0], P[S.RISE, 1], P[S.GAP, 0], P[S.GAP, 1], P[S.GAP, 2] = 0.0, 0.0, 0.0, 0.0, 0.0
-        return not P[S.RISE, 2] > 0
-    return False
 
 
 @inner
@@ -155,108 +59,6 @@ def usable_step(par, block, order, h, tolerance, P):
     if par.on_base:
         h = allowed_step(P[L.F], order, tolerance, allowed_step(P[L.V], order, tolerance, h))
     return h
-
-
-@inner
-def struck(par, contact, block, base, found, rest_rate, at, t, into):
-    """(block, base, status) after an impact. at : what acts then, a `Start`; its force is that before the impact."""
-    impacts, totals, v, s = into[2], into[5], base.v, block.s
-    c, n = par.R * math.cos(s * par.gamma - block.tilt), par.R * math.sin(s * par.gamma - block.tilt)
-    rate, drift, climb = block.rate, block.speed + c * block.rate, block.rise + n * block.rate
-    count, status = 1, L.COMPLETE
-    if found == L.IMPACT or block.tilt == 0:
-        kind, after, across, up, push, count = level_impact(par, contact, s, rate, drift, climb)
-        if kind < 0:  # a level block that lands may pivot about either corner
-            kind, after, across, up, push, count = level_impact(par, contact, -s, rate, drift, climb)
-            s = -s
-        if contact.given and (kind != S.NEW_STICKS or block.sigma != 0):
-            status = S.GIVEN_LEAVES
-        s, slips = 0.0 if kind >= S.BOTH_STICK else -s, kind == S.NEW_SLIPS or kind == S.BOTH_SLIP
-        c = par.R * math.cos(par.gamma)
-    else:
-        kind, (after, across, up, push), slips = S.LANDS, landed(par, contact, c, n, rate, drift, climb), False
-        slips = abs(across - c * after) > 0
-    jump = -push / contact.mb if par.on_base else 0.0
-    speed = across - c * after if slips else 0.0
-    number = int(totals[S.IMPACTS])
-    if number < impacts.shape[0]:
-        impacts[number, 0], impacts[number, 1], impacts[number, 2] = t, rate, after
-        impacts[number, 3], impacts[number, 4], impacts[number, 5] = jump, kind, speed
-    totals[S.IMPACTS] += 1
-    force = at.force + par.count * par.damping * jump
-    lifted = Block(STICK, s, 0.0, block.tilt, after, block.slip, speed, 0.0, 0.0)
-    end, left, doubt = settled(par, contact, lifted, rest_rate, Start(at.gravity, at.ground, force))
-    if count != 1 or doubt != 1:
-        status = S.NO_MODE
-    if s != 0 and end.s == 0 and end.mode != FLIGHT:  # without the swings that were left out
-        across, up, after = end.speed, 0.0, 0.0
-    totals[S.IMPACT_LOSS] += kinetic(par, contact, rate, drift, climb, v) - kinetic(
-        par, contact, after, across, up, v + jump + left
-    )
-    return end, L.Base(base.x, v + jump + left, base.z), status
-
-
-@inner
-def landed(par, contact, c, n, rate, drift, climb):
-    """(rate, drift, climb, P) after the impact of the lower corner of a block in flight: it sticks, or slips."""
-    after, across, up, push, normal = one_corner(par, contact, c, n, 0.0, rate, drift, climb, False)
-    if not within(push, normal, contact.mu):
-        for sigma in (1.0, -1.0):
-            after, across, up, push, normal = one_corner(par, contact, c, n, sigma, rate, drift, climb, False)
-            if normal >= 0 and sigma * (across - c * after) > 0:
-                break
-    return after, across, up, push
-
-
-@inner
-def settled(par, contact, block, rest_rate, start):
-    """(block after an impact in its next mode, what the base gains, number of admissible modes).
-
-    A block so slow that its further swings end at once lies level. Their impulses are left: where it sticks the base
-    takes its momentum; where it slides their normal impulse, m b times the rate less than the weight's, takes as much
-    from the friction.
-    """
-    after, count, left = block, 1, 0.0
-    if block.s != 0:
-        after, count = choose(par, contact, block, start)
-        if block.tilt == 0 and abs(block.rate) < rest_rate and after.mode != FLIGHT:
-            back, _, _, _, _ = accelerations(par, contact, after, start)
-            short = LONGEST_LAST_HOP / math.sqrt(par.p2)
-            if after.s * back < 0 and 2 * abs(block.rate) <= -after.s * back * short:
-                speed, h = 0.0, par.R * math.cos(par.gamma)
-                if after.sigma == 0:
-                    left = par.arm * block.rate if par.on_base else 0.0
-                else:
-                    across = after.sigma * contact.mu * par.m * par.R * math.sin(par.gamma) * abs(block.rate)
-                    left = -across / contact.mb if par.on_base else 0.0
-                    speed = block.speed + h * block.rate + across / par.m - left
-                    speed = after.sigma * max(after.sigma * speed, 0.0)
-                block = Block(STICK, 0.0, 0.0, 0.0, 0.0, block.slip, speed, 0.0, 0.0)
-    if block.s == 0:
-        after, count = choose(par, contact, block, start)
-    return after, left, count
-
-
-@inner
-def after_event(par, contact, block, found, side, start):
-    """(block in its mode after an event that is no impact, number of modes that were admissible)."""
-    _, s, sigma, tilt, rate, slip, speed, gap, rise = block
-    weak = 1e-9 * par.m * par.g
-    if found == CONE or found == L.UPLIFT:
-        _, _, _, _, normal = accelerations(par, contact, block, start)
-        if normal < weak:
-            return Block(FLIGHT, s if s != 0 else 1.0, 0.0, tilt, rate, slip, 0.0, 0.0, 0.0), 1
-        # side N + H = 0 falls: H is -side limit N, and the block moves to side
-        if found == L.UPLIFT:
-            return Block(ROCK, side, 0.0, 0.0, 0.0, slip, 0.0, 0.0, 0.0), 1
-        return Block(SLIDE if s == 0 else SLIDE_ROCK, s, side, tilt, rate, slip, 0.0, 0.0, 0.0), 1
-    if found == STOP:
-        return choose(par, contact, Block(STICK, s, 0.0, tilt, rate, slip, 0.0, 0.0, 0.0), start)
-    if found == LOSS:
-        return Block(FLIGHT, s if s != 0 else 1.0, 0.0, tilt, rate, slip, speed, 0.0, 0.0), 1
-    # LEVEL: the other corner becomes the lower one; gap and slip are those of both, their rates are not
-    b = par.R * math.sin(par.gamma)
-    return Block(FLIGHT, -s, 0.0, 0.0, rate, slip, speed, gap, rise + 2 * s * b * rate), 1
 
 
 @inner
@@ -291,9 +93,7 @@ def end_of_step(par, block, found, step, P, totals, work):
     """The block at the end of a step, in its old mode; keeps peaks and the way that it slid."""
     tilt, rate, order, h = block.tilt, block.rate, step.order, step.h
     if block.s != 0:
-        tilt, rate, totals[S.PEAK_TILT] = end_of_block(
-            L.Body(block.s, tilt, rate), step, totals[S.PEAK_TILT], P, work
-        )
+        tilt, rate, totals[S.PEAK_TILT] = end_of_block(L.Body(block.s, tilt, rate), step, totals[S.PEAK_TILT], P, work)
     slip, speed, gap, rise = value(P[S.SLIP], order, h), value(P[S.SPEED], order, h), 0.0, 0.0
     if block.mode == FLIGHT:
         gap, rise = value(P[S.GAP], order, h), value(P[S.RISE], order, h)
@@ -320,6 +120,13 @@ def hold(t, totals):
     """Keeps peaks before what may be the last fall."""
     totals[S.FALL_TIME], totals[S.HELD_X], totals[S.HELD_FRICTION] = t, totals[S.PEAK_X], totals[S.FRICTION]
     totals[S.HELD_NORMAL], totals[S.HELD_ACCELERATION] = totals[S.NORMAL], totals[S.PEAK_ACCELERATION]
+
+
+@inner
+def fallen(block, none):
+    """The block at |tilt| = pi/2; none : 0."""
+    tilt = block.s * 0.5 * math.pi
+    return Block(none + FALLEN, block.s, 0.0, tilt, block.rate, block.slip, block.speed, block.gap, block.rise)
 
 
 @inner
@@ -412,7 +219,7 @@ def march(par, resting, contact, ground, upright, options, into):
             tau = length if found == L.NONE and h == length - tau else tau + h
             t, previous, count = begin + tau, block, 1
             if found == L.OVERTURNING:
-                block = Block(none + FALLEN, block.s, 0.0, block.s * 0.5 * math.pi, block.rate, block.slip, block.speed, block.gap, block.rise)
+                block = fallen(block, none)
                 break
             start = acting(par, base, upright, highest, h, P)
             if found == L.IMPACT or found == LANDING:

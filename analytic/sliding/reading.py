@@ -13,7 +13,7 @@ PROBES = 4
 @inner
 def read(par, upright, block, step, options, into, written):
     """Write the step to history, diagnostics and ledger; returns the rows of the history written."""
-    P, history, totals, h, order, highest = into[0], into[4], into[5], step.h, step.order, step.highest
+    P, history, totals, h, order = into[0], into[4], into[5], step.h, step.order
     while written < history.shape[0] and written * options.output_step <= step.t + h:
         row, d = history[written], min(max(written * options.output_step - step.t, 0.0), h)
         row[0] = written * options.output_step
@@ -30,7 +30,14 @@ def read(par, upright, block, step, options, into, written):
         totals[S.NORMAL] = min(totals[S.NORMAL], normal / (par.m * par.g))
         if par.on_base:
             totals[S.PEAK_ACCELERATION] = max(totals[S.PEAK_ACCELERATION], abs(value(P[L.ABSOLUTE], order, d)))
-    momentum, part = P[L.PRODUCT_A], P[L.PRODUCT_B]
+    ledger(par, upright, block, step, P, totals)
+    return written
+
+
+@inner
+def ledger(par, upright, block, step, P, totals):
+    """Work of ground, bearings and friction within the step [J]."""
+    h, order, highest, momentum, part = step.h, step.order, step.highest, P[L.PRODUCT_A], P[L.PRODUCT_B]
     if highest >= 0:  # -int a_g (M x' + m drift) + a_v m climb dt
         for k in range(order + 1):
             momentum[k] = par.m * P[DRIFT, k] + (par.M * P[L.V, k] if par.on_base else 0.0)
@@ -48,4 +55,3 @@ def read(par, upright, block, step, options, into, written):
         totals[S.HYSTERETIC] += integral_of_product(part, order, P[L.V], order, h)
         if par.damping > 0:
             totals[S.VISCOUS] += par.count * par.damping * integral_of_product(P[L.V], order, P[L.V], order, h)
-    return written

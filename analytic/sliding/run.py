@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import time
 from typing import TYPE_CHECKING, Any
@@ -10,12 +11,13 @@ import numpy as np
 
 from .. import layout as L
 from ..bearing import BearingLaw
+from ..compiled import compiling
 from ..decision import longest_duration
 from ..errors import SceneError
 from ..limits import limit_warnings
 from ..response import Energy, Failure, Impact, Response, Sliding, State, about_record
 from . import layout as S
-from .bounds import paradoxical_friction, slipping_friction
+from .bounds import contact_of, paradoxical_friction, slipping_friction
 from .march import arrays, march
 
 if TYPE_CHECKING:
@@ -26,83 +28,100 @@ if TYPE_CHECKING:
 NEAR = 0.999
 
 
-def is_needed(scene: Scene, totals: np.ndarray) -> bool:
-    """Whether the kernel's run, with its totals, is no answer: a friction is given that it exceeds.
+def is_needed(par: Parameters, contact: S.Contact, totals: np.ndarray) -> bool:
+    """Whether the kernel's run, with its totals (record), is no answer as it exceeds the friction.
 
     A block that falls slides at the end of its fall.
     """
-    if scene.friction is None:
-        return False
     falls = totals[L.MODE] == L.OVERTURNED or totals[L.WILL_OVERTURN] > 0
-    strikes = totals[L.IMPACTS] > 0 and scene.friction < slipping_friction(scene) / NEAR
-    return bool(falls or strikes or totals[L.FRICTION] > NEAR * scene.friction or totals[L.NORMAL] <= 0)
+    strikes = totals[L.IMPACTS] > 0 and contact.mu < slipping_friction(par, contact) / NEAR
+    return bool(falls or strikes or totals[L.FRICTION] > NEAR * contact.mu or totals[L.NORMAL] <= 0)
 
 
-def contact(scene: Scene) -> S.Contact:
-    """The numbers of the contact."""
-    mass = scene.base.mass if scene.base else math.inf
-    return S.Contact(float(scene.friction), mass, scene.block.centre_inertia, scene.block.restitution is not None)
+@functools.cache
+def compile_march(vertical: bool) -> None:
+    """Load the compiled march, or compile it: once per machine, some ten seconds."""
+    from ..scene import Block, Scene
+    from ..solver import ground, options, parameters
+
+    scene = Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.2), duration=1e-3, friction=1.0)
+    quiet, contact = ground(None), contact_of(scene)
+    assert contact is not None
+    with compiling():
+        upright = quiet.samples if vertical else None
+        marched(parameters(scene), contact, quiet._replace(upright=upright), options(output_step=1.0), 1)
 
 
 def marched(
-    scene: Scene, par: Parameters, ground: Ground, options: Options, rows: int = 0
+    par: Parameters, contact: S.Contact, ground: Ground, options: Options, rows: int = 0
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """(totals, impacts, changes of mode, history) of a march, by the slots of `layout`.
-
-    Raises
-    ------
-    SceneError
-        The motion of the block is not determined (`checked`).
-    """
-    touch = contact(scene)
-    resting = par._replace(slope=min(par.slope, touch.mu))
-    into = arrays(options.capacity if options.record else 0, rows)
+    """(totals, impacts, changes of mode, history) of a march, by the slots of `layout`."""
+    resting, capacity = par._replace(slope=min(par.slope, contact.mu)), options.capacity if options.record else 0
     while True:
-        march(par, resting, touch, ground._replace(upright=None), ground.upright, options, into)
+        into = arrays(capacity, rows)
+        march(par, resting, contact, ground._replace(upright=None), ground.upright, options, into)
         _, _, impacts, changes, history, totals = into
         most = int(max(totals[S.IMPACTS], totals[S.CHANGES]))
-        if not options.record or most <= len(impacts):
+        if not capacity or most <= capacity:
             break
-        into = arrays(most, rows)
-    check(scene, totals)
+        capacity = most
     counts = [int(totals[slot]) for slot in (S.IMPACTS, S.CHANGES, S.WRITTEN)]
-    return totals, *(table[:count] for table, count in zip((impacts, changes, history), counts, strict=True))
+    tables = [table[:count] for table, count in zip((impacts, changes, history), counts, strict=True)]
+    return totals, tables[0], tables[1], tables[2]
 
 
-def check(scene: Scene, totals: np.ndarray) -> None:
-    """Raise `SceneError` where the motion of the block is not determined."""
-    mu, name = scene.friction, scene.name or None
-    assert mu is not None
-    limit, bound = slipping_friction(scene), paradoxical_friction(scene)
-    by_hand = scene.start.tilt != 0 or scene.start.tilt_rate != 0
-    if by_hand and mu < limit and totals[S.IMPACTS] > 0:
-        problem = (
-            f"below {limit:.4g}, where an impact of a block released by hand depends on the law of impact with friction"
-        )
-        raise SceneError("friction", mu, problem, f"give {limit:.4g} or more, or let the block start at rest", name)
+def outcome(par: Parameters, contact: S.Contact, ground: Ground, options: Options, totals: np.ndarray) -> None:
+    """March a run of many, and write what it found over the kernel's `totals`."""
+    found, *_ = marched(par, contact, ground, options._replace(record=False))
+    fallen, undetermined = found[S.END_MODE] == S.FALLEN, problem(par, contact, found) is not None
+    totals[L.STATUS] = L.STUCK if undetermined or found[S.STATUS] not in (L.COMPLETE, L.DECIDED) else L.COMPLETE
+    for here, there in _SHARED.items():
+        totals[here] = found[there]
+    totals[L.WILL_OVERTURN], totals[L.SLID], totals[L.PEAK_SLIP] = fallen, found[S.PATH] > 0, found[S.PEAK_SLIP]
+
+
+_SHARED = {L.LIFTED: S.LIFTED, L.CERTAIN: S.CERTAIN, L.PEAK_TILT: S.PEAK_TILT, L.PEAK_X: S.PEAK_X, L.IMPACTS: S.IMPACTS}
+
+
+def problem(par: Parameters, contact: S.Contact, totals: np.ndarray) -> tuple[str, str, str] | None:
+    """(key, problem, remedy) where the motion of the block is not determined."""
+    limit, bound, when = slipping_friction(par, contact), paradoxical_friction(par, contact), totals[S.TIME]
+    if (par.tilt != 0 or par.rate != 0) and contact.mu < limit and totals[S.IMPACTS] > 0:
+        words = f"below {limit:.4g}, where an impact of a block released by hand depends on the law of friction in it"
+        return "friction", words, f"give {limit:.4g} or more, or let the block start at rest"
     if totals[S.STATUS] == S.GIVEN_LEAVES:
-        problem = f"at {totals[S.TIME]:.6g} s needs more than the friction {mu:.4g}, or comes to a block that slides"
-        remedy = "leave it out, or give a larger friction"
-        raise SceneError("block.restitution", scene.block.restitution, problem, remedy, name)
-    if totals[S.STATUS] == S.NO_MODE and mu > bound:
-        problem = f"above {bound:.4g}, where a block that slides, as at {totals[S.TIME]:.6g} s, may have no motion"
-        raise SceneError("friction", mu, problem, f"give {bound:.4g} or less (Painleve's bound)", name)
+        words = f"needs, at {when:.6g} s, more than the friction {contact.mu:.4g}, or a block that does not slide there"
+        return "block.restitution", words, "leave it out, or give a larger friction"
+    if totals[S.STATUS] == S.NO_MODE and contact.mu > bound:
+        words = f"above {bound:.4g} (Painleve), where a block that slides, as at {when:.6g} s, may have no motion"
+        return "friction", words, f"give {bound:.4g} or less"
+    return None
 
 
 def response(
-    scene: Scene, par: Parameters, ground: Ground, options: Options, known: dict[str, Any]
+    scene: Scene, par: Parameters, contact: S.Contact, ground: Ground, options: Options, known: dict[str, Any]
 ) -> tuple[Response, np.ndarray]:
     """(response without its history, rows of the history: columns of `History` less the last, slip and its rate).
 
     known : fields of `Response` that are known before the run.
+
+    Raises
+    ------
+    SceneError
+        The motion of the block is not determined.
     """
+    compile_march(ground.upright is not None)
     rows = int(math.floor(par.duration / options.output_step * (1 + 1e-14))) + 1 if options.output_step > 0 else 0
     begin = time.process_time()
-    totals, impacts, changes, table = marched(scene, par, ground, options, rows)
+    totals, impacts, changes, table = marched(par, contact, ground, options, rows)
+    if found := problem(par, contact, totals):
+        key, words, remedy = found
+        value = scene.friction if key == "friction" else scene.block.restitution
+        raise SceneError(key, value, words, remedy, scene.name or None)
     fallen = totals[S.END_MODE] == S.FALLEN
     if not fallen and abs(totals[S.END_TILT]) > par.gamma and totals[S.TIME] >= ground.shaking.end:  # while it falls?
         later = par._replace(duration=par.duration + longest_duration(scene))
-        further, *_ = marched(scene, later, ground, options._replace(record=False, output_step=0.0))
+        further, *_ = marched(later, contact, ground, options._replace(record=False, output_step=0.0))
         if further[S.END_MODE] == S.FALLEN:
             totals[S.CERTAIN], fallen = 1.0, True
             totals[S.FALL_TIME], totals[S.OVER_TIME] = further[S.FALL_TIME], further[S.TIME]
@@ -122,7 +141,9 @@ def response(
         outcome = "rocks"
     else:
         outcome = "slides" if totals[S.PATH] > 0 else "stands"
-    found = Response(
+    response = Response(
+        engine="analytic",
+        variant="kernel",
         outcome=outcome,
         overturning_time=float(totals[S.OVER_TIME] or end.time) if fallen else None,
         unstable_time=unstable if unstable >= 0 else None,
@@ -152,7 +173,7 @@ def response(
         ),
         **known,
     )
-    return found, table
+    return response, table
 
 
 _REASONS = {
