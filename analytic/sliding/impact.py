@@ -57,7 +57,10 @@ def within(across, up, mu):
 
 @inner
 def level_impact(par, contact, s, rate, drift, climb):
-    """Impact of a block that comes down from side s: (kind, rate, drift, climb, P, number of admissible kinds)."""
+    """Impact of a block that comes down from side s: (kind, rate, drift, climb, P, number of admissible kinds).
+
+    A given restitution knows one kind, the new corner that sticks; kind is -1 where that is not admissible.
+    """
     b, h, mu = par.R * math.sin(par.gamma), par.R * math.cos(par.gamma), contact.mu
     r, found, count = -s, (-1, rate, drift, climb, 0.0), 0
     for sigma in (0.0, 1.0, -1.0):
@@ -66,11 +69,13 @@ def level_impact(par, contact, s, rate, drift, climb):
         if sigma == 0:
             good = good and within(push, normal, mu)
         else:
-            good = good and sigma * (across - h * after) > EDGE * (abs(drift) + h * abs(rate))
+            good = not contact.given and good and sigma * (across - h * after) > EDGE * (abs(drift) + h * abs(rate))
         if good:
             count += 1
             if count == 1:
                 found = NEW_STICKS if sigma == 0 else NEW_SLIPS, after, across, up, push
+    if contact.given:
+        return found[0], found[1], found[2], found[3], found[4], 1
     for sigma in (0.0, 1.0, -1.0):
         across, push, normal = both_corners(par, contact, h, sigma, drift, climb)
         tilting = abs(contact.centre * rate - h * push) / b  # (I1): difference of the impulses of the corners

@@ -56,6 +56,8 @@ def usable_step(par, block, order, h, tolerance, P):
         h = allowed_step(P[L.W], order, tolerance, min(h, FARTHEST / math.sqrt(par.p2)))
     if block.sigma != 0 or block.mode == FLIGHT:
         h = allowed_step(P[S.DRIFT], order, tolerance, h)
+    if block.mode == FLIGHT:  # the tilt rate is constant, its sine is not
+        h = allowed_step(P[L.S], order, tolerance, allowed_step(P[L.C], order, tolerance, h))
     if par.on_base:
         h = allowed_step(P[L.F], order, tolerance, allowed_step(P[L.V], order, tolerance, h))
     return h
@@ -229,7 +231,7 @@ def march(par, resting, contact, ground, upright, options, into):
                 block, count = after_event(par, contact, block, found, side, start)
                 if found == CONE or found == L.UPLIFT or found == LOSS:
                     fresh = none + (LOSS if block.mode == FLIGHT else found)
-            if count != 1:
+            if status == L.COMPLETE and count != 1:
                 status = S.NO_MODE
             if not (math.isfinite(block.tilt) and math.isfinite(base.x) and math.isfinite(block.slip)):
                 status = L.NOT_FINITE

@@ -92,7 +92,7 @@ def problem(par: Parameters, contact: S.Contact, totals: np.ndarray) -> tuple[st
     if totals[S.STATUS] == S.GIVEN_LEAVES:
         words = f"needs, at {when:.6g} s, more than the friction {contact.mu:.4g}, or a block that does not slide there"
         return "block.restitution", words, "leave it out, or give a larger friction"
-    if totals[S.STATUS] == S.NO_MODE and contact.mu > bound:
+    if totals[S.STATUS] in (S.NO_MODE, L.STUCK) and contact.mu > bound:
         words = f"above {bound:.4g} (Painleve), where a block that slides, as at {when:.6g} s, may have no motion"
         return "friction", words, f"give {bound:.4g} or less"
     return None

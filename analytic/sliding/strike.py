@@ -26,7 +26,7 @@ def struck(par, contact, block, base, found, rest_rate, at, t, into):
             s = -s
         if contact.given and (kind != S.NEW_STICKS or block.sigma != 0):
             status = S.GIVEN_LEAVES
-        s, slips = 0.0 if kind >= S.BOTH_STICK else -s, kind == S.NEW_SLIPS or kind == S.BOTH_SLIP
+        s, slips = 0.0 if after == 0 else -s, kind == S.NEW_SLIPS or kind == S.BOTH_SLIP
         c = par.R * math.cos(par.gamma)
     else:
         kind, (after, across, up, push), slips = S.LANDS, landed(par, contact, c, n, rate, drift, climb), False
@@ -41,7 +41,7 @@ def struck(par, contact, block, base, found, rest_rate, at, t, into):
     force = at.force + par.count * par.damping * jump
     lifted = Block(STICK, s, 0.0, block.tilt, after, block.slip, speed, 0.0, 0.0)
     end, left, doubt = settled(par, contact, lifted, rest_rate, Start(at.gravity, at.ground, force))
-    if count != 1 or doubt != 1:
+    if status == L.COMPLETE and (count != 1 or doubt != 1):
         status = S.NO_MODE
     if s != 0 and end.s == 0 and end.mode != FLIGHT:  # without the swings that were left out
         across, up, after = end.speed, 0.0, 0.0

@@ -13,6 +13,8 @@ from .layout import CONE, FLIGHT, LANDING, LEVEL, LOSS, ROCK, SLIDE, SLIDE_ROCK,
 
 # Share of the friction, or of the threshold of uplift, by which a jump of the ground exceeds it if it is no rounding.
 ONSET = 1e-9
+# A graze is located to the root of the rounding; a limit that falls by more of its size in a step is exceeded.
+GRAZE = 1e-6
 
 
 @inner
@@ -23,8 +25,8 @@ def crossing(limit, side, refused, order, h, P, work):
         event[k] = limit * normal[k] + side * across[k]
     if refused and abs(event[0]) <= TOUCH * limit * abs(normal[0]):
         event[0] = 0.0
-        if event[1] < 0:
-            return -1.0
+        if event[1] < 0:  # a graze turns back; if not, no mode is admissible (`bounds.paradoxical_friction`)
+            return 0.0 if event[1] * h < -GRAZE * limit * abs(normal[0]) else -1.0
     return first_root(event, order, h, work)
 
 
