@@ -13,7 +13,7 @@ import numpy as np
 from . import kernel, layout
 from .budget import STEPS, most_steps
 from .compiled import compiling
-from .decision import CAP_PERIODS, longest_duration
+from .decision import CAP_PERIODS, longest_duration, shortest_duration
 from .kernel import OWN, ROW, SIZE, row_of
 from .laws import Constants
 from .layout import Parameters, Shaking
@@ -112,7 +112,6 @@ def run_rows(
         from .sliding import run as sliding
 
         sliding.compile_march(shaking.upright is not None)
-        chosen = chosen._replace(record=True)  # the friction demand decides whether it slides
     with compiling():
         run(slice(0, 1))  # compiled or loaded before threads start
     size = max(1, -(-n // (workers * CHUNKS_PER_WORKER)))
@@ -126,8 +125,16 @@ def run_rows(
     return totals
 
 
-def _outcome_options(tolerance: float, rest_rate: float, steps: int, contact: bool = False) -> Options:
-    return options(tolerance, rest_rate=rest_rate, record=contact, decide=True, capacity=0, steps=steps)
+def _outcome_options(
+    tolerance: float, rest_rate: float, steps: int, contact: bool = False, rubbing: Sequence[Scene] = ()
+) -> Options:
+    """rubbing : scenes with a friction; they are followed as a single run is, as their demand decides whether they
+    slide."""
+    shortest = max(map(shortest_duration, rubbing), default=0.0)
+    record = contact or bool(rubbing)
+    return options(
+        tolerance, rest_rate=rest_rate, record=record, decide=True, capacity=0, steps=steps, shortest=shortest
+    )
 
 
 def simulate_many(
@@ -159,7 +166,8 @@ def simulate_many(
     scenes = list(scenes)
     factors = np.ones(len(scenes)) if scales is None else np.asarray(scales, dtype=float)
     steps = max((most_steps(scene) for scene in scenes), default=0)
-    chosen = _outcome_options(tolerance, rest_rate, steps, contact)
+    rubbing = [scene for scene in scenes if scene.friction is not None]
+    chosen = _outcome_options(tolerance, rest_rate, steps, contact, rubbing)
     groups: dict[str | tuple[int, bool], list[int]] = {}
     for index, scene in enumerate(scenes):
         motion = scene.motion
@@ -219,7 +227,11 @@ def overturning_map(
     rows = np.full(len(pulses), np.array(row_of(parameters(scene)), dtype=ROW))
     if scene.duration is None:
         rows["duration"] = pulses[:, Shaking._fields.index("end")] + longest_duration(scene.with_(motion=None))
-    chosen, contacts = _outcome_options(tolerance, REST_RATE, STEPS), [contact_of(scene)] * len(rows)
+    contacts, rubbing = [contact_of(scene)] * len(rows), []
+    if scene.friction is not None:
+        slowest = PulseMotion(shape, 1.0, float(frequencies.min()))
+        rubbing = [scene.with_(motion=slowest)]
+    chosen = _outcome_options(tolerance, REST_RATE, STEPS, rubbing=rubbing)
     totals = run_rows(rows, pulses, pulse(frequencies[0]), chosen, workers, contacts)
     return Outcomes.of(totals, (len(amplitudes), len(frequencies)))
 

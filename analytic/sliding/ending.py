@@ -15,7 +15,7 @@ def at_rest(resting, block, base, totals):
     """After the motion: whether the block lies still for good, and no peak of the base can grow."""
     level, acceleration = L.Body(0.0, 0.0, 0.0), totals[S.PEAK_ACCELERATION]
     peaks = totals[S.PEAK_TILT], totals[S.PEAK_X], acceleration if acceleration > 0 else -1.0
-    return block.mode == STICK and peaks_are_final(resting, level, base, peaks)
+    return block.mode == STICK and block.s == 0 and peaks_are_final(resting, level, base, peaks)
 
 
 @inner

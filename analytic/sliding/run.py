@@ -207,8 +207,10 @@ def _energy(scene: Scene, par: Parameters, totals: np.ndarray, end: State) -> En
 
     now, then = (end.base_velocity, start.base_velocity) if scene.base else (0.0, 0.0)
     return Energy(
-        kinetic=kinetic(end.tilt, end.tilt_rate, now, totals[S.END_SPEED], totals[S.END_RISE])
-        - kinetic(start.tilt, start.tilt_rate, then, 0.0, 0.0),
+        kinetic=float(
+            kinetic(end.tilt, end.tilt_rate, now, totals[S.END_SPEED], totals[S.END_RISE])
+            - kinetic(start.tilt, start.tilt_rate, then, 0.0, 0.0)
+        ),
         potential=float(
             potential(end.tilt, end.base_displacement, totals[S.END_GAP])
             - potential(start.tilt, start.base_displacement, 0.0)

@@ -1,0 +1,156 @@
+"""Answers of a scene with friction, and where the march is asked at all."""
+
+import math
+
+import numpy as np
+import pytest
+from sliding_scenes import scene_of
+
+import analytic.sliding.run as sliding
+from analytic import PulseMotion, SceneError, load_scene, overturning_map, simulate, simulate_many
+from analytic.response import Response
+from analytic.sliding.bounds import contact_of, slipping_friction
+from analytic.sliding.moreau import simulate_moreau
+from analytic.solver import parameters
+from analytic.synthetic import synthetic_motion
+
+DUZCE = synthetic_motion("duzce-like", 620)
+RELEASED = {"tilt": 0.168}
+
+
+def pulse(shape, amplitude, frequency):
+    return PulseMotion(shape, amplitude, frequency)
+
+
+# scene, outcome, time of overturning, peak tilt, largest slip, slip at the end; to 1e-8: two methods that share no code
+# agree to what each can do (event-driven RK8 to 1e-10, Moreau's time stepping to 1e-4..1e-9)
+CASES = {
+    "slides, rectangular": (
+        scene_of(0.2, 0.4, motion=pulse("rectangular", 4.0, 2 * math.pi), duration=2.0),
+        "slides", None, 0.0, None, None,
+    ),
+    "lifts and slides from rest": (
+        scene_of(0.3, motion=pulse("rectangular", 8.0, 26.179938779914945), duration=6.0),
+        "overturns", 2.359512875, math.pi / 2, 0.040808741, -0.040808741,
+    ),
+    "overturns with slip": (
+        scene_of(0.3, motion=pulse("one-sine", 6.0, 6.0), duration=5.0),
+        "overturns", 1.903758585, math.pi / 2, 0.042705879, 0.008032760,
+    ),
+    "isolated, overturns with slip": (
+        scene_of(0.25, base=212.0, motion=pulse("one-sine", 6.0, 4.0), duration=3.0),
+        "overturns", 1.423906000, math.pi / 2, 0.413549916, 0.179554402,
+    ),
+    "heavy base, after an impact": (
+        scene_of(0.21, base=3000.0, motion=pulse("one-sine", 5.0, 5.0), duration=5.0),
+        "overturns", 2.516190967, math.pi / 2, 0.131944450, 0.070870001,
+    ),
+    "record, slides": (
+        scene_of(0.2, 0.28, motion=DUZCE, duration=30.0), "slides", None, 0.0, 0.137434513, -0.016019202,
+    ),
+    "record, overturns": (
+        scene_of(0.3, 0.28, motion=DUZCE, duration=30.0),
+        "overturns", 6.569824533, math.pi / 2, 0.047588270, -0.021357512,
+    ),
+    "isolated, slipping impacts": (
+        scene_of(0.1, 0.28, base=212.0, start=RELEASED, duration=3.0),
+        "rocks", None, 0.168, 0.082855869, 0.058374054,
+    ),
+    "saved by sliding": (
+        scene_of(0.4, 0.348, 1.86, motion=pulse("half-sine", 9.38, 6.34), duration=6.0),
+        "rocks", None, 0.256686363, 0.192112106, -0.192112106,
+    ),
+    "overturned by sliding": (
+        scene_of(0.5, 0.449, 1.044, motion=pulse("one-sine", 17.39, 10.13), duration=4.0),
+        "overturns", 2.250170330, math.pi / 2, 0.405575703, -0.373159666,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_cases(name):
+    scene, outcome, over, tilt, largest, end = CASES[name]
+    found = simulate(scene, history=False)
+    assert found.outcome == outcome and found.failure is None
+    assert found.overturning_time == (over and pytest.approx(over, abs=1e-8))
+    assert found.peak_tilt == pytest.approx(tilt, abs=1e-8)
+    # slipping impacts accumulate there, and the slip is sure to 1e-5 m
+    close = 1e-5 if "impacts" in name else 1e-8
+    if largest is not None:
+        assert found.sliding.peak == pytest.approx(largest, abs=close)
+        assert found.sliding.end == pytest.approx(end, abs=close)
+    assert found.sliding.modes[0][0] == 0 and Response.from_json(found.to_json()).sliding == found.sliding
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_mirrored_case_is_the_mirror_image(name):
+    scene, motion = CASES[name][0], CASES[name][0].motion
+    mirrored = scene.with_(motion=motion and motion.scaled(-1.0), start={"tilt": -scene.start.tilt})
+    one, other = simulate(scene, history=False), simulate(mirrored, history=False)
+    assert (other.outcome, other.overturning_time) == (one.outcome, one.overturning_time)
+    assert (other.sliding.end, other.sliding.modes) == (-one.sliding.end, one.sliding.modes)
+
+
+@pytest.mark.parametrize("name", ["caryatid-isolated", "caryatid-rigid", "free-rocking-rigid"])
+def test_without_the_key_nothing_is_marched(name, monkeypatch):
+    monkeypatch.setattr(sliding, "marched", None)  # a call would fail
+    simulate(load_scene(name), history=False)
+    assert simulate_many([load_scene(name)]).peak_slip.max() == 0
+
+
+def test_a_friction_that_is_not_exceeded_leaves_the_kernels_answer(monkeypatch):
+    monkeypatch.setattr(sliding, "marched", None)
+    scene = load_scene("free-rocking-rigid")
+    with_friction = simulate(scene.with_(friction=0.6))
+    assert with_friction.sliding is None and with_friction.warnings == ()
+    assert with_friction.impacts == simulate(scene).impacts
+
+
+def test_a_fall_slides_at_any_friction():
+    scene = scene_of(0.6, radius=1.0, motion=pulse("one-sine", 4.0, 5.0), duration=5.0)
+    plain, slid = simulate(scene.with_(friction=None)), simulate(scene)
+    assert slid.fall_time == pytest.approx(plain.fall_time, abs=1e-9)
+    assert plain.overturning_time == pytest.approx(2.63284, abs=1e-4)
+    stepped = simulate_moreau(scene.with_(duration=3.0), step=1.07e-6)
+    assert slid.overturning_time == pytest.approx(stepped.overturning_time, abs=1e-5)
+    assert slid.overturning_time == pytest.approx(2.63644, abs=1e-5)  # engines with a friction of their own: 2.6365
+    assert slid.sliding.modes[-1][1] == "slide-rock" and slid.sliding.modes[-1][0] > slid.fall_time
+
+
+def test_a_release_below_the_slipping_friction_is_refused():
+    scene = scene_of(0.15, 0.28, start=RELEASED, duration=2.0)
+    limit = slipping_friction(parameters(scene), contact_of(scene))
+    with pytest.raises(SceneError, match=rf"friction = 0.15: below {limit:.4g}, .*; give {limit:.4g} or more"):
+        simulate(scene)
+    assert simulate_many([scene]).failed.all()
+    assert simulate(scene.with_(friction=1.01 * limit), history=False).outcome == "rocks"
+
+
+def test_a_friction_above_painleves_bound_is_refused_only_where_it_is_used():
+    thin = scene_of(1.5, 0.78, motion=pulse("one-sine", 60.0, 13.0), duration=2.0)
+    thin = thin.with_(block={"corner_inertia": 1.02 * thin.block.mass * thin.block.radius**2})
+    with pytest.raises(SceneError, match=r"friction = 1.5: above 0.2857 \(Painleve\)"):
+        simulate(thin)
+    assert simulate(thin.with_(motion=None, start={"tilt": 0.1}, friction=50.0), history=False).outcome == "rocks"
+
+
+def test_a_given_restitution_that_needs_more_friction_is_refused():
+    scene = scene_of(0.5, 0.449, 1.044, motion=pulse("one-sine", 17.39, 10.13), duration=4.0)
+    with pytest.raises(SceneError, match=r"block.restitution = 0.8: needs, at 0.55\d+ s, more than the friction 0.5"):
+        simulate(scene.with_(block={"restitution": 0.8}))
+
+
+def test_many_runs_are_the_single_ones():
+    scenes = [case[0].with_(duration=None) for case in CASES.values()]
+    found = simulate_many(scenes)
+    for i, scene in enumerate(scenes):
+        one = simulate(scene, history=False)
+        assert (found.names[i], found.decided[i]) == (one.outcome, one.decided)
+        assert found.peak_slip[i] == pytest.approx(one.sliding.peak, abs=1e-9)
+    assert (simulate_many(scenes, workers=1).peak_slip == found.peak_slip).all()
+
+
+def test_a_map_slides():
+    scene = scene_of(0.2, 0.4)
+    found = overturning_map(scene, "one-sine", [2.0, 4.0], [0.3, 1.5, 3.0])
+    assert (found.names == np.array([["stands", "stands"], ["slides", "slides"], ["slides", "slides"]])).all()

@@ -1,0 +1,36 @@
+"""Scenes of blocks that may slide."""
+
+import math
+
+from bearing_laws import NAMES, bearings_of
+
+from analytic import Base, Block, PulseMotion, Scene, load_scene
+
+CARYATID = load_scene("caryatid-isolated")
+GRAVITY = 9.81
+
+
+def scene_of(friction, slenderness=0.2, radius=1.0884, base=None, **parts):
+    """The Caryatid's mass on rigid ground, or on its bearings and a base of the given mass."""
+    block = Block(mass=3172.05, radius=radius, slenderness=slenderness)
+    bearings = CARYATID.bearings if base else None
+    return Scene(block=block, base=base and Base(mass=base), bearings=bearings, friction=friction, **parts)
+
+
+def random_slider(rng, number):
+    """A statue at rest under a pulse above uplift, with friction; every second one on bearings, some with a_v."""
+    radius, slenderness = float(10 ** rng.uniform(-0.5, 0.7)), float(rng.uniform(0.12, 0.45))
+    omega = math.sqrt(0.75 * GRAVITY / radius)
+    shape = ("one-sine", "one-cosine", "half-sine", "rectangular", "ricker")[number % 5]
+    a, w = GRAVITY * math.tan(slenderness) * rng.uniform(1.02, 4.0), omega * rng.uniform(1.5, 6.0)
+    up = PulseMotion(shape, float(a * rng.choice([0.5, -1.0, 3.0])), float(w)) if number % 3 == 0 else None
+    motion = PulseMotion(shape, float(a), float(w), vertical=up)
+    duration = motion.end + 6 / omega
+    scene = scene_of(float(rng.uniform(0.05, 1.0)), slenderness, radius, motion=motion, duration=duration)
+    if number % 2:
+        return scene
+    mass = float(scene.block.mass * rng.uniform(0.1, 2.0))
+    stiff = (scene.block.mass + mass) * (2 * math.pi / rng.uniform(1, 3)) ** 2 / 4
+    keys = {"ka": 10 * stiff, "kb": stiff, "count": 4, "damping": float(rng.choice([0.0, 100.0]))}
+    name = NAMES[number // 2 % len(NAMES)]
+    return scene.with_(base=Base(mass=mass), bearings=bearings_of(name, **keys))
