@@ -21,8 +21,8 @@ from analytic.bearing import BearingLaw
 from analytic.decision import motion_end, shortest_duration
 from analytic.errors import SceneError, SettingError, cut
 from analytic.motion import SampledMotion
-from analytic.rocking import momentum_restitution
 
+from .couple import holding, share_of
 from .scale import UNIT_RADIUS
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ def write_script(engine: Engine, scene: Scene, name: str | None = None) -> dict[
 
 def _check(scene: Scene) -> None:
     """Raise `SceneError` where a scene has what no script has."""
-    bearings, motion, given = scene.bearings, scene.motion, scene.block.restitution
+    bearings, motion = scene.bearings, scene.motion
     if bearings is not None and bearings.law not in LAWS:
         raise SceneError(
             "bearings.law", bearings.law, "is not written out in scripts", f"choose one of {', '.join(LAWS)}"
@@ -88,14 +88,7 @@ def _check(scene: Scene) -> None:
         raise SceneError(
             "motion.pulse", motion.shape, "is not written out in scripts", f"choose one of {', '.join(PULSES)}"
         )
-    natural = momentum_restitution(scene)
-    if given is not None and not given <= natural:
-        raise SceneError(
-            "block.restitution",
-            given,
-            f"above {natural:.6g} of eq. (7): no couple before the landing can give it without lifting the block",
-            "give less, or leave it out",
-        )
+    share_of(scene)
 
 
 def _context(engine: Engine, scene: Scene, name: str, record: str | None) -> dict[str, Any]:
@@ -105,7 +98,7 @@ def _context(engine: Engine, scene: Scene, name: str, record: str | None) -> dic
         "engine": engine.name,
         "scene": scene,
         "title": f"{cut(scene.name or 'A scene', 30).translate(UNSAFE)}: a rocking block {_support(scene)}",
-        "friction": scene.friction,
+        "friction": scene.friction and holding(scene).friction,
         "name": name,
         "record": record and json.dumps(record, ensure_ascii=False),  # a string in quotes
         "pulse": scene.motion if scene.motion and not record else None,

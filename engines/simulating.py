@@ -18,6 +18,7 @@ from analytic.solver import compile_kernels
 from .comparison import Reference
 from .comparison import compare as compared
 from .contract import Engine, Run
+from .couple import holding
 from .settings import choose, refuse_restitution
 from .statue_range import outside
 from .swings import find_swings
@@ -50,7 +51,7 @@ class Simulator(Engine):
         """
         adapter = self.load()
         try:
-            ran = adapter.run(scene, variant, settings)
+            ran = adapter.run(holding(scene), variant, settings)
             if not isinstance(ran, Run):
                 raise TypeError(f"{self.adapter}.run returned a {type(ran).__name__}, no engines.contract.Run")
         except Exception as error:
@@ -88,7 +89,7 @@ class Simulator(Engine):
         """
         model = self._model(scene)
         response, _ = self._traced(scene, variant, history, settings, model)
-        response = replace(response, warnings=(*response.warnings, *outside(scene, response)))
+        response = replace(response, warnings=(*response.warnings, *outside(scene, response), *_given(scene)))
         if response.failure or not compare:
             return response
         return compared(scene, response, Reference.of(scene, model))
@@ -115,8 +116,8 @@ class Simulator(Engine):
         name, chosen = choose(self, variant, settings)
         if not self.variants[name].takes_restitution:
             refuse_restitution(self, scene)
-        if scene.friction is not None and hasattr(chosen, "friction"):
-            chosen = replace(chosen, friction=scene.friction)
+        if (friction := holding(scene).friction) is not None and hasattr(chosen, "friction"):
+            chosen = replace(chosen, friction=friction)
         if model is None:
             return self._once(scene, name, chosen, history)
         traces: list[Trace | None] = []
@@ -164,6 +165,16 @@ class Simulator(Engine):
             return None
         longer = scene.with_(duration=scene.end + after)
         return self.run(longer, name, chosen)
+
+
+def _given(scene: Scene) -> tuple[Caution, ...]:
+    """That a scene gives the restitution: no run of it rates an engine."""
+    if (e := scene.block.restitution) is None:
+        return ()
+    words = f"restitution given, {e:.4g}: it is the scene's, and says nothing of the engine's own impact"
+    if (friction := holding(scene).friction) != scene.friction:
+        words += f"; the contact's friction is {friction:.3g}, as with less a couple before the landing slips"
+    return (Caution("engine", words, "restitution", e),)
 
 
 def _place(error: Exception, adapter: ModuleType) -> str:
