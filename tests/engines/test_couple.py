@@ -74,14 +74,14 @@ def test_impacts_have_the_given_restitution(engine, ground, kept):
 @pytest.mark.parametrize("ground, slenderness", sorted(GRID))
 @pytest.mark.parametrize("kept", SHARES)
 def test_impacts_have_the_given_restitution_everywhere(engine, ground, slenderness, kept):
-    check_impacts(engine, released(ground, slenderness, kept), EVERYWHERE[engine])
+    check_impacts(engine, released(ground, slenderness, kept), EVERYWHERE[engine], jump=2e-3, least=2)
 
 
 @every_engine
 def test_the_pivot_holds_whatever_friction_the_scene_gives(engine):
     """With friction .6 itself the couple would make it slip: e was off by up to .3."""
     scene = released("rigid", 0.2, 0.8)
-    check_impacts(engine, scene.with_(friction=0.6), BOUNDS[engine])
+    check_impacts(engine, scene.with_(friction=0.6), BOUNDS[engine], least=7)
     assert holding(scene) is scene and holding(scene.with_(friction=6.0)).friction == 6.0
     assert holding(scene.with_(friction=0.6)).friction == pytest.approx(1 / math.tan(0.2))
     assert holding(scene.with_(friction=0.6, block={"restitution": None})).friction == 0.6
@@ -89,20 +89,21 @@ def test_the_pivot_holds_whatever_friction_the_scene_gives(engine):
     assert holding(heavy) is heavy  # the base follows
 
 
-def check_impacts(engine, scene, bound):
+def check_impacts(engine, scene, bound, jump=1e-3, least=8):
+    """jump: bound of the rms error of the base velocity's jump, over the largest; least: so many impacts are more."""
     pytest.importorskip(engine)
     ground = "isolated" if scene.base else "rigid"
     found, model = get_engine(engine).simulate(scene), RockingModel.of(scene)
     before = np.array([impact.rate_before for impact in found.impacts])
     after = np.array([impact.rate_after for impact in found.impacts])
     fast = np.abs(before) > 0.06 * np.abs(before).max()
-    assert fast.sum() > (8 if scene.block.slenderness == 0.2 and scene.friction is None else 2)
+    assert fast.sum() > least
     error = (after / before)[fast] / scene.block.restitution - 1
     assert np.sqrt((error**2).mean()) < bound
     if ground == "isolated":  # (8): the base takes the momentum, of the couple, too
         jumps = np.array([impact.base_velocity_jump for impact in found.impacts])[fast]
         wanted = (model.jump_arm * (before - after))[fast]
-        assert np.sqrt(((jumps - wanted) ** 2).mean()) < 1e-3 * np.abs(wanted).max()
+        assert np.sqrt(((jumps - wanted) ** 2).mean()) < jump * np.abs(wanted).max()
     assert found.outcome == simulate(scene).outcome == "rocks"
     (said,) = [one for one in found.warnings if one.quantity == "restitution"]
     assert str(said).startswith(f"restitution given, {scene.block.restitution:.4g}")

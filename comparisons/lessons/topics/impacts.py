@@ -159,7 +159,8 @@ LESSON = Lesson(
             f"A test of your statue gave {MEASURED:g}. In a file `measured.toml`, put `mass = 3172.05`, "
             f"`radius = 1.0884`, `slenderness = 0.28` and `restitution = {MEASURED:g}` under `[block]`, and "
             "`tilt = 0.168` under `[start]`. `rocking script pybullet measured.toml` then has what a contact lacks: "
-            "find the couple that acts before each landing. Predict after how many impacts the peaks stay below $0.1\\,\\gamma$, then run the script.",
+            "find the couple that acts before each landing. Predict after how many impacts the peaks stay below "
+            "$0.1\\,\\gamma$, then run the script.",
             swings_of_the_measured,
             "impacts",
             "The couple takes the same share of the rate at every impact: as above, with 0.8 for $e_{\\phi}$.",
