@@ -38,8 +38,8 @@ COMMANDS = {
 }
 # Those that take seconds: with the slow tests on all scenes, here on these.
 DEAR = {
-    "margin": ("rigid, record", "by constants, tilted", "shipped caryatid-isolated"),
-    "choose": ("rigid, record", "by design, synthetic", "by constants, tilted", "shipped caryatid-rigid"),
+    "margin": ("rigid, record", "by constants, tilted"),
+    "choose": ("by design, synthetic", "by constants, tilted"),
     "choose an engine": ("by constants, tilted",),
     "report": ("by design, record",),
 }
@@ -112,8 +112,8 @@ BEARINGS = "[base]\nmass = 50.0\n[bearings]\nlaw = 'linear'\nka = 2000.0\n"  # (
     [
         ("compare", "", 0.9),
         ("compare", BEARINGS, 0.75),
-        ("report", "", 0.9),
         ("choose", "", 0.9),
+        pytest.param("report", "", 0.9, marks=pytest.mark.slow),
         pytest.param("report", BEARINGS, 0.75, marks=pytest.mark.slow),
         pytest.param("choose", BEARINGS, 0.75, marks=pytest.mark.slow),
     ],
