@@ -98,7 +98,7 @@ def _context(engine: Engine, scene: Scene, name: str, record: str | None) -> dic
         "engine": engine.name,
         "scene": scene,
         "title": f"{cut(scene.name or 'A scene', 30).translate(UNSAFE)}: a rocking block {_support(scene)}",
-        "friction": scene.friction and holding(scene).friction,
+        "friction": scene.friction if holding(scene) is scene else None,  # as the script's own holds
         "name": name,
         "record": record and json.dumps(record, ensure_ascii=False),  # a string in quotes
         "pulse": scene.motion if scene.motion and not record else None,

@@ -85,8 +85,10 @@ def test_the_pivot_holds_whatever_friction_the_scene_gives(engine):
     assert holding(scene) is scene and holding(scene.with_(friction=6.0)).friction == 6.0
     assert holding(scene.with_(friction=0.6)).friction == pytest.approx(1 / math.tan(0.2))
     assert holding(scene.with_(friction=0.6, block={"restitution": None})).friction == 0.6
-    heavy = released("isolated", 0.2, 0.8).with_(friction=0.6)
-    assert holding(heavy) is heavy  # the base follows
+    isolated = released("isolated", 0.2, 0.8).with_(friction=0.6)
+    assert holding(isolated) is isolated  # the base follows
+    found = get_engine(engine).simulate(scene.with_(friction=0.6, duration=0.1))
+    assert "the contact's friction is 4.93" in found.warnings[-1].text
 
 
 def check_impacts(engine, scene, bound, jump=1e-3, least=8):
