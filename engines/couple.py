@@ -24,7 +24,44 @@ from analytic.rocking import RockingModel, momentum_restitution
 if TYPE_CHECKING:
     from analytic import Scene
 
-LEAST = 0.1  # of the restitution of (7): a block that is slowed further hardly reaches the ground
+# Of the restitution of (7). A block that is slowed further hardly reaches the ground; one that is sped up is lifted
+# where (f - 1) b |phi'| exceeds g `acts`: at f = 1.02 e is off by up to .06, at 1.05 by up to .4.
+LEAST, MOST = 0.1, 1.0
+FRICTION = 5.0  # coefficient in every tuned variant where the scene gives none, at least: no sliding
+
+
+def share_of(scene: Scene) -> float | None:
+    """f of a scene that gives the restitution, else None.
+
+    Raises
+    ------
+    SceneError
+        It is not within `LEAST` and `MOST`.
+    """
+    given, own = scene.block.restitution, momentum_restitution(scene)
+    if given is None:
+        return None
+    if not (own > 0 and LEAST * own <= given <= MOST * own):
+        raise SceneError(
+            "block.restitution",
+            given,
+            f"{'above' if given > MOST * own else 'below'} what a couple before each landing reaches, {LEAST:g} to "
+            f"{MOST:g} times the {own:.6g} of eq. (7)",
+            "give one between, leave it out, or use the analytic model",
+        )
+    return given / own
+
+
+def holding(scene: Scene) -> Scene:
+    """The scene; where it gives the restitution, with as much friction as the strongest couple asks of the pivot.
+
+    That is (1 - mt) h/b, mt the block's share of the moving mass, 0 on the ground. With less the pivot slips: on the
+    ground with friction .6, e is up to .3 off.
+    """
+    if scene.block.restitution is None:
+        return scene
+    asked = (1 - scene.mass_share) / math.tan(scene.block.slenderness)
+    return scene if asked <= (scene.friction or FRICTION) else scene.with_(friction=asked)
 
 
 @dataclass
@@ -48,21 +85,14 @@ class Couple:
         Raises
         ------
         SceneError
-            The restitution is below `LEAST` times that of (7).
+            As `share_of`.
         """
-        given, own = scene.block.restitution, momentum_restitution(scene)
-        if given is None:
+        share = share_of(scene)
+        if share is None:
             return None
-        if not given >= LEAST * own > 0:
-            raise SceneError(
-                "block.restitution",
-                given,
-                f"a contact engine reaches it from {LEAST:g} times that of (7), {own:.4g}",
-                "give a larger one, or use the analytic model",
-            )
         model = RockingModel.of(scene)
         coupled = (model.m * model.R * math.cos(model.gamma)) ** 2 / model.M if model.on_base else 0.0
-        return cls(given / own, model.J - coupled, acts)
+        return cls(share, model.J - coupled, acts)
 
     @property
     def longer(self) -> float:

@@ -22,8 +22,8 @@ from analytic.bearing import BearingLaw
 from analytic.decision import motion_end, shortest_duration
 from analytic.errors import SceneError, SettingError
 from analytic.motion import SampledMotion
-from analytic.rocking import momentum_restitution
 
+from .couple import holding, share_of
 from .scale import UNIT_RADIUS
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def write_script(engine: Engine, scene: Scene, name: str | None = None) -> dict[
 
 def _check(scene: Scene) -> None:
     """Raise `SceneError` where a scene has what no script has."""
-    bearings, motion, given = scene.bearings, scene.motion, scene.block.restitution
+    bearings, motion = scene.bearings, scene.motion
     if bearings is not None and bearings.law not in LAWS:
         raise SceneError(
             "bearings.law", bearings.law, "is not written out in scripts", f"choose one of {', '.join(LAWS)}"
@@ -89,14 +89,7 @@ def _check(scene: Scene) -> None:
         raise SceneError(
             "motion.pulse", motion.shape, "is not written out in scripts", f"choose one of {', '.join(PULSES)}"
         )
-    natural = momentum_restitution(scene)
-    if given is not None and not 0 < given <= natural:
-        raise SceneError(
-            "block.restitution",
-            given,
-            f"not above 0 and up to {natural:.6g} of eq. (7): no couple before the landing gives more without a lift",
-            "give one between, or leave it out",
-        )
+    share_of(scene)
 
 
 def _context(engine: Engine, scene: Scene, name: str, record: str | None) -> dict[str, Any]:
@@ -106,7 +99,7 @@ def _context(engine: Engine, scene: Scene, name: str, record: str | None) -> dic
         "engine": engine.name,
         "scene": scene,
         "title": f"{shorten(scene.name or 'A scene', 60)}: a rocking block {_support(scene)}".translate(UNSAFE),
-        "friction": scene.friction,
+        "friction": scene.friction if holding(scene) is scene else None,  # as the script's own holds
         "name": name,
         "record": record and json.dumps(record, ensure_ascii=False),  # a string in quotes
         "pulse": scene.motion if scene.motion and not record else None,
@@ -117,7 +110,7 @@ def _context(engine: Engine, scene: Scene, name: str, record: str | None) -> dic
         "f0": BearingLaw.of(scene.bearings).constants.f0,
         "memory": scene.bearings is not None and BearingLaw.of(scene.bearings).unit.memory,
         "inertia": None if block.corner_inertia is None else block.corner_inertia / (block.mass * block.radius**2),
-        "given": block.restitution is not None and block.restitution < momentum_restitution(scene),
+        "given": (share_of(scene) or 1.0) < 1.0,
         "start": start,
         "moved": bool(start.tilt or start.tilt_rate),
         "base_moved": bool(start.base_displacement or start.base_velocity),

@@ -18,6 +18,7 @@ from analytic.solver import compile_kernels
 from .comparison import Reference
 from .comparison import compare as compared
 from .contract import Engine, Run
+from .couple import holding
 from .settings import choose, refuse_restitution
 from .statue_range import outside
 from .swings import find_swings
@@ -50,7 +51,7 @@ class Simulator(Engine):
         """
         adapter = self.load()
         try:
-            ran = adapter.run(scene, variant, settings)
+            ran = adapter.run(self._held(scene, variant), variant, settings)
             if not isinstance(ran, Run):
                 raise TypeError(f"{self.adapter}.run returned a {type(ran).__name__}, no engines.contract.Run")
         except Exception as error:
@@ -88,7 +89,9 @@ class Simulator(Engine):
         """
         model = self._model(scene)
         response, _ = self._traced(scene, variant, history, settings, model)
-        response = replace(response, warnings=(*response.warnings, *outside(scene, response)))
+        response = replace(
+            response, warnings=(*response.warnings, *outside(scene, response), *self._given(scene, response))
+        )
         if response.failure or not compare:
             return response
         return compared(scene, response, Reference.of(scene, model))
@@ -115,8 +118,8 @@ class Simulator(Engine):
         name, chosen = choose(self, variant, settings)
         if not self.variants[name].takes_restitution:
             refuse_restitution(self, scene)
-        if scene.friction is not None and hasattr(chosen, "friction"):
-            chosen = replace(chosen, friction=scene.friction)
+        if (friction := self._held(scene, name).friction) is not None and hasattr(chosen, "friction"):
+            chosen = replace(chosen, friction=friction)
         if model is None:
             return self._once(scene, name, chosen, history)
         traces: list[Trace | None] = []
@@ -130,6 +133,19 @@ class Simulator(Engine):
             attempt, scene, at_least=model.end.time, finished=lambda _, response: response.decided
         )
         return response, traces[0]
+
+    def _held(self, scene: Scene, variant: str) -> Scene:
+        """The scene as it is run: by a couple, with the friction that this asks for."""
+        return scene if self.variants[variant].applies_impact else holding(scene)
+
+    def _given(self, scene: Scene, response: Response) -> tuple[Caution, ...]:
+        """That a scene gives the restitution: no run of it rates an engine."""
+        if (e := scene.block.restitution) is None:
+            return ()
+        words = f"restitution given, {e:.4g}: it is the scene's, and says nothing of the engine's own impact"
+        if (friction := self._held(scene, response.variant).friction) != scene.friction:
+            words += f"; the contact's friction is {friction:.3g}, as with less a couple before the landing slips"
+        return (Caution("engine", words, "restitution", e),)
 
     def _once(self, scene: Scene, name: str, chosen: Any, history: bool) -> tuple[Response, Trace | None]:
         from .observe import failed_response, observe  # here, as it loads scipy: .3 s at every start

@@ -131,9 +131,10 @@ def neighbours(scene: Scene, criterion: str) -> dict[float, Scene]:
 
 
 def fitting(scene: Scene) -> str:
-    """The default: restitution if there are impacts, else displacement if there is a base, else outcome."""
+    """The default: restitution if there are impacts, tilt if it is given; else displacement if there is a base, else
+    outcome."""
     if strong_impacts(simulate(scene, history=False)):
-        return "restitution"
+        return "restitution" if scene.block.restitution is None else "tilt"
     return "displacement" if scene.base else "outcome"
 
 
@@ -149,6 +150,8 @@ def until(scene: Scene, criterion: str) -> float:
     if criterion == "displacement" and scene.base is None:
         raise SettingError("--for displacement: the scene has no base; choose restitution, tilt or outcome")
     if criterion == "restitution":
+        if scene.block.restitution is not None:
+            raise SettingError(f"--for restitution: {scene.name} gives it; choose tilt, displacement or outcome")
         strong = strong_impacts(reference)[:IMPACTS]
         if not strong:
             raise SettingError(
@@ -276,7 +279,8 @@ def _space(scene, engines):
     """A free block of six degrees of freedom compared with the planar one, at one step."""
     why = "nothing acts out of the plane"
     able = [] if scene.bearings is not None else [get_engine(name) for name in engines]
-    scene = scene.with_(duration=simulate(scene, history=False).end.time)
+    # a free block takes no restitution
+    scene = scene.with_(duration=simulate(scene, history=False).end.time, block={"restitution": None})
     for engine, variant, kind in [(one, *each) for one in able for each in one.variants.items()]:
         if kind.free_block and kind.step:
             step = kind.default if kind.accuracy_parameter == kind.step else min(kind.levels)

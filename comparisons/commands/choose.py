@@ -58,7 +58,9 @@ def command(
         say(str(caution))
     compile_kernels()
     if criterion is None and engine and (shown := fitting(what)) != "restitution":
-        say(f"the block of {what.name} never has an impact: there is no restitution; the criterion is {shown}")
+        given = what.block.restitution is not None and shown == "tilt"
+        why = "its restitution is given" if given else "it never has an impact: there is no restitution"
+        say(f"the block of {what.name}: {why}; the criterion is {shown}")
     with stdout_to_stderr():  # engines print on import
         choice = choose(
             what,

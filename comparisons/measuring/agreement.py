@@ -52,7 +52,15 @@ class Unmeasurable(RuntimeError):
 
 
 def traced(engine: str, variant: str, scene: Scene, history: bool = True) -> tuple[Response, Trace]:
-    """(the engine's response, its accepted steps as a `Trace`); raises `Unmeasurable` where it failed."""
+    """(the engine's response, its accepted steps as a `Trace`).
+
+    Raises
+    ------
+    Unmeasurable
+        It failed, or the scene gives the restitution.
+    """
+    if scene.block.restitution is not None:
+        raise Unmeasurable("the restitution is given: it says nothing of the engine's own impact")
     response, trace = get_engine(engine).traced(scene, variant=variant, history=history)
     if response.failure is not None:
         raise Unmeasurable(f"{engine}, {variant} failed: {response.failure.reason}. {response.failure.message}")

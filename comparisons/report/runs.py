@@ -87,7 +87,7 @@ def plan(
     samples = max((len(getattr(scene.motion, "samples", ())) for scene in scenes.values()), default=0)
     limit = TIME_LIMIT + LIMIT_PER_SECOND * longest + LIMIT_PER_SAMPLE * samples
     log(f"{', '.join(scenes)} in {', '.join(('the analytic model', *request.engines))}")
-    rows = yield Batch(cases, ToFile(str(Path(histories).resolve())), "scenes", limit)
+    rows = yield Batch(cases, ToFile(str(Path(histories).resolve())), "scenes", limit, rates=False)
     more: dict[str, Any] = {"variants": described_variants(request.engines), "own": own}
     if own:
         more["statues"] = {}

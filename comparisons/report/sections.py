@@ -229,8 +229,8 @@ def _agreement(result, name):
     return (across(f"{scene['name']}: engine minus analytic model", rows, Column("difference", "engine"), *measures),)
 
 
-def restitution_section(result: Result) -> Section:
-    """Restitution of the scenes' block against eq. (7), beside its cost."""
+def restitution_section(result: Result, given: bool = False) -> Section:
+    """Restitution of the scenes' block against eq. (7), beside its cost; given: a scene gives another one."""
     starts = ", ".join(f"{start:g}" for start in result.settings["starts"])
     grounds = " and ".join(
         "on rigid ground" if mass is None else f"on a base of {mass:g} kg that slides without friction"
@@ -243,6 +243,7 @@ def restitution_section(result: Result) -> Section:
             "Restitution is φ̇⁺/φ̇⁻, from the states at the impact, and is compared with eq. (7). Error and CPU time "
             f"are those of the same runs. Trusted: error, root mean square, at most {TRUSTED:g}, no failed run and no "
             f"missed impact; usable: at most {USABLE:g}.",
+            *(["The scene's restitution is given; here it is left out, as it rates no engine."] if given else []),
         ),
         (
             table(

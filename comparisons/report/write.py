@@ -116,7 +116,8 @@ def write_page(
             files=[file for name in read for file in (name, name.replace(".json", ".npz"))],
         )
     )
-    own_runs = [*scene_sections(scenes), *([restitution_section(block)] if block else ())]
+    given = any(scene["block"]["restitution"] is not None for scene in scenes.settings["scenes"].values())
+    own_runs = [*scene_sections(scenes), *([restitution_section(block, given)] if block else ())]
     files: dict[str, str] = {}
     for name, title, sections, origin in (
         ("runs", "The report’s own runs", own_runs, origin_of(scenes)),

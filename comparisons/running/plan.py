@@ -20,11 +20,11 @@ from dataclasses import dataclass, field
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+from .cases import SOLVERS, Case
 from .sweep import Row
 
 if TYPE_CHECKING:
     from ..showing.parts import Judgement, Page
-    from .cases import Case
     from .provenance import Result
 
 TIME_LIMIT = 300.0  # s, of one run
@@ -42,7 +42,13 @@ class Request:
 class Batch:
     """Cases to run, in parallel. measure: module-level, (`Case`, `Response`) -> dict of JSON values.
 
-    alone: timed, so one after the other in one fresh process, with nothing else under way.
+    alone: timed, so one after the other in one fresh process, with nothing else under way. rates: engines are judged
+    by it, by an answer that is their own.
+
+    Raises
+    ------
+    ValueError
+        An engine is to be judged by a scene that gives the restitution.
     """
 
     cases: Sequence[Case]
@@ -50,6 +56,13 @@ class Batch:
     label: str
     time_limit: float = TIME_LIMIT
     alone: bool = False
+    rates: bool = True
+
+    def __post_init__(self) -> None:
+        given = (one for one in self.cases if one.scene.block.restitution is not None and one.solver not in SOLVERS)
+        if self.rates and (one := next(given, None)):
+            words = f"{one.solver} is given block.restitution = {one.scene.block.restitution!r}"
+            raise ValueError(f"{self.label}: {words}, and not judged by it; leave it out, or use rates=False")
 
 
 @dataclass(frozen=True)

@@ -137,9 +137,12 @@ def test_bearing_force_is_the_law_on_the_engines_own_path(engine, variant, law, 
 IMPACTS = {("dart", "impact-aware"): 2e-4}
 
 
+# Between the ends by default only in the table of tolerances, which runs the same scenes.
 @accurate_variant
 @pytest.mark.parametrize("base", [None, 212.0])
-@pytest.mark.parametrize("slenderness", [0.1, 0.2, 0.3, 0.45])
+@pytest.mark.parametrize(
+    "slenderness", [0.1, pytest.param(0.2, marks=pytest.mark.slow), pytest.param(0.3, marks=pytest.mark.slow), 0.45]
+)
 def test_impacts_are_as_momentum_asks(engine, variant, slenderness, base):
     """Of 8 starts, the first 3 impacts each."""
     run = functools.partial(get_engine(engine).simulate, variant=variant)

@@ -84,6 +84,7 @@ OTHERS = {
     "base displaced": block_of(0.2, motion=None, start={"base_displacement": 0.2, "base_velocity": -0.3, "tilt": 0.05}),
     "inertia": released(block_of(0.2).with_(block={"corner_inertia": 1.8 * ISOLATED.block.mass * CARYATID**2})),
     "friction": released(on_ground(block_of(0.2, friction=0.8))),
+    "friction, given": released(on_ground(block_of(0.2, friction=0.6).with_(block={"restitution": 0.8}))),
     "duration": released(on_ground(block_of(0.2, duration=2.0))),
     "phase": upward(pulse(block_of(0.2), phase=0.5, start=0.3), phase=0.3),
     **{f"rigid, {shape}": pulse(on_ground(block_of(0.2)), shape, 1.25, 3.0) for shape in SHAPES},
@@ -245,7 +246,7 @@ def test_a_script_is_written_where_its_engine_is_absent(engine, monkeypatch):
 @every_engine
 def test_what_is_not_to_be_had_is_said(engine):
     scene = released(block_of(0.2))
-    with pytest.raises(SceneError, match=r"block.restitution = 0.9: not above 0 and up to 0.817\d+ of eq. \(7\)"):
+    with pytest.raises(SceneError, match=r"block.restitution = 0.9: above what a couple .* 0.817\d+ of eq. \(7\)"):
         write_script(ENGINES[engine], scene.with_(block={"restitution": 0.9}))
 
 

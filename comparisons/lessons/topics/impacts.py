@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from analytic import Block, Scene, Start, simulate
+from analytic import Block, Scene, Start, load_scene, simulate
 from analytic.caryatid import BASE, MASS, RADIUS, caryatid_block
 from analytic.rocking import RockingModel, momentum_restitution
 
@@ -12,6 +12,7 @@ from ..lesson import MODEL, OTHER, SOFT, Control, Equation, Exercise, Lesson, Vi
 
 START, WINDOW = 0.8, 8.0  # tilt over slenderness, s
 CURVE = np.linspace(0.02, 1.2, 80)
+SCRIPTED, MEASURED = "free-rocking-rigid", 0.8  # the scene whose script is changed, and a restitution
 
 
 def released(slenderness: float) -> Scene:
@@ -52,12 +53,22 @@ def view(slenderness: float) -> View:
     )
 
 
-def swings_to_a_tenth() -> float:
+def swings_to_a_tenth(scene: Scene | None = None) -> float:
     """Impacts until the swings of the Caryatid are below a tenth of its slenderness."""
-    response = simulate(released(0.28))
+    response = simulate(scene or released(0.28))
     times, tilt = response.history.time, np.abs(response.history.tilt)
     last = times[np.flatnonzero(tilt > 0.1 * 0.28)[-1]]
     return float(sum(impact.time < last for impact in response.impacts)) + 1
+
+
+def with_a_material() -> float:
+    """e_phi of `SCRIPTED` with any coefficient of restitution at its contacts."""
+    return momentum_restitution(load_scene(SCRIPTED))
+
+
+def swings_of_the_measured() -> float:
+    """`swings_to_a_tenth` of `SCRIPTED` where the restitution is given."""
+    return swings_to_a_tenth(load_scene(SCRIPTED).with_(block={"restitution": MEASURED}))
 
 
 def no_rocking_on() -> float:
@@ -134,6 +145,25 @@ LESSON = Lesson(
             "impacts",
             "Each impact leaves $e_{\\phi}^2$ of the energy, which is $\\cos(\\gamma - |\\phi|) - \\cos \\gamma$ at a "
             "peak.",
+            0,
+        ),
+        Exercise(
+            f"`rocking script pybullet {SCRIPTED}` writes the Caryatid, released at $0.6\\,\\gamma$, in plain calls of "
+            "PyBullet. In its `build`, change `lateralFriction=math.sqrt(10)` to `lateralFriction=math.sqrt(10), "
+            "restitution=0.5`. Predict the `e` of the first impact, then run the script.",
+            with_a_material,
+            "",
+            "Not 0.5, but as before: the contact’s impulse acts at the new corner, and has no moment about it.",
+        ),
+        Exercise(
+            f"A test of your statue gave {MEASURED:g}. In a file `measured.toml`, put `mass = 3172.05`, "
+            f"`radius = 1.0884`, `slenderness = 0.28` and `restitution = {MEASURED:g}` under `[block]`, and "
+            "`tilt = 0.168` under `[start]`. `rocking script pybullet measured.toml` then has what a contact lacks: "
+            "find the couple that acts before each landing. Predict after how many impacts the peaks stay below "
+            "$0.1\\,\\gamma$, then run the script.",
+            swings_of_the_measured,
+            "impacts",
+            "The couple takes the same share of the rate at every impact: as above, with 0.8 for $e_{\\phi}$.",
             0,
         ),
         Exercise(

@@ -12,9 +12,10 @@ from comparisons.advice.choose import Search, problem
 from comparisons.running.cases import Case
 from comparisons.running.sweep import Row
 from comparisons.sheet.problems import PROBLEMS
-from engines import get_engine
+from engines import get_engine, installed_engines
 
 RIGID = load_scene("free-rocking-rigid")
+GIVEN = RIGID.with_(block={"restitution": 0.7})
 STANDING = next(one.scene for one in PROBLEMS if one.name == "isolated-standing")
 ENGINE, VARIANT = "exudyn", "switched-joints"
 
@@ -54,6 +55,7 @@ def test_restitution_is_looked_at_up_to_the_eighth_strong_impact():
         (RIGID, "restitution"),
         (STANDING, "displacement"),
         (RIGID.with_(start=Start(), motion=PulseMotion("one-sine", 0.5, 5.0)), "outcome"),
+        (GIVEN, "tilt"),
     ],
 )
 def test_a_block_that_never_hits_is_judged_by_what_it_shows(scene, criterion):
@@ -84,10 +86,15 @@ def test_errors_are_those_of_the_criterion(criterion, response, error):
     assert found == (None if error is None else pytest.approx(error, rel=1e-6))
 
 
-def test_a_restitution_that_the_scene_gives_is_the_right_one():
-    scene = SHORT.with_(block={"restitution": 0.9})
-    response = simulate(scene)
-    assert criteria.error("restitution", scene, response, response) < 1e-9
+def test_no_variant_is_chosen_by_a_restitution_that_the_scene_gives():
+    with pytest.raises(SettingError, match="--for restitution: .* gives it; choose tilt"):
+        criteria.until(GIVEN, "restitution")
+
+
+@pytest.mark.parametrize("engine", installed_engines())
+def test_the_cost_of_a_third_dimension_is_known_where_the_restitution_is_given(engine):
+    """A free block takes no couple: it was asked for one."""
+    assert criteria._space(GIVEN.with_(duration=1.0), [engine])[0] is False
 
 
 @pytest.mark.parametrize(

@@ -55,7 +55,9 @@ def test_run_writes_json_csv_and_plot(rocking, tmp_path):
     assert files[2].read_bytes().startswith(PNG)
 
 
-@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize(
+    "engine", [pytest.param(name, marks=[] if one.subject else [pytest.mark.slow]) for name, one in ENGINES.items()]
+)
 def test_json_of_an_engine_is_alone_too(engine):
     """In a new process: an engine may greet when it is loaded, or when C flushes its buffers at exit."""
     needs(engine)

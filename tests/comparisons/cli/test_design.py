@@ -12,8 +12,7 @@ from analytic.design import properties
 BEARINGS = '[bearings]\nlaw = "linear"\nka = 2e5\n'
 
 
-@pytest.mark.parametrize("bearings", ["", BEARINGS])
-@pytest.mark.parametrize("name", ["least-stroke", "softest"])
+@pytest.mark.parametrize("bearings, name", [("", "least-stroke"), (BEARINGS, "softest")])
 def test_the_scene_it_writes_does_not_lift_and_stays_within_the_stroke(rocking, tmp_path, bearings, name):
     file, found = tmp_path / "bust.toml", tmp_path / "found.json"
     file.write_text(BUST.format(bearings=bearings))

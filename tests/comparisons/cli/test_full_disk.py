@@ -41,9 +41,9 @@ cli.main(sys.argv[2:])
 
 
 def each(*commands):
-    """Parameters of tests, each with a command first; but for two commands they take long."""
+    """Parameters of tests, each with a command first; but for one command they take long."""
     slow = [pytest.mark.slow, pytest.mark.timeout(1400)]
-    return [pytest.param(*words, marks=() if words[0] in ("sheet", "check") else slow) for words in commands]
+    return [pytest.param(*words, marks=() if words[0] == "sheet" else slow) for words in commands]
 
 
 @pytest.fixture(scope="module")

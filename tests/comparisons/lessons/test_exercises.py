@@ -1,12 +1,14 @@
 """Every exercise's answer, found on another way than the lesson finds it."""
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scripts import run_alone, written
 
-from analytic import PulseMotion, Scene, simulate, synthetic_motion
+from analytic import PulseMotion, Scene, load_scene, simulate, synthetic_motion
 from analytic.caryatid import BASE, BEARINGS, MASS, RADIUS, caryatid_block
 from analytic.closed_form import swing_energy
 from analytic.rocking import restitution
@@ -28,6 +30,7 @@ H, B, INERTIA = RADIUS * math.cos(0.28), RADIUS * math.sin(0.28), 4 / 3 * MASS *
 # Horizontal momentum, and angular about the new corner, of an impact at 1 rad/s: two equations, solved as such.
 JUMP = np.linalg.solve([[MASS * H, MASS + BASE.mass], [INERTIA, MASS * H]], [MASS * H, INERTIA - 2 * MASS * B**2])[1]
 SWINGS = math.log(swing_energy(0.28, 0.1 * 0.28) / swing_energy(0.28, 0.8 * 0.28)) / (2 * math.log(E))
+MEASURED = math.log(swing_energy(0.28, 0.1 * 0.28) / swing_energy(0.28, 0.168)) / (2 * math.log(0.8))
 F0, ALPHA = bearing.LAW.f0, BEARINGS.alpha
 LOSS = 4 * F0 * 0.30 - 2 * (BEARINGS.ka - BEARINGS.kb) / ((ALPHA - 1) * (ALPHA - 2))
 TOO_LONG = RADIUS * math.cos(0.28) - 1  # in metres: the factor of eq. (8) as printed
@@ -40,6 +43,8 @@ LOSSY = 1 - restitution(Scene(block=caryatid_block(0.28), base=BASE))
         (tipping.lifting_acceleration, 0.3 / 1.0, {"rel": 1e-12}),
         (impacts.code, E, {"rel": 1e-9}),
         (impacts.swings_to_a_tenth, math.ceil(SWINGS), {"abs": 0}),
+        (impacts.with_a_material, E, {"rel": 1e-12}),
+        (impacts.swings_of_the_measured, math.ceil(MEASURED), {"abs": 0}),
         (impacts.no_rocking_on, math.asin(math.sqrt(2 / 3)), {"rel": 1e-12}),
         (impacts.momentum_on_the_base, JUMP, {"rel": 1e-12}),
         (bearing.code, LOSS, {"rel": 1e-5}),
@@ -57,6 +62,22 @@ LOSSY = 1 - restitution(Scene(block=caryatid_block(0.28), base=BASE))
 )
 def test_a_closed_form(answer, known, near):
     assert answer() == pytest.approx(known, **near)
+
+
+@pytest.mark.parametrize("given, e", [(None, E), (0.8, 0.8)])
+def test_the_script_of_the_lesson_does_what_is_told_of_it(tmp_path, given, e):
+    """A material's restitution changes no impact, a couple does."""
+    pytest.importorskip("pybullet")
+    scene = load_scene(impacts.SCRIPTED).with_(block={"restitution": given}, duration=2.0)
+    script = written("pybullet", scene, tmp_path)
+    plain = "lateralFriction=math.sqrt(10)"
+    question = next(one.question for one in impacts.LESSON.exercises if one.compute is impacts.with_a_material)
+    assert f"change `{plain}` to `{plain}, restitution=0.5`" in question
+    assert script.read_text().count(plain) == 1 and ("couple" in script.read_text()) == (given is not None)
+    if given is None:
+        script.write_text(script.read_text().replace(plain, f"{plain}, restitution=0.5"))
+    first = re.search(r"impact at [\d.]+ s: e ([\d.]+)", run_alone(script))
+    assert float(first[1]) == pytest.approx(e, abs=1e-4)
 
 
 @pytest.mark.parametrize("side, outcome", [(1e-5, "overturns"), (-1e-5, "rocks")])

@@ -14,6 +14,7 @@ from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.restitution.page import rated
 from engines import ENGINES
 
+pytestmark = pytest.mark.xdist_group("contradictions")  # the stored studies are shown once
 STORED = [name for name in BUILT_IN if (RESULTS / f"{name}.json").exists()]
 NUMBER = re.compile(r"(?<![\w.,−·])\d+(?:\.\d+)?(?![\w.])")
 

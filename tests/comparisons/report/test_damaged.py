@@ -17,7 +17,7 @@ from comparisons.running.provenance import RESULTS, ResultError
 from comparisons.studies import get_study
 
 STUDIES, SEED = ("restitution", "overturning", "sensitivity"), 52
-DAMAGED, RESEALED = 20, 12  # mutations of each here; with 300 and 60 it holds as well
+DAMAGED, RESEALED = 8, 6  # mutations of each here; with 300 and 60 it holds as well
 
 
 def placed(folder, name, text, arrays):

@@ -28,7 +28,9 @@ def fate(scene, motion, width=None):
     return simulate(scene.with_(block=block, motion=motion, duration=None), history=False).outcome
 
 
-@pytest.mark.parametrize("name", CARDS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] if name == "bust.toml" else []) for name in CARDS]
+)
 def test_the_command_on_the_card_runs_on_this_file(rocking, tmp_path, monkeypatch, studies, name):
     monkeypatch.chdir(tmp_path)
     text, command, base_mass = CARDS[name]

@@ -154,6 +154,7 @@ def test_a_result_is_asked_what_it_was_asked(one, tmp_path):
     assert opened(get_study("recorded"), recorded, False, {"records": "mine"})[2] == {"records": "mine"}
 
 
+@pytest.mark.slow
 @MADE_ONCE
 def test_random_scenes_take_one_engine_after_the_other(tmp_path):
     study, options = get_study("random-scenes"), {"workers": 2, "progress": False}
