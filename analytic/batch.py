@@ -101,17 +101,20 @@ def run_rows(
     numbers = rows.view(float).reshape(n, SIZE)
     workers = workers or os.cpu_count() or 1
 
+    def slide(i, contact):
+        par = Parameters(*numbers[i, :OWN], Constants(*numbers[i, OWN:]))  # type: ignore[call-arg]  # of one length
+        if sliding.is_needed(par, contact, totals[i]):
+            sliding.outcome(par, contact, shaking._replace(shaking=Shaking(*pulses[i])), chosen, totals[i])
+
     def run(part):
         kernel.run_rows(numbers[part], pulses[part], shaking, chosen, kernel.arrays(totals[part]))
         for i, contact in enumerate(contacts[part], part.start):
-            par = Parameters(*numbers[i, :OWN], Constants(*numbers[i, OWN:]))  # type: ignore[call-arg]  # of one length
-            if contact is not None and sliding.is_needed(par, contact, totals[i]):
-                sliding.outcome(par, contact, shaking._replace(shaking=Shaking(*pulses[i])), chosen, totals[i])
+            if contact is not None:
+                slide(i, contact)
 
     if any(contacts):
         from .sliding import run as sliding
 
-        sliding.compile_march(shaking.upright is not None)
     with compiling():
         run(slice(0, 1))  # compiled or loaded before threads start
     size = max(1, -(-n // (workers * CHUNKS_PER_WORKER)))

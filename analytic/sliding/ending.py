@@ -7,7 +7,7 @@ from ..compiled import inner
 from ..decision import largest_force, peaks_are_final, recoverable_energy
 from . import layout as S
 from .impact import kinetic
-from .layout import FALLEN, FLIGHT, SLIDE, STICK
+from .layout import FALLEN, FLIGHT, SLIDE, STICK, Velocity
 
 
 @inner
@@ -23,7 +23,8 @@ def remaining(par, contact, block, base):
     """Energy [J] that can still reach the block; see `decision`."""
     angle = block.s * par.gamma - block.tilt
     c, n = par.R * math.cos(angle), par.R * math.sin(angle)
-    moving = kinetic(par, contact, block.rate, block.speed + c * block.rate, block.rise + n * block.rate, base.v)
+    velocity = Velocity(block.rate, block.speed + c * block.rate, block.rise + n * block.rate)
+    moving = kinetic(par, contact, velocity, base.v)
     height = c - par.R * math.cos(par.gamma) + block.gap
     stored = 0.5 * par.kb * base.x**2 + recoverable_energy(par.law, par.constants, base.z) if par.count > 0 else 0.0
     return moving + par.m * par.g * height + par.count * stored

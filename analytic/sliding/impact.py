@@ -16,18 +16,18 @@ and stick; both stay and slip. From rest exactly one is; with several the block 
 import math
 
 from ..compiled import inner
-from .layout import BOTH_SLIP, BOTH_STICK, NEW_SLIPS, NEW_STICKS
+from .layout import BOTH_SLIP, BOTH_STICK, NEW_SLIPS, NEW_STICKS, Velocity
 
 # Of the impulse: a contact that is right on the edge of the cone sticks.
 EDGE = 1e-12
 
 
 @inner
-def one_corner(par, contact, c, n, sigma, rate, drift, climb, given):
-    """After the impact of one corner alone: (rate, drift, climb, P, Q); sigma 0: it sticks, else it slips that way.
+def one_corner(par, contact, c, n, sigma, before, given):
+    """After the impact of one corner alone: (`Velocity`, P, Q); sigma 0: it sticks, else it slips that way.
 
     given : the restitution comes from the scene, a couple does what (I1) lacks."""
-    moving = par.m * contact.mb / par.M if par.on_base else par.m
+    moving, (rate, drift, climb) = par.m * contact.mb / par.M if par.on_base else par.m, before
     if sigma == 0:
         inertia = contact.centre + c * c * moving + n * n * par.m
         after = (contact.centre * rate + c * moving * drift + n * par.m * climb) / inertia
@@ -39,7 +39,7 @@ def one_corner(par, contact, c, n, sigma, rate, drift, climb, given):
         after = (contact.centre * rate + lever * par.m * climb) / (contact.centre + lever * n * par.m)
         up = par.m * (n * after - climb)
         across = -sigma * contact.mu * up
-    return after, drift + across / moving, n * after, across, up
+    return Velocity(after, drift + across / moving, n * after), across, up
 
 
 @inner
@@ -56,26 +56,28 @@ def within(across, up, mu):
 
 
 @inner
-def level_impact(par, contact, s, rate, drift, climb):
-    """Impact of a block that comes down from side s: (kind, rate, drift, climb, P, number of admissible kinds).
+def level_impact(par, contact, s, before):
+    """Impact of a block that comes down from side s: (kind, `Velocity` after it, P, number of admissible kinds).
 
     A given restitution knows one kind, the new corner that sticks; kind is -1 where that is not admissible.
     """
     b, h, mu = par.R * math.sin(par.gamma), par.R * math.cos(par.gamma), contact.mu
-    r, found, count = -s, (-1, rate, drift, climb, 0.0), 0
+    rate, drift, climb = before
+    r, kind, found, impulse, count = -s, -1, before, 0.0, 0
     for sigma in (0.0, 1.0, -1.0):
-        after, across, up, push, normal = one_corner(par, contact, h, r * b, sigma, rate, drift, climb, contact.given)
-        good = r * after >= 0 and normal >= 0
+        after, push, normal = one_corner(par, contact, h, r * b, sigma, before, contact.given)
+        good = r * after.rate >= 0 and normal >= 0
         if sigma == 0:
             good = good and within(push, normal, mu)
         else:
-            good = not contact.given and good and sigma * (across - h * after) > EDGE * (abs(drift) + h * abs(rate))
+            slip = sigma * (after.drift - h * after.rate)
+            good = good and not contact.given and slip > EDGE * (abs(drift) + h * abs(rate))
         if good:
             count += 1
             if count == 1:
-                found = NEW_STICKS if sigma == 0 else NEW_SLIPS, after, across, up, push
+                kind, found, impulse = NEW_STICKS if sigma == 0 else NEW_SLIPS, after, push
     if contact.given:
-        return found[0], found[1], found[2], found[3], found[4], 1
+        return kind, found, impulse, 1
     for sigma in (0.0, 1.0, -1.0):
         across, push, normal = both_corners(par, contact, h, sigma, drift, climb)
         tilting = abs(contact.centre * rate - h * push) / b  # (I1): difference of the impulses of the corners
@@ -84,12 +86,14 @@ def level_impact(par, contact, s, rate, drift, climb):
         if good:
             count += 1
             if count == 1:
-                found = BOTH_STICK if sigma == 0 else BOTH_SLIP, 0.0, across, 0.0, push
-    return found[0], found[1], found[2], found[3], found[4], count
+                kind, impulse = BOTH_STICK if sigma == 0 else BOTH_SLIP, push
+                found = Velocity(0.0, across, 0.0)
+    return kind, found, impulse, count
 
 
 @inner
-def kinetic(par, contact, rate, drift, climb, v):
+def kinetic(par, contact, velocity, v):
     """Kinetic energy [J]."""
+    rate, drift, climb = velocity
     moving = par.m * ((v + drift) ** 2 + climb**2) + contact.centre * rate**2
     return 0.5 * (moving + contact.mb * v * v if par.on_base else moving)

@@ -25,7 +25,9 @@ Contact = namedtuple("Contact", "mu mb centre given")
 # State of the block: mode, side of the pivot (1 or -1; 0 in full contact), direction of slip (1 or -1; 0 without),
 # tilt and its rate, slip of the corner and its rate, gap of the corner and its rate.
 Block = namedtuple("Block", "mode s sigma tilt rate slip speed gap rise")
-# A step from t: its length, gravity g + a_v, a_g and the bearings' force at its start.
+# Tilt rate, horizontal velocity of the centre of mass from the base, its vertical one.
+Velocity = namedtuple("Velocity", "rate drift climb")
+# What acts at an instant: gravity g + a_v, a_g and the bearings' force.
 Start = namedtuple("Start", "gravity ground force")
 # Slots of the totals. OVER_TIME: where a later run overturned. HELD: up to the last |tilt| of at most the slenderness.
 (

@@ -225,7 +225,7 @@ def march(par, resting, contact, ground, upright, options, into):
                 break
             start = acting(par, base, upright, highest, h, P)
             if found == L.IMPACT or found == LANDING:
-                block, base, status = struck(par, contact, block, base, found, rest_rate, start, t, into)
+                block, base, status = struck(par, contact, block, base, rest_rate, start, t, into)
                 last = none - 1
             elif found >= CONE or found == L.UPLIFT:
                 block, count = after_event(par, contact, block, found, side, start)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import math
 import time
 from typing import TYPE_CHECKING, Any
@@ -17,7 +16,7 @@ from ..errors import SceneError
 from ..limits import limit_warnings
 from ..response import Energy, Failure, Impact, Response, Sliding, State, about_record
 from . import layout as S
-from .bounds import contact_of, paradoxical_friction, slipping_friction
+from .bounds import paradoxical_friction, slipping_friction
 from .march import arrays, march
 
 if TYPE_CHECKING:
@@ -38,18 +37,10 @@ def is_needed(par: Parameters, contact: S.Contact, totals: np.ndarray) -> bool:
     return bool(falls or strikes or totals[L.FRICTION] > NEAR * contact.mu or totals[L.NORMAL] <= 0)
 
 
-@functools.cache
-def compile_march(vertical: bool) -> None:
+def ready(par: Parameters, contact: S.Contact, ground: Ground, options: Options) -> None:
     """Load the compiled march, or compile it: once per machine, some ten seconds."""
-    from ..scene import Block, Scene
-    from ..solver import ground, options, parameters
-
-    scene = Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.2), duration=1e-3, friction=1.0)
-    quiet, contact = ground(None), contact_of(scene)
-    assert contact is not None
     with compiling():
-        upright = quiet.samples if vertical else None
-        marched(parameters(scene), contact, quiet._replace(upright=upright), options(output_step=1.0), 1)
+        marched(par._replace(duration=0.0), contact, ground, options)
 
 
 def marched(
@@ -110,7 +101,7 @@ def response(
     SceneError
         The motion of the block is not determined.
     """
-    compile_march(ground.upright is not None)
+    ready(par, contact, ground, options)
     rows = int(math.floor(par.duration / options.output_step * (1 + 1e-14))) + 1 if options.output_step > 0 else 0
     begin = time.process_time()
     totals, impacts, changes, table = marched(par, contact, ground, options, rows)

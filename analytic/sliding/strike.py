@@ -9,58 +9,56 @@ from . import layout as S
 from .choice import choose
 from .equations import accelerations
 from .impact import kinetic, level_impact, one_corner, within
-from .layout import FLIGHT, STICK, Block, Start
+from .layout import FLIGHT, STICK, Block, Start, Velocity
 
 
 @inner
-def struck(par, contact, block, base, found, rest_rate, at, t, into):
+def struck(par, contact, block, base, rest_rate, at, t, into):
     """(block, base, status) after an impact. at : what acts then, a `Start`; its force is that before the impact."""
     impacts, totals, v, s = into[2], into[5], base.v, block.s
     c, n = par.R * math.cos(s * par.gamma - block.tilt), par.R * math.sin(s * par.gamma - block.tilt)
-    rate, drift, climb = block.rate, block.speed + c * block.rate, block.rise + n * block.rate
+    before = Velocity(block.rate, block.speed + c * block.rate, block.rise + n * block.rate)
     count, status = 1, L.COMPLETE
-    if found == L.IMPACT or block.tilt == 0:
-        kind, after, across, up, push, count = level_impact(par, contact, s, rate, drift, climb)
+    if block.tilt == 0:
+        kind, after, push, count = level_impact(par, contact, s, before)
         if kind < 0:  # a level block that lands may pivot about either corner
-            kind, after, across, up, push, count = level_impact(par, contact, -s, rate, drift, climb)
             s = -s
+            kind, after, push, count = level_impact(par, contact, s, before)
         if contact.given and (kind != S.NEW_STICKS or block.sigma != 0):
             status = S.GIVEN_LEAVES
-        s, slips = 0.0 if after == 0 else -s, kind == S.NEW_SLIPS or kind == S.BOTH_SLIP
+        s, slips = 0.0 if after.rate == 0 else -s, kind == S.NEW_SLIPS or kind == S.BOTH_SLIP
         c = par.R * math.cos(par.gamma)
     else:
-        kind, (after, across, up, push), slips = S.LANDS, landed(par, contact, c, n, rate, drift, climb), False
-        slips = abs(across - c * after) > 0
+        kind, (after, push) = S.LANDS, landed(par, contact, c, n, before)
+        slips = after.drift != c * after.rate
     jump = -push / contact.mb if par.on_base else 0.0
-    speed = across - c * after if slips else 0.0
+    speed = after.drift - c * after.rate if slips else 0.0
     number = int(totals[S.IMPACTS])
     if number < impacts.shape[0]:
-        impacts[number, 0], impacts[number, 1], impacts[number, 2] = t, rate, after
+        impacts[number, 0], impacts[number, 1], impacts[number, 2] = t, before.rate, after.rate
         impacts[number, 3], impacts[number, 4], impacts[number, 5] = jump, kind, speed
     totals[S.IMPACTS] += 1
     force = at.force + par.count * par.damping * jump
-    lifted = Block(STICK, s, 0.0, block.tilt, after, block.slip, speed, 0.0, 0.0)
+    lifted = Block(STICK, s, 0.0, block.tilt, after.rate, block.slip, speed, 0.0, 0.0)
     end, left, doubt = settled(par, contact, lifted, rest_rate, Start(at.gravity, at.ground, force))
     if status == L.COMPLETE and (count != 1 or doubt != 1):
         status = S.NO_MODE
     if s != 0 and end.s == 0 and end.mode != FLIGHT:  # without the swings that were left out
-        across, up, after = end.speed, 0.0, 0.0
-    totals[S.IMPACT_LOSS] += kinetic(par, contact, rate, drift, climb, v) - kinetic(
-        par, contact, after, across, up, v + jump + left
-    )
+        after = Velocity(0.0, end.speed, 0.0)
+    totals[S.IMPACT_LOSS] += kinetic(par, contact, before, v) - kinetic(par, contact, after, v + jump + left)
     return end, L.Base(base.x, v + jump + left, base.z), status
 
 
 @inner
-def landed(par, contact, c, n, rate, drift, climb):
-    """(rate, drift, climb, P) after the impact of the lower corner of a block in flight: it sticks, or slips."""
-    after, across, up, push, normal = one_corner(par, contact, c, n, 0.0, rate, drift, climb, False)
+def landed(par, contact, c, n, before):
+    """(`Velocity`, P) after the impact of the lower corner of a block in flight: it sticks, or slips."""
+    after, push, normal = one_corner(par, contact, c, n, 0.0, before, False)
     if not within(push, normal, contact.mu):
         for sigma in (1.0, -1.0):
-            after, across, up, push, normal = one_corner(par, contact, c, n, sigma, rate, drift, climb, False)
-            if normal >= 0 and sigma * (across - c * after) > 0:
+            after, push, normal = one_corner(par, contact, c, n, sigma, before, False)
+            if normal >= 0 and sigma * (after.drift - c * after.rate) > 0:
                 break
-    return after, across, up, push
+    return after, push
 
 
 @inner

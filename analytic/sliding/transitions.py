@@ -50,9 +50,9 @@ def tilt_event(par, block, step, P, work):
 
 
 @inner
-def contact_event(par, contact, block, refused, found, h, order, P, work):
-    """(kind, time, side) of the first event of the contact before h, else found and h."""
-    side, event = 0.0, P[L.EVENT]
+def contact_event(par, contact, block, refused, sooner, order, P, work):
+    """(kind, time, side) of the first event of the contact; sooner : (kind, time) of another one, else returned."""
+    (found, h), side, event = sooner, 0.0, P[L.EVENT]
     if block.mode == FLIGHT:
         root = find_fall(P[S.GAP], 1.0, 0.0, order, h, event, work)
         if root >= 0:
@@ -80,7 +80,7 @@ def next_event(par, contact, block, refused, direction, step, P, work):
     found, h, order, event = L.NONE, step.h, step.order, P[L.EVENT]
     if block.s != 0:
         found, h = tilt_event(par, block, step, P, work)
-    found, h, side = contact_event(par, contact, block, refused, found, h, order, P, work)
+    found, h, side = contact_event(par, contact, block, refused, (found, h), order, P, work)
     if direction != 0:
         root = find_fall(P[L.V], direction, 0.0, order, h, event, work)
         if root > 0:

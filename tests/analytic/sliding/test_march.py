@@ -11,14 +11,13 @@ from analytic import PulseMotion, simulate
 from analytic.rocking import RockingModel
 from analytic.sliding import layout as S
 from analytic.sliding.bounds import contact_of, slipping_friction, slipping_restitution
-from analytic.sliding.run import compile_march, marched
+from analytic.sliding.run import marched
 from analytic.solver import ground, options, parameters
 
 
 def march_of(scene, **settings):
     """(totals, impacts, changes) of a march, without asking the kernel first."""
     shaking = ground(scene.motion)
-    compile_march(shaking.upright is not None)
     totals, impacts, changes, _ = marched(parameters(scene), contact_of(scene), shaking, options(**settings))
     return totals, impacts, changes
 
