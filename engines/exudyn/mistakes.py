@@ -132,6 +132,13 @@ MOTION = (
 )
 WITHOUT = (
     Mistake(
+        "not pressed in",
+        "Corners that start at the ground, not pressed in by the weight",
+        NO_MATTER,
+        {"-m * g / (2 * k), 0], [0, 0, 0]": "0, 0], [0, 0, 0]"},
+        "motion",
+    ),
+    Mistake(
         "end of step",
         "Acceleration of the ground at the end of each step, not its mean",
         NO_MATTER,

@@ -106,6 +106,7 @@ BODY = (
     ),
 )
 CONTACT = (
+    Mistake("restitution 1", "Restitution 1", "contact", {FRICTION: f"{FRICTION}, restitution=1.0"}),
     Mistake("slop", "Slop of 1e-4 m, a depth that is not corrected", "contact", {SLOP: "contactSlop=1e-4"}),
     Mistake(
         "box",
@@ -140,6 +141,12 @@ STEPS = (
         "Forces for the whole of each step, though the steps change",
         "steps",
         {"kick = (step + before) / (2 * step)": "kick = 1.0"},
+    ),
+    Mistake(
+        "bouncy, 1 ms",
+        "Restitution 1, with steps of 1e-3 s",
+        "steps",
+        {**_fixed("1e-3"), FRICTION: f"{FRICTION}, restitution=1.0"},
     ),
     Mistake("substeps", "Four substeps in each step", "steps", {SLOP: f"{SLOP}, numSubSteps=4"}),
 )
@@ -176,7 +183,12 @@ MOTION = (
     ),
 )
 WITHOUT = (
-    Mistake("restitution 1", "Restitution 1", NO_MATTER, {FRICTION: f"{FRICTION}, restitution=1.0"}),
+    Mistake(
+        "early velocities",
+        "Velocities taken as those of the step's end; they are of half a step before",
+        NO_MATTER,
+        {"step[1:] / 2 * gain": "0 * gain"},
+    ),
     Mistake(
         "ERP 0.8", "Penetration corrected by 0.8 in each step", NO_MATTER, {SLOP: f"{SLOP}, erp=0.8, contactERP=0.8"}
     ),

@@ -71,6 +71,7 @@ def run_script(files: Mapping[str, str], time_limit: float) -> Trace:
         with np.load(found) as numbers:
             rows, contact, settle = (numbers[name] for name in ("rows", "contact", "settle"))
     try:
-        return Trace(*rows.T, contact_tilt=float(contact), settle=float(settle), first_script=True)
-    except (TypeError, ValueError) as error:
+        columns = dict(zip(Trace.COLUMNS, rows.T, strict=True))
+        return Trace(**columns, contact_tilt=float(contact), settle=float(settle), first_script=True)
+    except ValueError as error:
         raise ScriptFailed(f"its rows are no steps ({error})") from None
