@@ -34,7 +34,7 @@ bearings = mbs.AddObject(
 
 
 def _soft(factor: int, stiffness: str) -> Mistake:
-    return Mistake(f"{factor} x softer", f"Contact {factor} times softer", "contact", {STIFFNESS: stiffness})
+    return Mistake(f"{factor} × softer", f"Contact {factor} times softer", "contact", {STIFFNESS: stiffness})
 
 
 def _solver(name: str, step: str | None = None) -> dict[str, str]:
@@ -82,15 +82,15 @@ CONTACT = (
     ),
 )
 STEPS = (
-    Mistake("tolerance 1e-4", "Tolerance 1e-4", "steps", {TOLERANCE: "absoluteTolerance = 1e-4 *"}),
-    Mistake("tolerance 1e-3", "Tolerance 1e-3", "steps", {TOLERANCE: "absoluteTolerance = 1e-3 *"}),
-    Mistake("RK44", "Runge-Kutta of order 4, steps of 1e-4 s", "steps", _solver("RK44", "1e-4")),
+    Mistake("tolerance 10⁻⁴", "Tolerance 10⁻⁴", "steps", {TOLERANCE: "absoluteTolerance = 1e-4 *"}),
+    Mistake("tolerance 10⁻³", "Tolerance 10⁻³", "steps", {TOLERANCE: "absoluteTolerance = 1e-3 *"}),
+    Mistake("RK44", "Runge-Kutta of order 4, steps of 0.1 ms", "steps", _solver("RK44", "1e-4")),
     Mistake("RK67", "Runge-Kutta of order 6, without control of the error", "steps", _solver("RK67")),
-    Mistake("gen. alpha, 1 ms", "Generalized alpha, steps of 1e-3 s", "steps", _solver("GeneralizedAlpha", "1e-3")),
-    Mistake("gen. alpha, 0.1 ms", "Generalized alpha, steps of 1e-4 s", "steps", _solver("GeneralizedAlpha", "1e-4")),
+    Mistake("gen. alpha, 1 ms", "Generalized alpha, steps of 1 ms", "steps", _solver("GeneralizedAlpha", "1e-3")),
+    Mistake("gen. alpha, 0.1 ms", "Generalized alpha, steps of 0.1 ms", "steps", _solver("GeneralizedAlpha", "1e-4")),
     Mistake(
         "gen. alpha, soft",
-        "Generalized alpha, steps of 1e-3 s, contact 1000 times softer",
+        "Generalized alpha, steps of 1 ms, contact 1000 times softer",
         "steps",
         {**_solver("GeneralizedAlpha", "1e-3"), STIFFNESS: "(1.43e-4 * R)"},
     ),
@@ -148,11 +148,13 @@ WITHOUT = (
     Mistake("friction 0.5", "Friction 0.5", NO_MATTER, {MU: "mu = 0.5"}),
     Mistake("friction 50", "Friction 50", NO_MATTER, {MU: "mu = 50"}),
     Mistake("no slip term", "Friction without its viscous part", NO_MATTER, {"(ct + normal / slip)": "ct"}),
-    Mistake("slower rebound", "Rebound slower, 1e-4 sqrt(g R)", NO_MATTER, {REBOUND: "rebound, slip = 1e-4 *"}),
-    Mistake("tolerance 1e-5", "Tolerance 1e-5", NO_MATTER, {TOLERANCE: "absoluteTolerance = 1e-5 *"}),
-    Mistake("tolerance 1e-9", "Tolerance 1e-9", NO_MATTER, {TOLERANCE: "absoluteTolerance = 1e-9 *"}),
+    Mistake(
+        "slower rebound", "Corners that rebound three times slower", NO_MATTER, {REBOUND: "rebound, slip = 1e-4 *"}
+    ),
+    Mistake("tolerance 10⁻⁵", "Tolerance 10⁻⁵", NO_MATTER, {TOLERANCE: "absoluteTolerance = 1e-5 *"}),
+    Mistake("tolerance 10⁻⁹", "Tolerance 10⁻⁹", NO_MATTER, {TOLERANCE: "absoluteTolerance = 1e-9 *"}),
     Mistake("half longest step", "Longest step halved", NO_MATTER, {LONGEST: "longest = 1.5 /"}),
-    Mistake("10 x longest step", "Longest step ten times longer", NO_MATTER, {LONGEST: "longest = 30 /"}),
+    Mistake("10 × longest step", "Longest step ten times longer", NO_MATTER, {LONGEST: "longest = 30 /"}),
     Mistake("ODE23", "Runge-Kutta of order 2, with control of the error (ODE23)", NO_MATTER, _solver("ODE23")),
 )
 MISTAKES = (*BODY, *CONTACT, *STEPS, *FORCES, *MOTION, *WITHOUT)

@@ -107,7 +107,7 @@ BODY = (
 )
 CONTACT = (
     Mistake("restitution 1", "Restitution 1", "contact", {FRICTION: f"{FRICTION}, restitution=1.0"}),
-    Mistake("slop", "Slop of 1e-4 m, a depth that is not corrected", "contact", {SLOP: "contactSlop=1e-4"}),
+    Mistake("slop", "Slop of 0.1 mm, a depth that is not corrected", "contact", {SLOP: "contactSlop=1e-4"}),
     Mistake(
         "box",
         "The block as a box, not as spheres at its corners",
@@ -122,17 +122,17 @@ CONTACT = (
 )
 STEPS = (
     Mistake("steps of 1/240 s", "Steps of 1/240 s, the default", "steps", _fixed("1 / 240")),
-    Mistake("steps of 1 ms", "Steps of 1e-3 s", "steps", _fixed("1e-3")),
-    Mistake("steps of 0.1 ms", "Steps of 1e-4 s", "steps", _fixed("1e-4")),
+    Mistake("steps of 1 ms", "Steps of 1 ms", "steps", _fixed("1e-3")),
+    Mistake("steps of 0.1 ms", "Steps of 0.1 ms", "steps", _fixed("1e-4")),
     Mistake(
         "at least 10 µs",
-        "Steps shortened before a landing to 1e-5 s at least",
+        "Steps shortened before a landing to 10 µs at least",
         "steps",
         {SMALLEST: "shortest, longest = 1e-5 * scale"},
     ),
     Mistake(
         "at least 0.1 ms",
-        "Steps shortened before a landing to 1e-4 s at least",
+        "Steps shortened before a landing to 0.1 ms at least",
         "steps",
         {SMALLEST: "shortest, longest = 1e-4 * scale"},
     ),
@@ -144,7 +144,7 @@ STEPS = (
     ),
     Mistake(
         "bouncy, 1 ms",
-        "Restitution 1, with steps of 1e-3 s",
+        "Restitution 1, with steps of 1 ms",
         "steps",
         {**_fixed("1e-3"), FRICTION: f"{FRICTION}, restitution=1.0"},
     ),
@@ -195,7 +195,7 @@ WITHOUT = (
     Mistake("split impulse", "Split impulse", NO_MATTER, {SLOP: f"{SLOP}, useSplitImpulse=1"}),
     Mistake(
         "breaking distance",
-        "Contact kept up to gaps of 1e-4 m",
+        "Contact kept up to gaps of 0.1 mm",
         NO_MATTER,
         {SLOP: f"{SLOP}, contactBreakingThreshold=1e-4"},
     ),
@@ -204,7 +204,7 @@ WITHOUT = (
     Mistake("50 iterations", "50 iterations, the default", NO_MATTER, {ITERATIONS: "numSolverIterations=50"}),
     Mistake("1000 iterations", "1000 iterations", NO_MATTER, {ITERATIONS: "numSolverIterations=1000"}),
     Mistake("friction 0.5", "Friction 0.5", NO_MATTER, {FRICTION: "lateralFriction=math.sqrt(0.5)"}),
-    Mistake("spheres of 1e-9 R", "Corner spheres of 1e-9 R", NO_MATTER, {RADIUS: "r = 1e-9 * R"}),
-    Mistake("spheres of 1e-4 R", "Corner spheres of 1e-4 R", NO_MATTER, {RADIUS: "r = 1e-4 * R"}),
+    Mistake("spheres of 10⁻⁹ R", "Corner spheres of 10⁻⁹ R", NO_MATTER, {RADIUS: "r = 1e-9 * R"}),
+    Mistake("spheres of 10⁻⁴ R", "Corner spheres of 10⁻⁴ R", NO_MATTER, {RADIUS: "r = 1e-4 * R"}),
 )
 MISTAKES = (*BODY, *CONTACT, *STEPS, *FORCES, *MOTION, *WITHOUT)

@@ -22,7 +22,7 @@ from .script import ScriptFailed, run_script, with_mistake
 
 SLENDERNESS, TILT = 0.2, 0.6  # rad; over slenderness, from which blocks are released
 SECONDS = 300.0  # of a script; those that end take 5 s of CPU time at most
-QUICK = ("inertia + 1 %", "default damping", "10 x softer")
+QUICK = ("inertia + 1 %", "default damping", "10 × softer")
 NOTHING = dict.fromkeys(("error", "energy", "graph", "displacement", "steps"))
 
 
