@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from analytic import PulseMotion, Response, Scene, Start, load_scene, simulate
-from analytic.caryatid import BASE, BEARINGS, caryatid_block
+from analytic import PulseMotion, Response, Scene, load_scene, simulate
+from analytic.caryatid import caryatid_block
 from analytic.rocking import restitution
 from engines import get_engine
 from engines.contract import Engine
@@ -20,7 +20,6 @@ from ...running.cases import Case
 from ...running.plan import Batch, Computed, Plan, Request
 from .script import ScriptFailed, run_script, with_mistake
 
-SLENDERNESS, TILT = 0.2, 0.6  # rad; over slenderness, from which blocks are released
 SECONDS = 300.0  # of a script; those that end take 5 s of CPU time at most
 QUICK = ("inertia + 1 %", "default damping", "10 × softer")
 NOTHING = dict.fromkeys(("error", "energy", "graph", "displacement", "steps"))
@@ -28,14 +27,14 @@ NOTHING = dict.fromkeys(("error", "energy", "graph", "displacement", "steps"))
 
 def scenes(quick: bool = False) -> dict[str, Scene]:
     """{name: scene} of the scripts; quick: a block released on rigid ground alone."""
-    released = Scene(block=caryatid_block(SLENDERNESS), start=Start(tilt=TILT * SLENDERNESS), duration=5.0)
+    released = load_scene("free-rocking-rigid").with_(duration=5.0)
     if quick:
         return {"released": released}
     stocky = Scene(block=caryatid_block(0.3))
     amplitude = 1.3 * stocky.gravity * math.tan(stocky.block.slenderness)
     return {
         "released": released,
-        "released, bearings": released.with_(base=BASE, bearings=BEARINGS, duration=3.0),
+        "released, bearings": load_scene("free-rocking-isolated").with_(duration=3.0),
         "pulse": stocky.with_(motion=PulseMotion("one-sine", amplitude, 2.2 * stocky.rocking_frequency)),
         "record, bearings": load_scene("caryatid-isolated").with_(block={"slenderness": 0.15}, duration=9.0),
     }
