@@ -1,6 +1,7 @@
 """What is shown of the mistakes study: the script as it is and with each mistake, costliest first."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 from ...running.provenance import Result
@@ -36,7 +37,7 @@ def page(result: Result) -> Page:
             filter(
                 None,
                 (
-                    "The script that rocking writes for an engine is right in its digits. Here one thing in it is "
+                    "The scripts that rocking script writes agree with the analytic model. Here one thing in them is "
                     "done as a first script may do it, all else as it is.",
                     hidden,
                 ),
@@ -83,14 +84,16 @@ def _most(runs, name):
     return max((run[name] for run in runs if run[name] is not None), default=None)
 
 
-def _outcomes(runs):
-    """In words where the outcome is not the model's: {stands for rocks, or why it failed}: in which scenes."""
+def _outcomes(runs: Sequence[dict[str, Any]]) -> str:
+    """In words where the outcome is not the model's, or why the run failed, each with its scenes."""
     wrong = [run for run in runs if run["outcome"] != run["expected"]]
     found = grouped(
         wrong, lambda run: f"fails: {run['reason']}" if run["reason"] else f"{run['outcome']} for {run['expected']}"
     )
-    said = "; ".join(f"{words} ({', '.join(run['scene'] for run in some)})" for (words,), some in found.items())
-    return said or "as the model"
+    places = {words: ", ".join(run["scene"].replace(", ", " on ") for run in some) for (words,), some in found.items()}
+    everywhere = len(runs) > 1 and len(found) == 1 and len(wrong) == len(runs)
+    said = [f"{words} ({'all scenes' if everywhere else some})" for words, some in places.items()]
+    return "; ".join(said) or "as the model"
 
 
 def _table(engine, rows, result):
@@ -115,7 +118,8 @@ def _dots(found: dict[str, list[dict[str, Any]]], no_matter: str) -> Figure | No
     values = [row[name] for rows in shown.values() for row in rows for name in ("graph", "error") if row[name]]
     if not values:
         return None
-    axis = log_axis("error: of restitution [-], of the tilt [slenderness]", values)
+    axis = log_axis("error of e; of the tilt over γ [-]", values)
+    axis = replace(axis, ticks=axis.marks()[::2])  # beside names there is room for no more
     charts = [_chart(engine, rows, axis) for engine, rows in shown.items()]
     keys = {
         f"{engine}, {WORDS[name]}": key_of(engine, filled=look.get("filled", True), joined=False)
