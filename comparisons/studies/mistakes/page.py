@@ -20,7 +20,8 @@ WORDS = {"graph": "tilt", "error": "restitution", "lost": "another outcome, or f
 
 def page(result: Result) -> Page:
     found = {engine: _ranked(result, engine) for (engine,) in grouped(result.rows, "engine")}
-    made = [row for rows in found.values() for row in rows if row["group"] not in (None, result.settings["no_matter"])]
+    every = [row for rows in found.values() for row in rows]
+    made = [row for row in every if row["group"] not in (None, result.settings["no_matter"])]
     lost = [row for row in made if row["lost"]]
     quiet = [row for row in made if not row["lost"] and row["error"] is not None and row["error"] <= TRUSTED]
     worst = max(quiet, key=lambda row: row["graph"], default=None)
@@ -43,7 +44,10 @@ def page(result: Result) -> Page:
                 ),
             )
         ),
-        first=(_dots(found, result.settings["no_matter"]),),
+        first=(
+            _dots(found, result.settings["no_matter"]),
+            _counts(made, where(every, group=result.settings["no_matter"])),
+        ),
         more=tuple(_table(engine, rows, result) for engine, rows in found.items()),
         how=(
             "Scenes: the Caryatid released from 0.6 of its slenderness, on rigid ground for 5 s and on its base and "
@@ -56,6 +60,31 @@ def page(result: Result) -> Page:
             "at one time, until either block is beyond its unstable point, so that an impact that is late counts. "
             "A run fails if it ends in an error, gains energy, or leaves its place.",
         ),
+    )
+
+
+def _counts(made, harmless):
+    """How many mistakes there are of each kind, by engine and in all."""
+    found = {engine: (some, where(harmless, engine=engine)) for (engine,), some in grouped(made, "engine").items()}
+    found |= {"all": (made, harmless)} if len(found) > 1 else {}
+    rows = [
+        {
+            "engine": engine,
+            "mistakes": len(some),
+            "lost": sum(row["lost"] > 0 for row in some),
+            "off": sum((row["error"] or 0.0) > TRUSTED for row in where(some, lost=0)),
+            "harmless": len(others),
+        }
+        for engine, (some, others) in found.items()
+    ]
+    return table(
+        "How many mistakes",
+        rows,
+        Column("engine", "engine"),
+        Column("mistakes", "mistakes"),
+        Column("another outcome, or a run that fails", "lost"),
+        Column(f"of the others: e off by more than {TRUSTED:g}", "off"),
+        Column("what does not matter", "harmless"),
     )
 
 

@@ -86,7 +86,8 @@ def test_a_quick_study_has_a_row_for_each_mistake_and_a_page(tmp_path):
     assert [row["mistake"] for row in answer.rows] == [None, *(key for key in known if key in study.QUICK)]
     section = STUDY.page(stored(tmp_path, "mistakes", answer)).whole()
     assert section.title.startswith(f"What a mistake costs: of {len(answer.rows) - 1} in scripts for {ABLE[0]}, 0 ")
-    (table,) = section.tables
+    counts, table = section.tables
+    assert counts.rows == [[ABLE[0], str(len(answer.rows) - 1), "0", "0", "0"]]
     assert [row[0] for row in table.rows][-1] == AS_IT_IS and len(section.figures) == 1
 
 
@@ -135,8 +136,8 @@ class TestStored:
 
     def test_its_page_ranks_them(self):
         section = STUDY.page(self.result).whole()
-        assert len(section.tables) == len(ABLE)
-        for table in section.tables:
+        assert len(section.tables) == 1 + len(ABLE)
+        for table in section.tables[1:]:
             failed = [row[3] != "as the model" for row in table.rows]
             assert failed == sorted(failed, reverse=True) and any(failed)
 
