@@ -48,7 +48,7 @@ def page(result: Result) -> Page:
             _dots(found, result.settings["no_matter"]),
             _counts(made, where(every, group=result.settings["no_matter"])),
         ),
-        more=tuple(_table(engine, rows, result) for engine, rows in found.items()),
+        more=tuple(_table(engine, rows) for engine, rows in found.items()),
         how=(
             "Scenes: the Caryatid released from 0.6 of its slenderness, on rigid ground for 5 s and on its base and "
             "bearings for 3 s; a block of 0.3 rad on rigid ground under a one-sine pulse that overturns it; one of "
@@ -125,7 +125,7 @@ def _outcomes(runs: Sequence[dict[str, Any]]) -> str:
     return "; ".join(said) or "as the model"
 
 
-def _table(engine, rows, result):
+def _table(engine, rows):
     return table(
         f"{engine}: each mistake, in its worst scene",
         rows,
