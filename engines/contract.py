@@ -25,6 +25,7 @@ from analytic.errors import EngineBroken, EngineNotInstalled
 if TYPE_CHECKING:
     from analytic.response import Caution, Failure
 
+    from .mistakes import Mistake
     from .swings import Trace
     from .tolerance_rows import ToleranceRow
 
@@ -171,6 +172,8 @@ class Engine:
         tolerance table.
     script : str or None
         ``package:file``: the template of a script of one scene, see `engines.scripting`.
+    mistakes : str or None
+        Name of a module whose ``MISTAKES``, a tuple of `engines.mistakes.Mistake`, are made in that script.
     subject : bool
         The studies are about this engine; engines that are no subject are shown for comparison.
     origin : str
@@ -187,6 +190,7 @@ class Engine:
     imported: str | None = None
     tolerances: str | None = None
     script: str | None = None
+    mistakes: str | None = None
     subject: bool = False
     origin: str = ""
 
@@ -231,6 +235,10 @@ class Engine:
         if not self.tolerances or (self.origin and not self.installed):
             return {}
         return import_module(self.tolerances).TOLERANCES
+
+    def known_mistakes(self) -> dict[str, Mistake]:
+        """{key: mistake}; the package need not be installed."""
+        return {one.key: one for one in import_module(self.mistakes).MISTAKES} if self.mistakes else {}
 
     @property
     def installed(self) -> bool:
