@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import exudyn as exu
-import numpy as np
 from exudyn.advancedUtilities import CreateSymbolicUserFunction
 from exudyn.itemInterface import (
     MarkerBodyPosition,
@@ -16,16 +15,15 @@ from exudyn.itemInterface import (
     ObjectConnectorCartesianSpringDamper,
     ObjectConnectorTorsionalSpringDamper,
 )
-from numba import njit
 
 if TYPE_CHECKING:
-    from analytic import Block, Scene
+    from analytic import Scene
     from analytic.bearing import BearingLaw
-    from analytic.motion import Motion
 
     from ..couple import Couple
 
 Real = exu.symbolic.Real
+DISPLACEMENT, FORCE = exu.OutputVariableType.Displacement, exu.OutputVariableType.Force
 
 
 class _Symbols:
@@ -103,57 +101,23 @@ def _strengths(kept: float) -> tuple[float, float]:
     return c, brentq(lambda d: at_ground(c, d, 1e-3), -100.0, 100.0)
 
 
-@njit("f8(f8, f8[::1], f8[::1], f8, f8, f8, f8, f8)", cache=True)  # compiled when it is imported
-def _anchor(
-    anchor: float, q: np.ndarray, v: np.ndarray, b: float, h: float, stiffness: float, hardening: float, stretch: float
-) -> float:
-    """Position [m] at which the block sticks to its base after a step, moved by what every loaded corner has slid.
-
-    stretch: stretch of the sticking spring at sliding, over the normal force [m/N]. A block without contact has no
-    anchor; then it is the position of its lower corner.
-    """
-    low, high, lowest, place = math.inf, -math.inf, -math.inf, anchor
-    sin, cos = math.sin(q[2]), math.cos(q[2])
-    x, rate = (q[3], v[3]) if len(q) > 3 else (0.0, 0.0)
-    for side in (-1.0, 1.0):
-        across = q[0] - x + side * b * (cos - 1) + h * sin
-        depth = h * (cos - 1) - q[1] - side * b * sin
-        normal = 0.0
-        if depth > 0:
-            normal = stiffness * depth * (1 - hardening * (v[1] + v[2] * (side * b * cos + h * sin)))
-        if normal > 0:
-            low, high = min(low, across - stretch * normal), max(high, across + stretch * normal)
-        if depth > lowest:
-            lowest, place = depth, across
-    if low > high:
-        return place
-    return min(max(anchor, low), high)
-
-
 class Anchor:
     """State of Coulomb friction: the position at which the block sticks to its base, committed once per accepted step.
 
-    connectors: of the two corners. stiffness [N/m], hardening [s/m]: of their normal force. stretch: stretch of the
-    sticking spring at sliding, over the normal force [m/N]. slop: change that is not passed to exudyn [m].
+    connectors: of the two corners. friction: coefficient. sticking: tangential stiffness of a corner [N/m].
     """
 
-    def __init__(
-        self,
-        block: Block,
-        connectors: tuple[Any, Any],
-        *,
-        stiffness: float,
-        hardening: float,
-        stretch: float,
-        slop: float,
-    ) -> None:
-        self.at, self.connectors, self.slop = 0.0, connectors, slop
-        self.shape = block.half_width, block.half_height, stiffness, hardening, stretch
+    def __init__(self, connectors: tuple[Any, ...], friction: float, sticking: float) -> None:
+        self.at, self.connectors, self.stretch = 0.0, connectors, friction / sticking
 
-    def commit(self, mbs: exu.MainSystem, q: np.ndarray, v: np.ndarray) -> None:
-        """Move the anchor after a step to coordinates q and velocities v."""
-        at = _anchor(self.at, q, v, *self.shape)
-        if abs(at - self.at) > self.slop:
+    def commit(self, mbs: exu.MainSystem) -> None:
+        """After a step: move the anchor by what every loaded corner has slid, and a block in flight's with its lower
+        corner."""
+        seen = [[mbs.GetObjectOutput(one, kind) for kind in (DISPLACEMENT, FORCE)] for one in self.connectors]
+        at, loaded = self.at, [(u[0], -self.stretch * force[1]) for u, force in seen if force[1] < 0]
+        for across, most in loaded or [(min(seen, key=lambda corner: corner[0][1])[0][0], 0.0)]:
+            at = min(max(at, self.at + across - most), self.at + across + most)
+        if at != self.at:
             self.at = at
             for connector in self.connectors:
                 mbs.SetObjectParameter(connector, "offset", [at, 0.0, 0.0])
@@ -202,10 +166,12 @@ class Model:
     ground: exu.ObjectIndex
     block: exu.ObjectIndex
     base: exu.ObjectIndex
+    deflected: Sequence[float]  # see `engines.exudyn.scene.start_coordinates`
     bearing: Bearing | None = None
     anchor: Anchor | None = None
     twist: Twist | None = None
-    loads: list = field(default_factory=list)  # (number, motion whose segment it follows)
+    weight: Any = None  # load of the block
+    push: Any = None  # load of the base under a motion
     connectors: dict = field(default_factory=dict)
     keep: list = field(default_factory=list)
     expected: dict = field(default_factory=dict)  # (object number, field): value the variant asked for
@@ -235,12 +201,6 @@ class Model:
         twist.connector = self.mbs.AddObject(ObjectConnectorTorsionalSpringDamper(markerNumbers=markers))
         self._make_symbolic(twist.connector, torque, "springTorqueUserFunction", self.mbs.SetObjectParameter)
         self.twist = twist
-
-    def load(self, item: Any, function: Callable[..., Any], motion: Motion) -> None:
-        """A load with a symbolic value, whose vector holds the segment's parameters of the motion."""
-        number = exu.LoadIndex(self.mbs.AddLoad(item))
-        self._make_symbolic(number, function, "loadVectorUserFunction", self.mbs.SetLoadParameter)
-        self.loads.append((number, motion))
 
     def _make_symbolic(self, number: Any, function: Callable[..., Any], name: str, setter: Callable[..., Any]) -> None:
         tree = CreateSymbolicUserFunction(self.mbs, function, name, number)
