@@ -23,28 +23,13 @@ if TYPE_CHECKING:
     from ..couple import Couple
 
 Real = exu.symbolic.Real
+LEAST = 1e-9
 DISPLACEMENT, FORCE = exu.OutputVariableType.Displacement, exu.OutputVariableType.Force
 
 
-class _Symbols:
-    """Operations for a law's formula, see `Law.expression`."""
-
-    @staticmethod
-    def where(condition: Any, a: Any, b: Any) -> Any:
-        a, b = (Real(one) if isinstance(one, float) else one for one in (a, b))
-        return exu.symbolic.IfThenElse(condition, a, b)
-
-    @staticmethod
-    def power(a: Any, b: float) -> Any:
-        return exu.symbolic.pow(a, Real(b))
-
-    @staticmethod
-    def exp(a: Any) -> Any:
-        return exu.symbolic.exp(a)
-
-
 class Bearing:
-    """All bearings as one force between ground and base: symbolic inside a step, its history committed after it.
+    """All bearings as one spring and damper between ground and base, whose spring follows the law along its chord in the
+    next step; the history is committed after each step.
 
     x, z : base displacement [m] and hysteretic force of one bearing [N] at the last accepted step.
     """
@@ -52,32 +37,25 @@ class Bearing:
     def __init__(self, law: BearingLaw, displacement: float) -> None:
         self.law, self.x, self.z, self.connector = law, displacement, law.start(displacement), None
 
-    def memory(self) -> list[float]:
-        """The history as the three numbers the force expression reads."""
-        return [self.x, *self.law.moved(self.z, 0.0)[1:]]
+    def spring(self, ahead: float) -> dict[str, list[float]]:
+        """Its parameters for the next step, in which the base is expected to move by `ahead` [m]."""
+        law = self.law
+        chord = law.kb + (law.hysteretic(self.z, ahead) - self.z) / ahead
+        place = self.x - (law.kb * self.x + self.z) / chord
+        return {"stiffness": [law.count * chord, 0.0, 0.0], "offset": [place, 0.0, 0.0]}
 
     def commit(self, mbs: exu.MainSystem, x: float) -> float:
         """Move the history to an accepted displacement; the hysteretic force there."""
         if self.law.unit.memory:
-            self.z, first, second = self.law.moved(self.z, x - self.x)
-            self.x = x
-            mbs.SetObjectParameter(self.connector, "offset", [x, first, second])
+            ahead = x - self.x
+            self.restore(mbs, x, self.law.hysteretic(self.z, ahead), ahead)
         return self.z
 
-    def restore(self, mbs: exu.MainSystem, x: float, z: float) -> None:
-        """Take the history back to an earlier step."""
+    def restore(self, mbs: exu.MainSystem, x: float, z: float, ahead: float = 0.0) -> None:
+        """Set the history to that of a step."""
         self.x, self.z = x, z
-        mbs.SetObjectParameter(self.connector, "offset", self.memory())
-
-    def force(self, displacement: Any, velocity: Any, offset: Any) -> list[Any]:
-        """Symbolic force against the base [N], by the law's formula from the committed point.
-
-        exudyn has already subtracted the offset, here the committed displacement, from the displacement.
-        """
-        law, dx = self.law, displacement[0]
-        z = law.unit.expression(_Symbols, dx, offset[1], offset[2], law.constants)
-        total = law.kb * (dx + offset[0]) + law.damping * velocity[0] + z
-        return [law.count * total, Real(0.0), Real(0.0)]
+        for name, value in self.spring(ahead or LEAST).items():
+            mbs.SetObjectParameter(self.connector, name, value)
 
 
 def _strengths(kept: float) -> tuple[float, float]:

@@ -11,7 +11,6 @@ import math
 from typing import TYPE_CHECKING
 
 import exudyn as exu
-import numpy as np
 
 from analytic.rocking import RockingModel
 
@@ -73,8 +72,6 @@ class Phases:
         self.implicit, self.contact, self.since = False, None, 0.0
         # Since this time the steps may be implicit: where Newton's method fails they are explicit for a while.
         self.free = 0.0 if self.step >= WORTHWHILE * step else math.inf
-        # A jump of the ground's acceleration may lift a standing block within one implicit step.
-        self.jumps = scene.motion.jumps if scene.motion else ()
         model.mbs.SetPostStepUserFunction(self.keep)
         self.ground = Ground(model)
         if scene.motion:
@@ -112,51 +109,51 @@ class Phases:
         """After each step (PostStep): record it; False ends the run, or a part of it."""
         if t <= self.steps.times[-1]:
             return True  # exudyn also calls it at the start of each part
-        if not self.record(mbs, t):
-            return False
-        system = self.model.mbs.systemData
-        return self.quiet(t, system.GetODE2Coordinates(), system.GetODE2Coordinates_t()) == self.implicit
+        return self.record(mbs, t) and self.quiet(t) == self.implicit
 
-    def quiet(self, t: float, q: np.ndarray, v: np.ndarray) -> bool:
-        """Whether contact has not changed for a while, and will not change in the next steps."""
-        (_, up, turn, *_), (_, _, rate, *_), (b, h, least) = q.tolist(), v.tolist(), self.shape
+    def quiet(self, t: float) -> bool:
+        """Whether contact has not changed for a while before the last step, and will not change in the next steps."""
+        states, width, (b, h, least) = self.steps.states, self.steps.width, self.shape
+        up, turn, rate = states[1 - 2 * width], states[2 - 2 * width], states[2 - width]
         drop, lean = h * (math.cos(turn) - 1) - up - least, b * math.sin(turn)
-        contact = drop + lean >= 0, drop - lean >= 0, self.model.anchor and self.model.anchor.at
-        if contact != self.contact or not any(contact[:2]):
+        left, right = drop + lean >= 0, drop - lean >= 0
+        contact = left, right, self.model.anchor and self.model.anchor.at
+        if contact != self.contact or not (left or right):
             self.contact, self.since = contact, t  # a corner landed, lifted or slid
         if t - self.since < self.settle or t < self.free:
             return False
-        if any(0 <= t - jump < self.settle for jump in self.jumps):
-            return False
-        return all(contact[:2]) or abs(turn) + math.copysign(rate, turn * rate) * self.ahead > self.fallen
+        return left and right or abs(turn) + math.copysign(rate, turn * rate) * self.ahead > self.fallen
 
     def run(self) -> Failure | None:
         """Step to the scene's end, to overturning or to the limit of steps; exudyn's failure, or None."""
-        steps, duration = self.steps, self.model.scene.duration
-        for t in sorted({0.0, standing_until(self.model.scene)}):
+        steps, scene = self.steps, self.model.scene
+        begin, duration = standing_until(scene), scene.duration
+        for t in sorted({0.0, begin}):
             self.record(self.model.mbs, t)
-        while steps.times[-1] < duration * (1 - SUMS):
-            t, count = steps.times[-1], len(steps.times)
-            q, v = steps.last()
-            self.implicit = self.quiet(t, q, v)
-            failure = self._piece(t, q, v)
-            if failure and not self.implicit:
-                return failure
-            if failure:
-                self.free = steps.times[-1] + self.settle
-            elif len(steps.times) == count or steps.ended:
-                return None
+        jumps = [t for t in scene.motion.jumps if begin < t < duration] if scene.motion else []
+        for self.ground.end in (*jumps, duration):
+            self.since = steps.times[-1]  # a jump may lift a standing block within one implicit step
+            while steps.times[-1] < self.ground.end - SUMS * duration:
+                count = len(steps.times)
+                self.implicit = self.quiet(steps.times[-1])
+                failure = self._piece(steps.times[-1])
+                if failure and not self.implicit:
+                    return failure
+                if failure:
+                    self.free = steps.times[-1] + self.settle
+                elif len(steps.times) == count or steps.ended:
+                    return None
         return None
 
-    def _piece(self, t, q, v):
-        """Integrate from a state to the next change of integrator or jump of the ground's acceleration; the failure."""
-        mbs, (solver, settings) = self.model.mbs, self.solvers[self.implicit]
+    def _piece(self, t):
+        """Integrate from the last step to the next change of integrator or jump of the ground's acceleration; the
+        failure."""
+        mbs, (solver, settings), (q, v) = self.model.mbs, self.solvers[self.implicit], self.steps.last()
         mbs.systemData.SetODE2Coordinates(q, configuration=INITIAL)
         mbs.systemData.SetODE2Coordinates_t(v, configuration=INITIAL)
-        integration, step = settings.timeIntegration, self.step if self.implicit else self.longest
+        integration, left = settings.timeIntegration, self.ground.end - t
         self.ground.part = 0.5 if self.implicit else 1.0
-        self.ground.end = end = min(jump for jump in (*self.jumps, self.model.scene.duration) if jump > t)
-        integration.startTime, integration.endTime = t, end
-        integration.numberOfSteps = math.ceil((end - t) / step)
-        integration.initialStepSize = min(end - t, FIRST * self.longest)
+        integration.startTime, integration.endTime = t, self.ground.end
+        integration.numberOfSteps = math.ceil(left / (self.step if self.implicit else self.longest))
+        integration.initialStepSize = min(left, FIRST * self.longest)
         return solve(solver, mbs, settings)

@@ -17,6 +17,7 @@ from exudyn.itemInterface import (
     MarkerBodyPosition,
     Node1D,
     NodeRigidBody2D,
+    ObjectConnectorCartesianSpringDamper,
     ObjectGround,
     ObjectMass1D,
     ObjectRigidBody2D,
@@ -26,7 +27,7 @@ from analytic import Start
 from analytic.bearing import BearingLaw
 
 from ..placement import placement
-from .model import Bearing, Model
+from .model import LEAST, Bearing, Model
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -82,7 +83,9 @@ def _add_bearing(model: Model) -> None:
     mbs, law = model.mbs, BearingLaw.of(model.scene.bearings)
     model.bearing = Bearing(law, model.scene.start.base_displacement)
     markers = [mbs.AddMarker(MarkerBodyPosition(bodyNumber=body)) for body in (model.ground, model.base)]
-    model.bearing.connector = model.connect("bearing", markers, model.bearing.force, offset=model.bearing.memory())
+    damping = [law.count * law.damping, 0.0, 0.0]
+    spring = ObjectConnectorCartesianSpringDamper(markerNumbers=markers, damping=damping, **model.bearing.spring(LEAST))
+    model.bearing.connector = mbs.AddObject(spring)
 
 
 def _add_loads(model: Model) -> None:
