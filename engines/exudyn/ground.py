@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import exudyn as exu
@@ -12,28 +11,26 @@ from ..ground_velocity import ground_velocity
 if TYPE_CHECKING:
     from .model import Model
 
+ALL, END = 1.0, 1e-4
 BEGIN = exu.ConfigurationType.StartOfStep
 
 
 class Ground:
-    """Sets the loads of a scene's motion before each attempt of a step, to a mean by which the motion's impulse is exact.
+    """Sets the loads of a scene's motion before each attempt of a step.
 
-    part: 1 for explicit steps, the mean over the step; 1/2 for the implicit rules, which take the load at a step's end
-    and weigh both ends alike: the mean from half a step before it to half a step after. end: time [s] of a jump, beyond
-    which no mean extends. Steps cut at the samples of a record, with the acceleration as a formula inside, are no
-    better.
+    part: share of a step, up to its end, of which they are the mean: all of an explicit one, which a jump so gives its
+    impulse; the implicit rules weigh the loads at both ends of a step.
     """
 
     def __init__(self, model: Model) -> None:
-        scene, self.weight, self.push, self.part, self.end = model.scene, model.weight, model.push, 0.5, math.inf
+        scene, self.weight, self.push, self.part = model.scene, model.weight, model.push, END
         self.mass, self.gravity = scene.base.mass if scene.base else 0.0, scene.gravity
         self.velocities = [ground_velocity(motion) for motion in (scene.motion, scene.motion and scene.motion.vertical)]
 
     def prepare(self, mbs: exu.MainSystem, t: float) -> bool:
         """Before each attempt of a step that would end at t (PreStep)."""
-        step = t - mbs.systemData.GetTime(BEGIN)
-        begin, end = t - self.part * step, min(t + (1 - self.part) * step, self.end)
-        across, up = ((v(end) - v(begin)) / (end - begin) if v else 0.0 for v in self.velocities)
+        begin = t - self.part * (t - mbs.systemData.GetTime(BEGIN))
+        across, up = ((v(t) - v(begin)) / (t - begin) if v else 0.0 for v in self.velocities)
         mbs.SetLoadParameter(self.weight, "loadVector", [-across, -self.gravity - up, 0.0])
         if self.push is not None:
             mbs.SetLoadParameter(self.push, "loadVector", [-self.mass * across, 0.0, 0.0])

@@ -23,13 +23,14 @@ if TYPE_CHECKING:
     from ..couple import Couple
 
 Real = exu.symbolic.Real
-LEAST = 1e-9
+LEAST = 1e-9  # travel [m] of a chord where the base was at rest
 DISPLACEMENT, FORCE = exu.OutputVariableType.Displacement, exu.OutputVariableType.Force
 
 
 class Bearing:
-    """All bearings as one spring and damper between ground and base, whose spring follows the law along its chord in the
-    next step; the history is committed after each step.
+    """All bearings as one spring and damper between ground and base. Within a step the spring follows the law along its
+    chord over the travel of the step before, by which the errors are those of the law as a formula; the history is
+    committed after each step.
 
     x, z : base displacement [m] and hysteretic force of one bearing [N] at the last accepted step.
     """
@@ -92,9 +93,11 @@ class Anchor:
         """After a step: move the anchor by what every loaded corner has slid, and a block in flight's with its lower
         corner."""
         seen = [[mbs.GetObjectOutput(one, kind) for kind in (DISPLACEMENT, FORCE)] for one in self.connectors]
-        at, loaded = self.at, [(u[0], -self.stretch * force[1]) for u, force in seen if force[1] < 0]
-        for across, most in loaded or [(min(seen, key=lambda corner: corner[0][1])[0][0], 0.0)]:
-            at = min(max(at, self.at + across - most), self.at + across + most)
+        loaded = [(self.at + u[0], -self.stretch * force[1]) for u, force in seen if force[1] < 0]
+        if not loaded:
+            loaded = [(self.at + min(seen, key=lambda corner: corner[0][1])[0][0], 0.0)]
+        low, high = min(place - most for place, most in loaded), max(place + most for place, most in loaded)
+        at = min(max(self.at, low), high)
         if at != self.at:
             self.at = at
             for connector in self.connectors:

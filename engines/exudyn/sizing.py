@@ -36,9 +36,9 @@ class CompliantCorners:
     # Tangential damping, over the critical one of block and base on the contact; 0.3 to 1 give the same error.
     damping: float = 0.5
     # Sliding speed [m/s] at which the viscous part of friction, proportional to the normal force, equals that force. A
-    # corner must stick as soon as it lands; otherwise the other corner is pressed down and takes part in the impact. e of
-    # an impact with slip is off in proportion, here by 2e-3; that of others is the same with .001 to .1, where .003 and
-    # .001 take 10 and 40 % more steps.
+    # corner must stick as soon as it lands; otherwise the other corner is pressed down and takes part in the impact.
+    # Where an impact slips, e is off in proportion: 1.6e-2, 2e-3 and 5e-4 with .1, .01 and .003. Where none does,
+    # .001 to .1 give the same e; .003 and .001 take 10 and 50 % more steps.
     slip: float = 0.01
     # Local error per step [m, rad, m/s, rad/s]. The step is limited by stability of the stiff contact, not by this.
     tolerance: float = 1e-7
