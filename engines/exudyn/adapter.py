@@ -50,10 +50,10 @@ VARIANTS = {
         constants=CONSTANTS,
         takes_restitution=True,
         computes="motion, contact, impact and rest, by integration",
-        imposes="contact law: ours (Hunt-Crossley, Coulomb, viscous at low speed; plastic as Housner assumes: agreement "
-        "verifies law and integration); a plane; steps: explicit through impacts, implicit between them; start: with "
-        f"the motion, on corners deflected by what they carry; {LOADS} (implicit) or its mean over it (explicit); "
-        f"{CHORD}; restitution given: a couple before each landing",
+        imposes="contact law: ours (Hunt-Crossley, Coulomb, viscous at low speed, plastic as Housner assumes: "
+        "agreement verifies law and integration); a plane; steps: explicit through impacts, implicit between; start: "
+        f"with the motion, on corners deflected by what they carry; {LOADS}, of explicit steps its mean; {CHORD}; "
+        "restitution given: a couple before each landing",
     ),
     "switched-joints": Variant(
         joints.SwitchedJoints(),

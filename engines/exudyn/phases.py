@@ -76,7 +76,8 @@ class Phases:
         self.step = self.dt / math.ceil(self.dt / smooth) if self.dt < math.inf else smooth
         self.ahead, rocking = AHEAD * self.step + early, RockingModel.of(scene)
         self.fallen = 0.5 * PUSHED * rocking.m * rocking.g * scene.block.half_width / rocking.J * self.ahead**2
-        self.implicit, self.contact, self.since = False, None, 0.0
+        self.implicit, self.since = False, 0.0
+        self.contact: tuple[object, ...] = ()  # of either corner, and the place of a block that slides
         # Since this time the steps may be implicit: where Newton's method fails they are explicit for a while.
         self.free = 0.0 if smooth >= WORTHWHILE * step else math.inf
         model.mbs.SetPostStepUserFunction(self.keep)

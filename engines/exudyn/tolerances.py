@@ -2,6 +2,8 @@
 
 from ..tolerance_rows import HELD, READING, ROUNDING, ToleranceRow
 
+# A jump of the ground's acceleration errs as the others only where the block is at rest from the start until then; see
+# `sizing.CompliantCorners`.
 STIFFNESS = "contact stiffness; goes as its inverse"
 SQUARE = "step squared; the impact is the model's own"
 
