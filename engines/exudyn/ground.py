@@ -30,6 +30,8 @@ class Ground:
     def prepare(self, mbs: exu.MainSystem, t: float) -> bool:
         """Before each attempt of a step that would end at t (PreStep)."""
         begin = t - self.part * (t - mbs.systemData.GetTime(BEGIN))
+        if t == begin:  # the last of steps that Newton's method makes shorter and shorter
+            return True
         across, up = ((v(t) - v(begin)) / (t - begin) if v else 0.0 for v in self.velocities)
         mbs.SetLoadParameter(self.weight, "loadVector", [-across, -self.gravity - up, 0.0])
         if self.push is not None:

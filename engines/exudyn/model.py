@@ -147,7 +147,7 @@ class Model:
     ground: exu.ObjectIndex
     block: exu.ObjectIndex
     base: exu.ObjectIndex
-    deflected: Sequence[float]  # see `engines.exudyn.scene.start_coordinates`
+    deflected: Sequence[float]  # see `engines.exudyn.scene.build`
     bearing: Bearing | None = None
     anchor: Anchor | None = None
     twist: Twist | None = None

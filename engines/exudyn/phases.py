@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import exudyn as exu
 
 from analytic.motion import SampledMotion
+from analytic.response import Failure
 from analytic.rocking import RockingModel
 
 from ..vibration import longest_step
@@ -22,8 +23,6 @@ from .stepping import solve, solver_settings
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-
-    from analytic.response import Failure
 
     from .model import Model
     from .sizing import CompliantCorners
@@ -149,8 +148,10 @@ class Phases:
                     return failure
                 if failure:
                     self.free = steps.times[-1] + self.settle
-                elif len(steps.times) == count or steps.ended:
+                elif steps.ended:
                     return None
+                elif len(steps.times) == count:
+                    return Failure("the solver made no step", f"from {steps.times[-1]:.9g} s")
         return None
 
     def _meets(self, t):

@@ -40,30 +40,23 @@ def standing_until(scene: Scene) -> float:
     return min(scene.motion.start, scene.duration) if scene.motion and scene.start == Start() else 0.0
 
 
-def start_coordinates(scene: Scene, deflected: Sequence[float]) -> tuple[list[float], list[float]]:
-    """(q, v) of the block's centre [m, m/s; rad, rad/s], relative to its position at rest; that of a standing block is
-    `deflected` by what carries it."""
-    x, z, across, up = placement(scene)
-    tilt, rate = scene.start.tilt, scene.start.tilt_rate
-    dx, dz, turn = deflected if tilt == 0 and rate == 0 else (0.0, 0.0, 0.0)
-    return [x + dx, z + dz, turn - tilt], [across, up, -rate]
-
-
 def build(scene: Scene, deflected: Sequence[float] = (0.0, 0.0, 0.0)) -> Model:
-    """The `Model` of a scene without contact; deflected: see `start_coordinates`."""
+    """The `Model` of a scene without contact. A standing block is `deflected` by what carries it [m, m, rad]."""
+    start, (x, z, across, up) = scene.start, placement(scene)
+    dx, dz, turn = deflected = (0.0, 0.0, 0.0) if start.tilt or start.tilt_rate else deflected
     container = exu.SystemContainer()
     mbs = container.AddSystem()
     ground = mbs.AddObject(ObjectGround())
-    q, v = start_coordinates(scene, deflected)
     node = mbs.AddNode(
         NodeRigidBody2D(
-            referenceCoordinates=[0.0, scene.block.half_height, 0.0], initialCoordinates=q, initialVelocities=v
+            referenceCoordinates=[0.0, scene.block.half_height, 0.0],
+            initialCoordinates=[x + dx, z + dz, turn - start.tilt],
+            initialVelocities=[across, up, -start.tilt_rate],
         )
     )
     block = mbs.AddObject(ObjectRigidBody2D(mass=scene.block.mass, inertia=scene.block.centre_inertia, nodeNumber=node))
     base = ground
     if scene.base:
-        start = scene.start
         node = mbs.AddNode(
             Node1D(
                 referenceCoordinates=[0.0],

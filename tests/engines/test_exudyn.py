@@ -104,6 +104,14 @@ def test_a_jump_of_the_ground_lifts_a_block_without_a_kick(shape, frequency, bou
     assert simulate(given).peak_tilt == pytest.approx(exact(given).peak_tilt, rel=bound)
 
 
+def test_a_leaning_block_starts_as_it_is_given_whatever_the_ground_does():
+    pulse = PulseMotion("rectangular", 4.0, 6.0)
+    given = RELEASED.with_(motion=pulse)
+    assert simulate(given).impacts[0].time == pytest.approx(exact(given).impacts[0].time, abs=2e-4)
+    late = RELEASED.with_(motion=replace(pulse, start=3.0), start=Start(), duration=2.0)
+    assert simulate(late).outcome == "stands"
+
+
 def test_a_jump_under_the_weight_alone_errs_by_the_root_of_stiffness(monkeypatch):
     """As one that lifts a block which was released and came to rest before."""
     given = scene(0.2, duration=1.2, motion=PulseMotion("rectangular", 1.25 * 9.81 * math.tan(0.2), 6.0))
