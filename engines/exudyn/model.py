@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from ..couple import Couple
 
 Real = exu.symbolic.Real
+SLIDES = 1 - 1e-9  # friction over its limit, but for round-off
 LEAST = 1e-9  # travel [m] of a chord where the base was at rest
 DISPLACEMENT, FORCE = exu.OutputVariableType.Displacement, exu.OutputVariableType.Force
 
@@ -87,15 +88,21 @@ class Anchor:
     """
 
     def __init__(self, connectors: tuple[Any, ...], friction: float, sticking: float) -> None:
-        self.at, self.connectors, self.stretch = 0.0, connectors, friction / sticking
+        self.at, self.connectors, self.friction, self.sticking = 0.0, connectors, friction, sticking
 
     def commit(self, mbs: exu.MainSystem) -> None:
         """After a step: move the anchor by what every loaded corner has slid, and a block in flight's with its lower
         corner."""
-        seen = [[mbs.GetObjectOutput(one, kind) for kind in (DISPLACEMENT, FORCE)] for one in self.connectors]
-        loaded = [(self.at + u[0], -self.stretch * force[1]) for u, force in seen if force[1] < 0]
+        limits = []  # of friction [N]
+        for connector in self.connectors:
+            across, up, _ = mbs.GetObjectOutput(connector, FORCE)
+            limits.append(-self.friction * up)
+            if abs(across) < SLIDES * limits[-1]:
+                return
+        gaps = [mbs.GetObjectOutput(connector, DISPLACEMENT) for connector in self.connectors]
+        loaded = [(self.at + gap[0], limit / self.sticking) for gap, limit in zip(gaps, limits, strict=True) if limit]
         if not loaded:
-            loaded = [(self.at + min(seen, key=lambda corner: corner[0][1])[0][0], 0.0)]
+            loaded = [(self.at + min(gaps, key=lambda gap: gap[1])[0], 0.0)]
         low, high = min(place - most for place, most in loaded), max(place + most for place, most in loaded)
         at = min(max(self.at, low), high)
         if at != self.at:
