@@ -49,7 +49,7 @@ if TYPE_CHECKING:
 PEAK, RESTITUTION, LOSS, FALL = 0.02, 0.01, 0.1, 0.02
 LEAST_DISPLACEMENT = 1e-5
 LEAST_LOSS = 0.02  # smallest of the statue range by eq. (7): slenderness .1, J_O = 2 m R^2, rigid ground
-FRICTION = 5.0  # coefficient in every tuned variant where the scene gives none: no sliding
+FRICTION = 5.0  # coefficient where the scene gives none: no sliding. Of tuned engines PyBullet has 10, pymunk 1
 OUT_OF_PHASE = 0.1  # share of a swing by which an impact is early or late; no later impact counts as missing
 LAST = 0.01  # share of a rocking period before the end in which an impact may occur in one run only
 FALLS = "overturns"
