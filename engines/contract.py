@@ -56,6 +56,9 @@ class Variant:
     computes, imposes : str
         What the engine computes, and what the adapter imposes beside the bearing force, the ground acceleration and
         the settings; in words.
+    calls : dict
+        {a call of the engine's API that the adapter makes, with its values; or an assignment that the calls need: why},
+        in Python and the names of a script of `engines.scripting`, for a block on bearings.
     takes_restitution : bool
         A scene may give the restitution: the adapter applies the impact (kind assisted), or a couple before each
         landing (`engines.couple`).
@@ -85,6 +88,7 @@ class Variant:
     levels: tuple[float, ...]
     computes: str
     imposes: str
+    calls: dict[str, str] = field(default_factory=dict)
     takes_restitution: bool = False
     finer: tuple[dict[str, float], ...] = ()
     varied: dict[str, tuple[float, ...]] = field(default_factory=dict)

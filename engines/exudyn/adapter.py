@@ -14,7 +14,7 @@ from analytic.response import Failure, State
 
 from ..checks import replay_bearing
 from ..contract import Variant
-from . import corners, joints, native
+from . import calls, corners, joints, native
 from .constants import CONSTANTS
 
 if TYPE_CHECKING:
@@ -31,10 +31,12 @@ REPLAY_LIMIT = 1e-9
 LOADS = "ground: its acceleration at the step's end"
 CHORD = "bearings: within a step a spring along the law's chord"
 _MODULES = {"compliant-corners": corners, "switched-joints": joints, "native-contact": native}
+TUNED, SWITCHED, NATIVE = corners.CompliantCorners(), joints.SwitchedJoints(), native.NativeContact()
 VARIANTS = {
     "compliant-corners": Variant(
-        corners.CompliantCorners(),
+        TUNED,
         kind="tuned",
+        calls=calls.compliant_corners(TUNED),
         levels=(1e9, 1e10, 2e11, 1e12),
         finer=(
             {"stiffness": 1e12, "pivoting_step": 2e-4},
@@ -56,8 +58,9 @@ VARIANTS = {
         "restitution given: a couple before each landing",
     ),
     "switched-joints": Variant(
-        joints.SwitchedJoints(),
+        SWITCHED,
         kind="assisted",
+        calls=calls.switched_joints(SWITCHED),
         levels=(1.6e-2, 4e-3, 1e-3),
         finer=({"step": 1e-4},),
         takes_restitution=True,
@@ -65,8 +68,9 @@ VARIANTS = {
         imposes=f"uplift, impact by eqs (7) and (8), rest; a plane; {LOADS}; {CHORD}",
     ),
     "native-contact": Variant(
-        native.NativeContact(),
+        NATIVE,
         kind="defaults",
+        calls=calls.native_contact(NATIVE),
         levels=(1e-3, 3e-4, 1e-4),
         finer=({"step": 5e-5},),
         computes="motion, contact, impact and rest",
