@@ -19,12 +19,11 @@ BODIES = {
     "ObjectRigidBody2D(mass=m, inertia=J - m * R**2)": "inertia about the centre",
     "Node1D(referenceCoordinates=[0])": "of the base",
     "ObjectMass1D(mass=mb)": "",
-    "LoadMassProportional(loadVectorUserFunction=f)": "of the block, [-a, -g, 0]: in the ground's frame "
-    "its acceleration a is one more gravity",
-    "LoadForceVector(loadVectorUserFunction=f)": "of the base, [-mb * a, 0, 0]",
-    "ObjectConnectorCartesianSpringDamper(springForceUserFunction=f)": "of all bearings; their law is f, from the "
-    "displacement and the history of the last step, which a function after each step moves on",
-    "CreateSymbolicUserFunction(mbs, f, name, item)": "of each f: run by exudyn, without Python",
+    "LoadMassProportional()": "of the block; before each step its loadVector is [-a, -g, 0]: in the ground's frame its "
+    "acceleration a, here the mean of the step, is one more gravity",
+    "LoadForceVector()": "of the base; before each step its loadVector is [-mb * a, 0, 0]",
+    "ObjectConnectorCartesianSpringDamper(stiffness=[chord, 0, 0], damping=[dampers, 0, 0])": "of all bearings; after "
+    "each step, stiffness and offset are those of the law's chord ahead, from the history that moves on there",
 }
 QUICKER = {
     f"settings.timeIntegration.explicit.{name} = False": "a step takes less time"
@@ -55,24 +54,24 @@ def compliant_corners(settings: CompliantCorners) -> dict[str, str]:
         "part = mb / (m + mb)": "1 on the ground",
         f"kt = {settings.sticking:g} * k * part": "N/m, tangential",
         "turned = 4 / (1 / (m * part) + h**2 / (J - m * R**2))": "kg",
-        f"ct = 2 * {settings.damping:g} * sqrt(kt * min(m * part, turned))": "N s/m",
+        f"ct = 2 * {settings.damping:g} * sqrt(kt * turned)": "N s/m",
         "N = max(0, k * max(0, depth) * (1 - rise / rebound))": "Hunt and Crossley, of a corner that is depth deep and "
         "rises at rise; it must not pull",
         "stick = kt * across + (ct + part * N / slip) * slide": "N",
         f"T = max(-{settings.friction:g} * N, min({settings.friction:g} * N, stick))": (
             "Coulomb; across: from where the corner stuck, slide: its rate; mu of a scene that gives mu"
         ),
+        "CreateSymbolicUserFunction(mbs, f, name, item)": "of the force below: run by exudyn, without Python",
         "ObjectConnectorCartesianSpringDamper(springForceUserFunction=[T, -N, 0])": "of each corner",
         "explicit.timeIntegration.solverType = DynamicSolverType.DOPRI5": "explicit: the SimulationSettings of a "
         "MainSolverExplicit; settings: of every solver",
         f"explicit.timeIntegration.absoluteTolerance = {settings.tolerance:g} * min(scale, 1 / scale)": "",
         "explicit.timeIntegration.relativeTolerance = 1e-14": "round-off",
-        f"explicit.timeIntegration.minimumStepSize = {corners.LEAST_STEP:g}": "s",
+        f"explicit.timeIntegration.minimumStepSize = {phases.LEAST_STEP:g}": "s",
         f"explicit.timeIntegration.initialStepSize = {phases.FIRST * settings.longest_step:g} * scale": "s",
         **QUICKER,
         "implicit.timeIntegration.solverType = DynamicSolverType.GeneralizedAlpha": "of a "
         "MainSolverImplicitSecondOrder, while the block pivots or stands",
-        f"implicit.timeIntegration.generalizedAlpha.spectralRadius = {1 - phases.DAMPED:g}": "",
         f"rounding = {phases.ROUNDING:.6g} * k * R": "N",
         f"implicit.timeIntegration.newton.absoluteTolerance = max({phases.RESIDUAL:g} * m * g, rounding)": "N",
         "implicit.timeIntegration.newton.numericalDifferentiation.minimumCoordinateSize = 1": "",
