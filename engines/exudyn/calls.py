@@ -68,7 +68,7 @@ def compliant_corners(settings: CompliantCorners) -> dict[str, str]:
         f"explicit.timeIntegration.absoluteTolerance = {settings.tolerance:g} * min(scale, 1 / scale)": "",
         "explicit.timeIntegration.relativeTolerance = 1e-14": "round-off",
         f"explicit.timeIntegration.minimumStepSize = {phases.LEAST_STEP:g}": "s",
-        f"explicit.timeIntegration.initialStepSize = {phases.FIRST * settings.longest_step:g} * scale": "s",
+        f"settings.timeIntegration.initialStepSize = {phases.FIRST * settings.longest_step:g} * scale": "s",
         **QUICKER,
         "implicit.timeIntegration.solverType = DynamicSolverType.GeneralizedAlpha": "of a "
         "MainSolverImplicitSecondOrder, while the block pivots or stands",
