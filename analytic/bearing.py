@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from .scene import Bearings
     from .types import Values
 
-_after_travel, _sides = law_function("after_travel"), law_function("sides")
+_after_travel = law_function("after_travel")
 
 
 @inner
@@ -35,18 +35,10 @@ def _path(z: float, x: np.ndarray, law: int, c: Constants, forces: np.ndarray) -
         forces[i] = z
 
 
-# Engines call these at every step: passing numbers takes half the time of passing a record.
+# Engines call it at every step: passing numbers takes half the time of passing a record.
 @entry
 def _hysteretic(z: float, dx: float, law: int, *constants: float) -> float:
     return hysteretic_force(z, dx, float(law), Constants(*constants))
-
-
-@entry
-def _moved(z: float, dx: float, law: int, *constants: float) -> tuple[float, float, float]:
-    c = Constants(*constants)
-    z = hysteretic_force(z, dx, float(law), c)
-    first, second = _sides(float(law), z, c)
-    return z, first, second
 
 
 @dataclass(frozen=True)
@@ -102,10 +94,6 @@ class BearingLaw:
     def hysteretic(self, z: float, dx: float) -> float:
         """z of one bearing [N] after monotonic travel dx [m] from z."""
         return _hysteretic(z, dx, self.law, *self.constants)
-
-    def moved(self, z: float, dx: float) -> tuple[float, float, float]:
-        """(z after dx, the two numbers from which `Law.expression` continues)."""
-        return _moved(z, dx, self.law, *self.constants)
 
     def path(self, x: np.ndarray) -> np.ndarray:
         """z [N] along displacements x [m], shape (n,), monotonic in between; x[0] is reached by `start`."""

@@ -67,7 +67,7 @@ class Pulse:
     """One shape of a pulse.
 
     length : of the pulse [rad].
-    value(ops, u) : f, with sin, cos and exp of `ops`: math, numpy, or an engine's symbolic functions.
+    value(ops, u) : f, with sin, cos and exp of `ops`: math or numpy.
     integral(ops, u, phase) : of f(u + phase) from 0 to u.
     first_peak(phase) : u of the first maximum of |f|.
     turns(length, phase) : u of ends, zeros and extremes, ascending.

@@ -25,6 +25,7 @@ from analytic.errors import EngineBroken, EngineNotInstalled
 if TYPE_CHECKING:
     from analytic.response import Caution, Failure
 
+    from .mistakes import Mistake
     from .swings import Trace
     from .tolerance_rows import ToleranceRow
 
@@ -55,6 +56,9 @@ class Variant:
     computes, imposes : str
         What the engine computes, and what the adapter imposes beside the bearing force, the ground acceleration and
         the settings; in words.
+    calls : dict
+        {a call of the engine's API that the adapter makes, with its values; or an assignment that the calls need: why},
+        in Python and the names of a script of `engines.scripting`, for a block on bearings.
     takes_restitution : bool
         A scene may give the restitution: the adapter applies the impact (kind assisted), or a couple before each
         landing (`engines.couple`).
@@ -84,6 +88,7 @@ class Variant:
     levels: tuple[float, ...]
     computes: str
     imposes: str
+    calls: dict[str, str] = field(default_factory=dict)
     takes_restitution: bool = False
     finer: tuple[dict[str, float], ...] = ()
     varied: dict[str, tuple[float, ...]] = field(default_factory=dict)
@@ -171,6 +176,8 @@ class Engine:
         tolerance table.
     script : str or None
         ``package:file``: the template of a script of one scene, see `engines.scripting`.
+    mistakes : str or None
+        Name of a module whose ``MISTAKES``, a tuple of `engines.mistakes.Mistake`, are made in that script.
     subject : bool
         The studies are about this engine; engines that are no subject are shown for comparison.
     origin : str
@@ -187,6 +194,7 @@ class Engine:
     imported: str | None = None
     tolerances: str | None = None
     script: str | None = None
+    mistakes: str | None = None
     subject: bool = False
     origin: str = ""
 
@@ -231,6 +239,10 @@ class Engine:
         if not self.tolerances or (self.origin and not self.installed):
             return {}
         return import_module(self.tolerances).TOLERANCES
+
+    def known_mistakes(self) -> dict[str, Mistake]:
+        """{key: mistake}; the package need not be installed."""
+        return {one.key: one for one in import_module(self.mistakes).MISTAKES} if self.mistakes else {}
 
     @property
     def installed(self) -> bool:

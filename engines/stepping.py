@@ -29,7 +29,7 @@ from .ground_velocity import ground_velocity
 from .leapfrog import MOST_ROWS, failure_of, row_limit, trace_of
 from .placement import placement
 from .scale import size_scale
-from .step_size import ROUNDING, SLOW, Rule, fixed_rule, gap_rule, limits
+from .step_size import ROUNDING, Rule, fixed_rule, gap_rule, limits
 from .vibration import added_mass, driven_mass, leapfrog_stiffness, longest_step
 
 if TYPE_CHECKING:
@@ -38,11 +38,14 @@ if TYPE_CHECKING:
     from .swings import Trace
 
 # s, at `scale.UNIT_RADIUS` and the default level. On a light base the error of e is proportional to it.
-SMALLEST_STEP = 1e-6
-# s, likewise: time before a landing in which the couple of a given restitution acts, a hundred of these. With 2e-4 and
+SMALLEST_STEP = 5e-7
+# s, likewise: time before a landing in which the couple of a given restitution acts, 200 of these. With 2e-4 and
 # 4e-4 e is up to 2 and 4 times as far off on a base.
 ACTS = 1e-4
 SMEARED = 3  # steps before and after an impact over which a contact solver may spread it; see `leapfrog.trace_of`
+DEPTH = (
+    2.0  # largest penetration of a corner that the rule does not anticipate, over g h^2: it falls back at g h or less
+)
 LANDING = 1.0  # largest landing speed of a corner, over the slenderness, the width 2 b and sqrt(g/R)
 # Numbers that were chosen in impact-aware steps, for `engines.contract.Variant.constants`.
 CONSTANTS = {
@@ -50,10 +53,7 @@ CONSTANTS = {
     "engines.stepping:SMALLEST_STEP": "step while a corner lands [s]",
     "engines.step_size:SHARE": "step over the time to a landing",
     "engines.step_size:GROWTH": "largest growth of a step over the one before",
-    "engines.step_size:HOLD": "steps after a landing for which the step does not grow",
     "engines.step_size:NEAR": "least gap of a closing corner that counts as landing, over g h^2",
-    "engines.step_size:SLOW": "closing speed above which a corner counts as landing at any gap, over g h",
-    "engines.step_size:JUMP": "jump of a corner's speed that counts as an impact, over g h",
     "engines.step_size:LEAST_AHEAD": "least time to a jump of the ground motion that gets its own step, over the step",
     "engines.step_size:ROUNDING": "tolerated difference of the steps' sum from the duration, over the step",
     "engines.stepping:LANDING": "largest speed of a landing corner at which contact counts as flat",
@@ -62,6 +62,14 @@ CONSTANTS = {
     "engines.vibration:VIBRATION": "step over the time in which the bearings' vibration advances by 1 rad",
     "engines.vibration:STIFF": "the same ratio, above which the leapfrog's period error is corrected",
 }
+# What the adapters of leapfrog engines impose, for `engines.contract.Variant.imposes`.
+MEAN_LOADS = (
+    "loads times (step + step before)/(2 step), the ground's as its mean; dampers and stiff bearings as mass added to "
+    "the base; velocities read half a step early"
+)
+RULED = f"steps by gaps and closing speeds, which meet jumps of the ground's acceleration; {MEAN_LOADS}"
+GIVEN = "restitution given: a couple before each landing"
+SAMPLED = "loads as where a step begins"
 ENDS = ("done", "overturned", "not finite", "too many steps")  # any other end is the engine's message, "what: why"
 
 # Tilt [rad] and its rate; x, z [m] and x', z' of the block's centre, measured from its position when standing at the
@@ -219,7 +227,7 @@ def sampled_loads(scene: Scene) -> Loads:
 
 @dataclass(frozen=True)
 class ImpactAware:
-    """Steps by the rule of `engines.step_size`: small where a corner lands, at most `largest_step` [s] elsewhere.
+    """Steps by gaps and closing speeds: small where a corner lands, at most `largest_step` [s] elsewhere.
 
     `largest_step` is the accuracy parameter. The error from flight is proportional to its square, the error from
     landings to the smallest step. The smallest step is therefore `SMALLEST_STEP` at a largest step of `balanced_step`
@@ -253,7 +261,7 @@ def run_of(
     settings: Settings,
     bodies_of: Callable[[float], Bodies],
     raw: Callable[[np.ndarray], Trace],
-    depth: float = SLOW,
+    depth: float = DEPTH,
 ) -> Run:
     """The `Run` of a scene.
 
@@ -266,7 +274,7 @@ def run_of(
     raw : function
         From rows to the trace of a first script.
     depth : float
-        Largest penetration of a corner that closes too slowly for the rule, over g h^2.
+        Largest penetration of a corner that the rule does not anticipate, over g h^2.
     """
     largest, smallest = step_limits(scene, settings)
     duration = scene.duration or 0.0  # never None in a run
@@ -316,8 +324,8 @@ def step_limits(scene: Scene, settings: Settings) -> tuple[float, float]:
 def contact_tilt(scene: Scene, largest: float, smallest: float, depth: float) -> float:
     """Tilt [rad] below which the block counts as in flat contact: twice the largest penetration of a corner, over 2 b.
 
-    A corner whose landing the rule anticipates sinks by its speed times the smallest step, any other by SLOW g h times
-    h at most.
+    A corner whose landing the rule anticipates sinks by its speed times the smallest step, any other by `depth` g h^2
+    at most.
     """
     block, g = scene.block, scene.gravity
     landing = LANDING * block.slenderness * math.sqrt(g / block.radius) * smallest

@@ -185,7 +185,8 @@ def to_contact(scene: Scene, trace: Trace, swings: Swings, direction: int) -> tu
     law, side = model.bearing, swings.side
     index, edge = (swings.last, swings.last) if direction > 0 else (swings.clean, swings.first)
     if direction > 0 and trace.early:
-        before = np.searchsorted(trace.time, trace.time[swings.last] - trace.early) - 1
+        # A step before the one at which the couple begins: a leapfrog's rate there is half that of the next step.
+        before = np.searchsorted(trace.time, trace.time[swings.last] - trace.early) - 2
         index = np.clip(before, swings.clean, swings.last)
     ground = scene.motion.acceleration if scene.motion else np.zeros_like
     t, tilt, rate, x, v = (getattr(trace, name)[index].copy() for name in Trace.COLUMNS[:5])

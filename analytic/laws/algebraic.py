@@ -7,7 +7,6 @@ complete memory: no list of reversal points is needed.
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
@@ -98,18 +97,6 @@ def reached(s: float, z: float, q: np.ndarray, order: int, h: float, travel: flo
     return z if s == 0 else on_branch(s, travel, c)
 
 
-@inner
-def sides(z: float, c: Constants) -> tuple[float, float]:
-    """D_c in both directions."""
-    return virtual_travel(1.0, z, c), virtual_travel(-1.0, z, c)
-
-
-def expression(ops: Any, dx: Any, first: Any, second: Any, c: Constants) -> Any:
-    s = ops.where(dx >= 0.0, 1.0, -1.0)
-    travel = ops.where(dx >= 0.0, first + dx, second - dx)
-    return s * ((ops.power(travel, 1 - c.alpha) - c.d0) * (c.dk / (1 - c.alpha)) + c.f0)
-
-
 LAW = Law(
     "algebraic",
     needs=("kb", "alpha"),
@@ -122,6 +109,4 @@ LAW = Law(
     term=term,
     mark=virtual_travel,
     reached=reached,
-    sides=sides,
-    expression=expression,
 )

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
@@ -57,11 +56,6 @@ def branch(z: float, direction: float, c: Constants) -> Callable[[float, float],
     return lambda z, v: slope * v
 
 
-def expression(ops: Any, dx: Any, first: Any, second: Any, c: Constants) -> Any:
-    elastic = first + c.dk * dx
-    return ops.where(elastic >= c.f0, c.f0, ops.where(elastic >= -c.f0, elastic, -c.f0))
-
-
 LAW = Law(
     "bilinear",
     needs=("kb", "yield_force"),
@@ -72,5 +66,4 @@ LAW = Law(
     begin=begin,
     term=term,
     branch=branch,
-    expression=expression,
 )

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
@@ -50,11 +49,6 @@ def branch(z: float, direction: float, c: Constants) -> Callable[[float, float],
     return lambda z, v: 0.5 * c.dk * v * (1 - direction * z / c.f0)
 
 
-def expression(ops: Any, dx: Any, first: Any, second: Any, c: Constants) -> Any:
-    s = ops.where(dx >= 0.0, 1.0, -1.0)
-    return s * c.f0 - (s * c.f0 - first) * ops.exp((-0.5 * c.dk / c.f0) * s * dx)
-
-
 LAW = Law(
     "bouc-wen",
     needs=("kb", "alpha"),
@@ -66,5 +60,4 @@ LAW = Law(
     begin=begin,
     term=term,
     branch=branch,
-    expression=expression,
 )

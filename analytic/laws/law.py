@@ -34,11 +34,6 @@ def last_of_series(s: float, z: float, q: np.ndarray, order: int, h: float, trav
     return value(q, order, h)
 
 
-@inner
-def only_z(z: float, c: Constants) -> tuple[float, float]:
-    return z, 0.0
-
-
 @dataclass(frozen=True)
 class Law:
     """One bearing law. Fields with a default are needed by some laws only.
@@ -59,9 +54,6 @@ class Law:
     term(k, factors, x, v, q) : z_k for k >= 1, with q_k filled in; x up to k, v and q up to k - 1 are given.
     mark(s, z, c) : position of z on the branch of direction s [m], stored at a reversal; travel is counted from it.
     reached(s, z, q, order, h, travel, c) : z at the end of a step.
-    sides(z, c) : two numbers of `expression`, committed after each step of an engine.
-    expression(ops, dx, first, second, c) : `after_travel` for engines with symbolic expressions, with
-        where(condition, a, b), power(a, b) and exp(a) of `ops`.
     branch(z, direction, c) : function (z, v) -> z' [N/s] from z to the next reversal or corner. If given, the second
         implementation integrates z as a state, otherwise it uses `after_travel`; not compiled.
     """
@@ -74,11 +66,9 @@ class Law:
     recoverable: Callable
     begin: Any
     term: Callable
-    expression: Callable
     own: tuple[str, ...] = ()
     ignores: tuple[str, ...] = ()
     memory: bool = True
     mark: Callable = no_mark
     reached: Callable = last_of_series
-    sides: Callable = only_z
     branch: Callable | None = None

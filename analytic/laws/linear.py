@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
@@ -44,10 +43,6 @@ def reached(s: float, z: float, q: np.ndarray, order: int, h: float, travel: flo
     return z
 
 
-def expression(ops: Any, dx: Any, first: Any, second: Any, c: Constants) -> Any:
-    return first
-
-
 LAW = Law(
     "linear",
     needs=(),
@@ -60,5 +55,4 @@ LAW = Law(
     begin=begin,
     term=term,
     reached=reached,
-    expression=expression,
 )

@@ -8,7 +8,7 @@ import typer
 def command(name: Annotated[str | None, typer.Argument(help="Engine to describe in full.")] = None) -> None:
     """List the engines and their variants: kind, what the engine computes, and what our adapter imposes on it.
 
-    With a name: its versions, and the settings and levels of each variant, too.
+    With a name: its versions, and the settings, the levels and the engine's own calls of each variant, too.
 
     Example: rocking engines exudyn
     """

@@ -55,6 +55,7 @@ SHORT = {
     "sensitivity": "What matters more",
     "speed-error": "Cost against error",
     "stability": "Hard cases",
+    "mistakes": "What a mistake costs",
 }
 
 

@@ -14,7 +14,7 @@ from rich.table import Table
 from rich.text import Text
 
 from analytic import Caution, Response, Scene
-from engines.contract import Engine
+from engines.contract import Engine, Variant
 from engines.statue_range import in_words
 
 from ..measuring.horizon import Horizon
@@ -238,9 +238,12 @@ def _warnings(responses):
     return said
 
 
+NAMES_OF_CALLS = "g, m, R, gamma, J, mb, b, h: as in its script; scale: sqrt(R/1.0884 m)"
+
+
 def engines_table(engines: Sequence[Engine]) -> Grid:
     """Table of all variants: kind, what the engine computes and what the adapter imposes."""
-    caption = Text(f"Tested for {in_words()}.\nrocking engines NAME: settings, levels, versions.")
+    caption = Text(f"Tested for {in_words()}.\nrocking engines NAME: settings, levels, calls, versions.")
     heads = ["engine", "variant", "kind", "the engine computes", "the adapter imposes"]
     rows = [
         [engine.name if name == engine.default_variant else "", name, variant.kind, variant.computes, variant.imposes]
@@ -252,19 +255,37 @@ def engines_table(engines: Sequence[Engine]) -> Grid:
 
 def engine_text(engine: Engine) -> str:
     """Description of an `Engine`: versions, and for each variant kind, settings (the accuracy parameter first), levels,
-    what the engine computes and what the adapter imposes."""
+    what the engine computes, what the adapter imposes and the engine's calls."""
     versions = ", ".join(f"{package} {version}" for package, version in engine.versions().items())
-    lines = [f"{engine.name} ({versions})"]
+    lines, shown = [f"{engine.name} ({versions})"], set[str]()
+    if engine.script:
+        lines.append(f"  rocking script {engine.name} SCENE writes the main variant out, as a plain script of a scene.")
     for name, variant in engine.variants.items():
         default = "main, " if name == engine.default_variant else ""
-        about = (inspect.getdoc(type(variant.settings)) or name).split("\n\n")[0].replace("\n", " ")
         values = [f"{field}={value:.6g}" for field, value in dataclasses.asdict(variant.settings).items()]
         values[:1] = [f"{value} (accuracy parameter)" for value in values[:1]]
         lines += [
-            f"  --variant {name} ({default}{variant.kind}): {about}",
+            f"  --variant {name} ({default}{variant.kind}){'' if variant.calls else f': {_about(variant)}'}",
             f"      settings: {', '.join(values)}",
             f"      levels, coarse to fine: {', '.join(f'{value:.4g}' for value in variant.levels)}",
             f"      the engine computes: {variant.computes}",
             f"      the adapter imposes: {variant.imposes}",
+            *_calls(variant, shown),
         ]
+        shown.update(variant.calls)
     return "\n".join(lines) + "\n"
+
+
+def _calls(variant: Variant, shown: Collection[str]) -> list[str]:
+    """Lines of a variant's calls, without those that are shown."""
+    if not variant.calls:
+        return []
+    own = {call: why for call, why in variant.calls.items() if call not in shown}
+    beside = ", beside some of the above" if len(own) < len(variant.calls) else ""
+    head = f"      the engine's calls{beside}, of a block on bearings ({NAMES_OF_CALLS}):"
+    return [head, *(f"        {call}{f'  # {why}' if why else ''}" for call, why in own.items())]
+
+
+def _about(variant: Variant) -> str:
+    """What the settings say of themselves."""
+    return (inspect.getdoc(type(variant.settings)) or "").split("\n\n")[0].replace("\n", " ")

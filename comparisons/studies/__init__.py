@@ -72,6 +72,7 @@ QUESTIONS = {
         "How far each engine is from the analytic model, beside what it is held to. Status 1: a row does not hold."
     ),
     "constants": "Each number that was chosen in an engine's variant, halved and doubled: what moves?",
+    "mistakes": "Scripts of a rocking block in an engine's plain calls, each with one mistake: what does it cost?",
     "sheet": "The problem sheet in every engine: what rocking score ranks other codes beside.",
 }
 BUILT_IN = tuple(QUESTIONS)

@@ -108,6 +108,10 @@ ROWS = {
         "constant": """engine variant change constant? what? value? runs failed reason? outcomes_changed moved rms?
             peak_median? peak_worst? steps cpu_seconds cpu_ratio?"""
     },
+    "mistakes": {
+        "run": """engine variant scene mistake? done? group? expected outcome reason? error? energy? graph?
+            displacement? steps?"""
+    },
     "sheet": {"scene": "scene engine variant error? missing warnings failure?"},
 }
 

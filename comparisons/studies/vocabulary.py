@@ -347,6 +347,25 @@ OWN: dict[str, dict[str, Explained]] = {
         "cpu_seconds": number("CPU time of all runs together", "s"),
         "cpu_ratio": number("CPU time over that with the constant as it is"),
     },
+    "mistakes": {
+        "mistake": word("its name; null: the script as it is"),
+        "done": word("what was done, in words"),
+        "group": word('what it concerns: body, contact, steps, forces or motion; or "no matter"'),
+        "expected": word("outcome of the analytic model"),
+        "outcome": word('of the script\'s run: stands, rocks, overturns; "failed": no end, or a run that is none'),
+        "reason": word("why the run failed; null: it did not"),
+        "error": number("error of restitution by the states at strong impacts: root mean square"),
+        "energy": number(
+            "error of restitution by the rates of successive impacts, free rocking on rigid ground: root mean square"
+        ),
+        "graph": number(
+            "largest difference of the tilt from the model's at one time, until either block is beyond its unstable "
+            "point",
+            "slenderness",
+        ),
+        "displacement": number("largest difference of the base displacement, as long", "peak of the model's"),
+        "steps": whole("steps of the run"),
+    },
     "sheet": {
         "error": number("largest of the scene's answers, over the scale of each"),
         "missing": series("answers that the run does not give"),

@@ -8,7 +8,7 @@ import dartpy
 
 from ..contract import Run, Variant
 from ..leapfrog import raw_trace_of
-from ..stepping import FirstScript, ImpactAware, run_of
+from ..stepping import RULED, SAMPLED, FirstScript, ImpactAware, run_of
 from .scene import DartBodies
 
 if TYPE_CHECKING:
@@ -21,14 +21,14 @@ VARIANTS = {
         kind="tuned",
         levels=(2e-3, 6e-4, 2e-4, 1e-4),
         computes="motion, contact, impact and rest",
-        imposes="the steps, by gaps and closing speeds",
+        imposes=RULED,
     ),
     "first-script": Variant(
         FirstScript(1e-3),  # DART's own default
         kind="defaults",
         levels=(5e-3, 1e-3, 2e-4),
         computes="motion, contact, impact and rest",
-        imposes="nothing",
+        imposes=SAMPLED,
     ),
 }
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from ..contract import Run, Variant
 from ..leapfrog import raw_trace_of
-from ..stepping import FirstScript, run_of
+from ..stepping import SAMPLED, FirstScript, run_of
 from .scene import DrakeBodies
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ VARIANTS = {
         kind="defaults",
         levels=(5e-3, 2e-3, 1e-3),
         computes="motion, contact, impact and rest",
-        imposes="nothing",
+        imposes=SAMPLED,
     )
 }
 

@@ -9,6 +9,7 @@ ENGINE = Engine(
     adapter="engines.exudyn.adapter",
     tolerances="engines.exudyn.tolerances",
     script="engines.exudyn:script.py.jinja",
+    mistakes="engines.exudyn.mistakes",
     colour="#E69F00",
     marker="s",
     dashes="--",

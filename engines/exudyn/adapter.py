@@ -14,7 +14,7 @@ from analytic.response import Failure, State
 
 from ..checks import replay_bearing
 from ..contract import Variant
-from . import corners, joints, native
+from . import calls, corners, joints, native
 from .constants import CONSTANTS
 
 if TYPE_CHECKING:
@@ -28,11 +28,15 @@ if TYPE_CHECKING:
 # Replayed bearing force, over f0: round-off stays below 1e-12.
 REPLAY_LIMIT = 1e-9
 
+LOADS = "ground: its acceleration at the step's end"
+CHORD = "bearings: within a step a spring along the law's chord"
 _MODULES = {"compliant-corners": corners, "switched-joints": joints, "native-contact": native}
+TUNED, SWITCHED, NATIVE = corners.CompliantCorners(), joints.SwitchedJoints(), native.NativeContact()
 VARIANTS = {
     "compliant-corners": Variant(
-        corners.CompliantCorners(),
+        TUNED,
         kind="tuned",
+        calls=calls.compliant_corners(TUNED),
         levels=(1e9, 1e10, 2e11, 1e12),
         finer=(
             {"stiffness": 1e12, "pivoting_step": 2e-4},
@@ -48,25 +52,29 @@ VARIANTS = {
         constants=CONSTANTS,
         takes_restitution=True,
         computes="motion, contact, impact and rest, by integration",
-        imposes="contact law: ours (Hunt-Crossley, Coulomb; plastic as Housner assumes: agreement verifies law and "
-        "integration); a plane; explicit or implicit steps; restitution given: a couple before each landing",
+        imposes="contact law: ours (Hunt-Crossley, Coulomb, viscous at low speed, plastic as Housner assumes: "
+        "agreement verifies law and integration); a plane; steps: explicit through impacts, implicit between; start: "
+        f"with the motion, on corners deflected by what they carry; {LOADS}, of explicit steps its mean; {CHORD}; "
+        "restitution given: a couple before each landing",
     ),
     "switched-joints": Variant(
-        joints.SwitchedJoints(),
+        SWITCHED,
         kind="assisted",
+        calls=calls.switched_joints(SWITCHED),
         levels=(1.6e-2, 4e-3, 1e-3),
         finer=({"step": 1e-4},),
         takes_restitution=True,
         computes="motion between events",
-        imposes="uplift, impact by eqs (7) and (8), rest; a plane",
+        imposes=f"uplift, impact by eqs (7) and (8), rest; a plane; {LOADS}; {CHORD}",
     ),
     "native-contact": Variant(
-        native.NativeContact(),
+        NATIVE,
         kind="defaults",
+        calls=calls.native_contact(NATIVE),
         levels=(1e-3, 3e-4, 1e-4),
         finer=({"step": 5e-5},),
         computes="motion, contact, impact and rest",
-        imposes="a plane",
+        imposes=f"a plane; {LOADS}; {CHORD}",
     ),
 }
 

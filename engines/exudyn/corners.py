@@ -13,12 +13,14 @@ from typing import TYPE_CHECKING, Any, Self
 
 import exudyn as exu
 
+from analytic.motion import vertical_acceleration
+
 from ..couple import Couple
 from .model import Anchor, Twist
-from .phases import Phases, Rule
-from .scene import build
+from .phases import Phases
+from .scene import build, standing_until
 from .sizing import CompliantCorners, scaled
-from .stepping import solver_settings, step_through
+from .stepping import step_through
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -31,13 +33,10 @@ Real = exu.symbolic.Real
 # Relaxation time of the corners after an impact, over sqrt(m/k); for a third of it the landing corner is pushed out at
 # the rebound speed. At most MOST_RELAX sqrt(R/g), which soft corners would exceed.
 RELAX, MOST_RELAX = 75.0, 0.06
-# Change of the anchor that is not passed to exudyn, over the stretch of the sticking spring under the block's weight.
-SLOP = 1e-3
 # Time before a landing in which a couple acts, over the relaxation time: it presses the corners in, and they return at
 # the rebound speed. With .1, .2 and .3 e is 3e-3, 1.3e-3 and 7e-4 too large for a restitution .8 times that of (7); on
 # a light base, whose pull on the block changes meanwhile, it is .65, 1 and 1.7 times as far off.
 ACTS = 0.21
-LEAST_STEP = 1e-13  # s; exudyn stops where it would need a shorter one
 
 
 @dataclass(frozen=True)
@@ -64,7 +63,7 @@ class Corner:
             stiffness,
             1 / settings.rebound,
             sticking,
-            2 * settings.damping * math.sqrt(sticking * min(reduced, turning)),
+            2 * settings.damping * math.sqrt(sticking * turning),
             reduced / block.mass / settings.slip,
             settings.friction,
         )
@@ -92,23 +91,36 @@ class Corner:
         ]
 
 
+def deflected(scene: Scene, corner: Corner) -> tuple[float, float, float]:
+    """Displacement [m] and rotation of a standing block whose corners carry it at the start, see `standing_until`.
+
+    Where the ground's acceleration lifts the block at once, as a jump can, they carry it as it pivots. From rest under
+    its weight the corner that lifts would push it while it comes out: an impulse, and an error, as stiffness^-1/2.
+    """
+    block, motion, begin = scene.block, scene.motion, standing_until(scene)
+    m, b, h = block.mass, block.half_width, block.half_height
+    pull = scene.gravity + float(vertical_acceleration(motion, begin))
+    a = float(motion.acceleration(begin)) if motion and not scene.base else 0.0  # a base slides away under the block
+    turning = max(m * (abs(a) * h - pull * b) / block.inertia, 0.0)
+    normal, side = m * (pull + b * turning), -math.copysign(1.0, a)
+    lean = side * min(m * abs(a) * h / b, normal) / (2 * b * corner.stiffness)
+    across = m * (a + side * h * turning) / (corner.sticking * (1 if turning else 2))
+    return h * lean - across, -normal / (2 * corner.stiffness), -lean
+
+
 def assemble(scene: Scene, settings: CompliantCorners, couple: Couple | None = None) -> tuple[Model, float]:
     """(model, contact tilt [rad]) of a scene with compliant corners."""
     corner = Corner.of(scene, settings)
     sink = scene.block.mass * scene.gravity / (2 * corner.stiffness)
-    model = build(scene, sink)
+    model = build(scene, deflected(scene, corner))
     for side, name in ((-1, "left"), (1, "right")):
         model.connect(name, model.corner_markers(side), corner.force)
     if couple:
         model.add_twist(Twist(couple, 2 * sink / scene.block.half_width))
-    model.anchor = Anchor(
-        scene.block,
-        (model.connectors["left"], model.connectors["right"]),
-        stiffness=corner.stiffness,
-        hardening=corner.hardening,
-        stretch=corner.friction / corner.sticking,
-        slop=SLOP * scene.block.mass * scene.gravity / corner.sticking,
-    )
+    usual = scaled(scene, CompliantCorners())
+    if settings.friction < usual.friction or settings.rebound > usual.rebound:  # else the block neither slides nor hops
+        both = model.connectors["left"], model.connectors["right"]
+        model.anchor = Anchor(both, corner.friction, corner.sticking)
     return model, sink / scene.block.half_width
 
 
@@ -122,17 +134,10 @@ def run(scene: Scene, settings: CompliantCorners) -> Run:
     couple = Couple.of(scene, ACTS * settle)
     early = couple.lasts if couple else 0.0
     model, contact_tilt = assemble(scene, settings, couple)
-    explicit = solver_settings(
-        scene,
-        solverType=exu.DynamicSolverType.DOPRI5,
-        automaticStepSize=True,
-        minimumStepSize=LEAST_STEP,
-        relativeTolerance=1e-14,  # round-off: with 0 the steps never end after a shock that overflows
-        absoluteTolerance=settings.tolerance,
-    )
     sink = contact_tilt * scene.block.half_width
-    rule = Rule(explicit, settings.longest_step, settings.pivoting_step, sink, settle, early)
-    ran = step_through(
-        model, lambda model, steps, record: Phases(model, rule, steps, record).run(), 2 * contact_tilt, settle
-    )
+
+    def drive(model, steps, record):
+        return Phases(model, settings, steps, record, sink=sink, settle=settle, early=early).run()
+
+    ran = step_through(model, drive, 2 * contact_tilt, settle)
     return replace(ran, trace=replace(ran.trace, early=early)) if couple and ran.trace else ran

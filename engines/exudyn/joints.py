@@ -54,7 +54,7 @@ class Stepper:
         alpha = self.settings.timeIntegration.generalizedAlpha
         alpha.useNewmark = alpha.useIndex2Constraints = True
         if scene.motion is not None:
-            self.model.mbs.SetPreStepUserFunction(Ground(self.model, settings.step).prepare)
+            self.model.mbs.SetPreStepUserFunction(Ground(self.model).prepare)
         self.model.mbs.SetPostStepUserFunction(self.keep)
         self.rows: list[tuple[float, np.ndarray, np.ndarray]]
         self.z: list[float]

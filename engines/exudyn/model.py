@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import exudyn as exu
-import numpy as np
 from exudyn.advancedUtilities import CreateSymbolicUserFunction
 from exudyn.itemInterface import (
     MarkerBodyPosition,
@@ -16,37 +15,23 @@ from exudyn.itemInterface import (
     ObjectConnectorCartesianSpringDamper,
     ObjectConnectorTorsionalSpringDamper,
 )
-from numba import njit
 
 if TYPE_CHECKING:
-    from analytic import Block, Scene
+    from analytic import Scene
     from analytic.bearing import BearingLaw
-    from analytic.motion import Motion
 
     from ..couple import Couple
 
 Real = exu.symbolic.Real
-
-
-class _Symbols:
-    """Operations for a law's formula, see `Law.expression`."""
-
-    @staticmethod
-    def where(condition: Any, a: Any, b: Any) -> Any:
-        a, b = (Real(one) if isinstance(one, float) else one for one in (a, b))
-        return exu.symbolic.IfThenElse(condition, a, b)
-
-    @staticmethod
-    def power(a: Any, b: float) -> Any:
-        return exu.symbolic.pow(a, Real(b))
-
-    @staticmethod
-    def exp(a: Any) -> Any:
-        return exu.symbolic.exp(a)
+SLIDES = 1 - 1e-9  # friction over its limit, but for round-off
+LEAST = 1e-9  # travel [m] of a chord where the base was at rest
+DISPLACEMENT, FORCE = exu.OutputVariableType.Displacement, exu.OutputVariableType.Force
 
 
 class Bearing:
-    """All bearings as one force between ground and base: symbolic inside a step, its history committed after it.
+    """All bearings as one spring and damper between ground and base. Within a step the spring follows the law along its
+    chord over the travel of the step before, by which the errors are those of the law as a formula; the history is
+    committed after each step.
 
     x, z : base displacement [m] and hysteretic force of one bearing [N] at the last accepted step.
     """
@@ -54,32 +39,25 @@ class Bearing:
     def __init__(self, law: BearingLaw, displacement: float) -> None:
         self.law, self.x, self.z, self.connector = law, displacement, law.start(displacement), None
 
-    def memory(self) -> list[float]:
-        """The history as the three numbers the force expression reads."""
-        return [self.x, *self.law.moved(self.z, 0.0)[1:]]
+    def spring(self, ahead: float) -> dict[str, list[float]]:
+        """Its parameters for the next step, in which the base is expected to move by `ahead` [m]."""
+        law = self.law
+        chord = law.kb + (law.hysteretic(self.z, ahead) - self.z) / ahead
+        place = self.x - (law.kb * self.x + self.z) / chord
+        return {"stiffness": [law.count * chord, 0.0, 0.0], "offset": [place, 0.0, 0.0]}
 
     def commit(self, mbs: exu.MainSystem, x: float) -> float:
         """Move the history to an accepted displacement; the hysteretic force there."""
         if self.law.unit.memory:
-            self.z, first, second = self.law.moved(self.z, x - self.x)
-            self.x = x
-            mbs.SetObjectParameter(self.connector, "offset", [x, first, second])
+            ahead = x - self.x
+            self.restore(mbs, x, self.law.hysteretic(self.z, ahead), ahead)
         return self.z
 
-    def restore(self, mbs: exu.MainSystem, x: float, z: float) -> None:
-        """Take the history back to an earlier step."""
+    def restore(self, mbs: exu.MainSystem, x: float, z: float, ahead: float = 0.0) -> None:
+        """Set the history to that of a step."""
         self.x, self.z = x, z
-        mbs.SetObjectParameter(self.connector, "offset", self.memory())
-
-    def force(self, displacement: Any, velocity: Any, offset: Any) -> list[Any]:
-        """Symbolic force against the base [N], by the law's formula from the committed point.
-
-        exudyn has already subtracted the offset, here the committed displacement, from the displacement.
-        """
-        law, dx = self.law, displacement[0]
-        z = law.unit.expression(_Symbols, dx, offset[1], offset[2], law.constants)
-        total = law.kb * (dx + offset[0]) + law.damping * velocity[0] + z
-        return [law.count * total, Real(0.0), Real(0.0)]
+        for name, value in self.spring(ahead or LEAST).items():
+            mbs.SetObjectParameter(self.connector, name, value)
 
 
 def _strengths(kept: float) -> tuple[float, float]:
@@ -103,57 +81,31 @@ def _strengths(kept: float) -> tuple[float, float]:
     return c, brentq(lambda d: at_ground(c, d, 1e-3), -100.0, 100.0)
 
 
-@njit("f8(f8, f8[::1], f8[::1], f8, f8, f8, f8, f8)", cache=True)  # compiled when it is imported
-def _anchor(
-    anchor: float, q: np.ndarray, v: np.ndarray, b: float, h: float, stiffness: float, hardening: float, stretch: float
-) -> float:
-    """Position [m] at which the block sticks to its base after a step, moved by what every loaded corner has slid.
-
-    stretch: stretch of the sticking spring at sliding, over the normal force [m/N]. A block without contact has no
-    anchor; then it is the position of its lower corner.
-    """
-    low, high, lowest, place = math.inf, -math.inf, -math.inf, anchor
-    sin, cos = math.sin(q[2]), math.cos(q[2])
-    x, rate = (q[3], v[3]) if len(q) > 3 else (0.0, 0.0)
-    for side in (-1.0, 1.0):
-        across = q[0] - x + side * b * (cos - 1) + h * sin
-        depth = h * (cos - 1) - q[1] - side * b * sin
-        normal = 0.0
-        if depth > 0:
-            normal = stiffness * depth * (1 - hardening * (v[1] + v[2] * (side * b * cos + h * sin)))
-        if normal > 0:
-            low, high = min(low, across - stretch * normal), max(high, across + stretch * normal)
-        if depth > lowest:
-            lowest, place = depth, across
-    if low > high:
-        return place
-    return min(max(anchor, low), high)
-
-
 class Anchor:
     """State of Coulomb friction: the position at which the block sticks to its base, committed once per accepted step.
 
-    connectors: of the two corners. stiffness [N/m], hardening [s/m]: of their normal force. stretch: stretch of the
-    sticking spring at sliding, over the normal force [m/N]. slop: change that is not passed to exudyn [m].
+    connectors: of the two corners. friction: coefficient. sticking: tangential stiffness of a corner [N/m].
     """
 
-    def __init__(
-        self,
-        block: Block,
-        connectors: tuple[Any, Any],
-        *,
-        stiffness: float,
-        hardening: float,
-        stretch: float,
-        slop: float,
-    ) -> None:
-        self.at, self.connectors, self.slop = 0.0, connectors, slop
-        self.shape = block.half_width, block.half_height, stiffness, hardening, stretch
+    def __init__(self, connectors: tuple[Any, ...], friction: float, sticking: float) -> None:
+        self.at, self.connectors, self.friction, self.sticking = 0.0, connectors, friction, sticking
 
-    def commit(self, mbs: exu.MainSystem, q: np.ndarray, v: np.ndarray) -> None:
-        """Move the anchor after a step to coordinates q and velocities v."""
-        at = _anchor(self.at, q, v, *self.shape)
-        if abs(at - self.at) > self.slop:
+    def commit(self, mbs: exu.MainSystem) -> None:
+        """After a step: move the anchor by what every loaded corner has slid, and a block in flight's with its lower
+        corner."""
+        limits = []  # of friction [N]
+        for connector in self.connectors:
+            across, up, _ = mbs.GetObjectOutput(connector, FORCE)
+            limits.append(-self.friction * up)
+            if abs(across) < SLIDES * limits[-1]:
+                return
+        gaps = [mbs.GetObjectOutput(connector, DISPLACEMENT) for connector in self.connectors]
+        loaded = [(self.at + gap[0], limit / self.sticking) for gap, limit in zip(gaps, limits, strict=True) if limit]
+        if not loaded:
+            loaded = [(self.at + min(gaps, key=lambda gap: gap[1])[0], 0.0)]
+        low, high = min(place - most for place, most in loaded), max(place + most for place, most in loaded)
+        at = min(max(self.at, low), high)
+        if at != self.at:
             self.at = at
             for connector in self.connectors:
                 mbs.SetObjectParameter(connector, "offset", [at, 0.0, 0.0])
@@ -202,10 +154,12 @@ class Model:
     ground: exu.ObjectIndex
     block: exu.ObjectIndex
     base: exu.ObjectIndex
+    deflected: Sequence[float]  # see `engines.exudyn.scene.build`
     bearing: Bearing | None = None
     anchor: Anchor | None = None
     twist: Twist | None = None
-    loads: list = field(default_factory=list)  # (number, motion whose segment it follows)
+    weight: Any = None  # load of the block
+    push: Any = None  # load of the base under a motion
     connectors: dict = field(default_factory=dict)
     keep: list = field(default_factory=list)
     expected: dict = field(default_factory=dict)  # (object number, field): value the variant asked for
@@ -235,12 +189,6 @@ class Model:
         twist.connector = self.mbs.AddObject(ObjectConnectorTorsionalSpringDamper(markerNumbers=markers))
         self._make_symbolic(twist.connector, torque, "springTorqueUserFunction", self.mbs.SetObjectParameter)
         self.twist = twist
-
-    def load(self, item: Any, function: Callable[..., Any], motion: Motion) -> None:
-        """A load with a symbolic value, whose vector holds the segment's parameters of the motion."""
-        number = exu.LoadIndex(self.mbs.AddLoad(item))
-        self._make_symbolic(number, function, "loadVectorUserFunction", self.mbs.SetLoadParameter)
-        self.loads.append((number, motion))
 
     def _make_symbolic(self, number: Any, function: Callable[..., Any], name: str, setter: Callable[..., Any]) -> None:
         tree = CreateSymbolicUserFunction(self.mbs, function, name, number)

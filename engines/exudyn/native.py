@@ -39,7 +39,7 @@ def assemble(scene: Scene, settings: NativeContact) -> tuple[Model, float]:
     """(model, static penetration [m]) of a scene with sphere-triangle contacts."""
     block = scene.block
     sink = block.mass * scene.gravity / (2 * settings.stiffness)
-    model = build(scene, sink)
+    model = build(scene, (0.0, -sink, 0.0))
     mbs, b, h, r = model.mbs, block.half_width, block.half_height, settings.sphere
     wide = 10 * block.radius
     triangle = [[-wide, 0.0, wide], [wide, 0.0, wide], [0.0, 0.0, -2 * wide]]

@@ -1,174 +1,175 @@
 """Two integrators of exudyn for one model: explicit steps through impacts, implicit ones while contact does not change.
 
 A stiff corner needs thousands of explicit steps per second, even while the block only pivots or stands. There exudyn's
-generalized-alpha method takes steps of a millisecond. Both integrate the same corners and bearings: a change of
-integrator changes no state and no force.
+generalized-alpha method takes steps of a millisecond: the same errors at a fifth of the CPU time. Both integrate the
+same corners and bearings: a change of integrator changes no state and no force.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import exudyn as exu
-import numpy as np
-from numba import njit
 
-from analytic.motion import PulseMotion
+from analytic.motion import SampledMotion
+from analytic.response import Failure
 from analytic.rocking import RockingModel
 
 from ..vibration import longest_step
-from .ground import SUMS, Ground
+from .ground import ALL, END, Ground
+from .scene import standing_until
 from .stepping import solve, solver_settings
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from analytic.response import Failure
-
     from .model import Model
+    from .sizing import CompliantCorners
     from .stepping import Steps
 
 INITIAL = exu.ConfigurationType.Initial
-NEITHER, BOTH = -2, 0  # loaded corners; -1 and 1: that one
 
-# Implicit steps begin only if at least so many of them fit before the impact, and end if fewer than LEAVE do.
-ENTER, LEAVE = 4.0, 2.0
-# Least share of the weight on a loaded corner, for steps to become implicit and to remain so.
-CARRIES, HOLDS = 0.2, 0.1
-# Rate toward the impact that a base may cause, over that of the block's free fall.
-PUSHED = 3.0
-# Implicit steps shorter than this share of `pivoting_step`, as stiff bearings need, are no faster than explicit ones.
+# Number of steps to the impact at which implicit steps end; rate that a base may cause meanwhile, over that of the
+# block's free fall. With 2 and 1 peaks of swings of a thousandth of the slenderness are off by .05, not .01.
+AHEAD, PUSHED = 4.0, 3.0
+CARRIES = 0.1  # least share of the weight on a loaded corner; .2 gives the same errors
+# Implicit steps shorter than this share of `pivoting_step`, as stiff bearings need, are slower than explicit ones.
 WORTHWHILE = 0.1
 # Share of the step of leapfrog engines where bearings vibrate: the phase error is (h omega)^2/12 per radian.
 SMOOTH = 0.075
+LEAST_STEP = 1e-13  # s; exudyn stops where it would need a shorter one
+SUMS = 1e-12  # round-off of a sum of steps, over the duration
+WHOLE = 1e-6  # tolerated excess of a time over a whole number of steps, in steps
 FIRST = 2e-3  # of the longest explicit step: the first step of a part
-# Numerical damping of generalized-alpha for vibrations that steps do not resolve: 1 less its spectral radius. .02 to .4
-# give the same e to 2e-7.
-DAMPED = 0.1
 # Residual of Newton's method, over the block's weight; at least the corner force from some rounding errors of a
 # coordinate, below which Newton's method does not converge.
 RESIDUAL, ROUNDING = 1e-7, 30 * 2.0**-52
 DIFFERENCE = 0.02  # of a corner's penetration: exudyn's increment in numerical differentiation
 
 
-@dataclass(frozen=True)
-class Rule:
-    """Parameters of the steps of a variant.
+class Phases:
+    """The choice of integrator at each step, and the parts of exudyn's time integration that follow from it.
 
-    explicit: settings of the explicit solver. longest, step: longest explicit and implicit step [s]. sink: penetration
-    of a corner under half the weight [m]. settle: relaxation time after a change of contact [s]. early: time before a
-    landing whose steps are explicit in any case [s].
+    settings: scaled to the scene. sink: penetration of a corner under half the weight [m]. settle: relaxation time
+    after a change of contact [s]. early: time before a landing whose steps are explicit: implicit ones make e of a
+    couple ten times as far off [s].
     """
 
-    explicit: exu.SimulationSettings
-    longest: float
-    step: float
-    sink: float
-    settle: float
-    early: float = 0.0
-
-
-@njit("i8(f8[::1], f8, f8, f8)", cache=True)  # compiled when it is imported
-def carrying(q: np.ndarray, b: float, h: float, least: float) -> int:
-    """The corner with a penetration above `least` [m]: -1, 1, BOTH or NEITHER."""
-    sin, drop = math.sin(q[2]), h * (math.cos(q[2]) - 1) - q[1]
-    left, right = drop + b * sin >= least, drop - b * sin >= least
-    if left:
-        return 0 if right else -1
-    return 1 if right else -2
-
-
-class Phases:
-    """The choice of integrator at each step, and the parts of exudyn's time integration that follow from it."""
-
-    def __init__(self, model: Model, rule: Rule, steps: Steps, record: Callable[..., bool]) -> None:
-        scene, self.model, self.rule, self.steps, self.record = model.scene, model, rule, steps, record
-        rocking = RockingModel.of(scene)
-        self.pull = PUSHED * rocking.m * rocking.g * scene.block.half_width / rocking.J
-        self.shape = scene.block.half_width, scene.block.half_height
-        self.step = SMOOTH * longest_step(scene, rule.step / SMOOTH)
-        self.worthwhile = self.step >= WORTHWHILE * rule.step
-        self.implicit, self.state, self.since, self.anchored, self.refused = False, NEITHER, 0.0, 0.0, -math.inf
-        self.ground = Ground(model, rule.longest) if scene.motion else None
-        # The ground acceleration may jump where a pulse begins or ends, and lift a standing block within one implicit
-        # step.
-        self.jumps = (scene.motion.start, scene.motion.end) if isinstance(scene.motion, PulseMotion) else ()
+    def __init__(
+        self,
+        model: Model,
+        settings: CompliantCorners,
+        steps: Steps,
+        record: Callable[..., bool],
+        *,
+        sink: float,
+        settle: float,
+        early: float,
+    ) -> None:
+        scene, self.model, self.steps, self.record = model.scene, model, steps, record
+        self.shape = scene.block.half_width, scene.block.half_height, 2 * CARRIES * sink
+        step, self.longest = settings.pivoting_step, settings.longest_step
+        smooth, self.settle = SMOOTH * longest_step(scene, step / SMOOTH), settle
+        self.dt = scene.motion.dt if isinstance(scene.motion, SampledMotion) else math.inf
+        self.step = self.dt / math.ceil(self.dt / smooth) if self.dt < math.inf else smooth
+        self.ahead, rocking = AHEAD * self.step + early, RockingModel.of(scene)
+        self.fallen = 0.5 * PUSHED * rocking.m * rocking.g * scene.block.half_width / rocking.J * self.ahead**2
+        self.implicit, self.since = False, 0.0
+        self.contact: tuple[object, ...] = ()  # of either corner, and the place of a block that slides
+        # Since this time the steps may be implicit: where Newton's method fails they are explicit for a while.
+        self.free = 0.0 if smooth >= WORTHWHILE * step else math.inf
         model.mbs.SetPostStepUserFunction(self.keep)
-        if self.ground:
+        self.ground = Ground(model)
+        if scene.motion:
             model.mbs.SetPreStepUserFunction(self.ground.prepare)
-        self.smooth = solver_settings(scene, automaticStepSize=False, adaptiveStep=False)
-        integration = self.smooth.timeIntegration
-        integration.solverType = exu.DynamicSolverType.GeneralizedAlpha
-        integration.generalizedAlpha.spectralRadius = 1 - DAMPED
-        integration.newton.useModifiedNewton = True
-        weight = scene.block.mass * scene.gravity
-        rounding = ROUNDING * scene.block.radius * weight / (2 * rule.sink)
-        integration.newton.absoluteTolerance = max(RESIDUAL * weight, rounding)
+        self.solvers = self._explicit(settings), self._smooth(sink)
+
+    def _explicit(self, settings):
+        """exudyn's explicit solver with its settings."""
+        return exu.MainSolverExplicit(), solver_settings(
+            self.model.scene,
+            solverType=exu.DynamicSolverType.DOPRI5,
+            automaticStepSize=True,
+            minimumStepSize=LEAST_STEP,
+            relativeTolerance=1e-14,  # round-off: with 0 the steps never end after a shock that overflows
+            absoluteTolerance=settings.tolerance,
+        )
+
+    def _smooth(self, sink):
+        """exudyn's implicit solver with its settings."""
+        block, gravity = self.model.scene.block, self.model.scene.gravity
+        made = solver_settings(
+            self.model.scene,
+            solverType=exu.DynamicSolverType.GeneralizedAlpha,
+            automaticStepSize=False,
+            adaptiveStep=False,
+        )
+        newton, weight = made.timeIntegration.newton, block.mass * gravity
+        newton.absoluteTolerance = max(RESIDUAL * weight, ROUNDING * block.radius * weight / (2 * sink))
         # Numerical differentiation uses a share of the corner's penetration, so that the corner stays in contact.
-        differences = integration.newton.numericalDifferentiation
-        differences.minimumCoordinateSize = 1.0
-        differences.relativeEpsilon = DIFFERENCE * rule.sink / scene.block.radius
-        self.solvers = exu.MainSolverExplicit(), exu.MainSolverImplicitSecondOrder()
+        newton.numericalDifferentiation.minimumCoordinateSize = 1.0
+        newton.numericalDifferentiation.relativeEpsilon = DIFFERENCE * sink / block.radius
+        return exu.MainSolverImplicitSecondOrder(), made
 
     def keep(self, mbs: exu.MainSystem, t: float) -> bool:
         """After each step (PostStep): record it; False ends the run, or a part of it."""
         if t <= self.steps.times[-1]:
             return True  # exudyn also calls it at the start of each part
-        if not self.record(mbs, t):
-            return False
-        system = self.model.mbs.systemData
-        return self.quiet(t, system.GetODE2Coordinates(), system.GetODE2Coordinates_t()) == self.implicit
+        return self.record(mbs, t) and self.quiet(t) == self.implicit
 
-    def quiet(self, t: float, q: np.ndarray, v: np.ndarray) -> bool:
-        """Whether contact has not changed for a while, and will not change in the next steps."""
-        least = 2 * (HOLDS if self.implicit else CARRIES) * self.rule.sink
-        state, at = carrying(q, *self.shape, least), self.model.anchor.at
-        if state != self.state or at != self.anchored or state == NEITHER:
-            # A corner landed, lifted or slid.
-            self.state, self.since, self.anchored = state, t, at
+    def quiet(self, t: float) -> bool:
+        """Whether contact has not changed for a while before the last step, and will not change in the next steps."""
+        states, width, (b, h, least) = self.steps.states, self.steps.width, self.shape
+        up, turn, rate = states[1 - 2 * width], states[2 - 2 * width], states[2 - width]
+        drop, lean = h * (math.cos(turn) - 1) - up - least, b * math.sin(turn)
+        left, right = drop + lean >= 0, drop - lean >= 0
+        contact = left, right, self.model.anchor and self.model.anchor.at
+        if contact != self.contact or not (left or right):
+            self.contact, self.since = contact, t  # a corner landed, lifted or slid
+        if t - self.since < self.settle or t < self.free:
             return False
-        if not self.worthwhile or t - self.since < self.rule.settle or t < self.refused:
-            return False
-        if any(-self.ground.slack < t - jump < self.rule.settle for jump in self.jumps):
-            return False
-        if state == BOTH:
-            return True
-        tilt, fall = abs(q.item(2)), v.item(2) * math.copysign(1.0, q.item(2))
-        ahead = (LEAVE if self.implicit else ENTER) * self.step + self.rule.early
-        return tilt + fall * ahead - 0.5 * self.pull * ahead * ahead > 0.0
+        return left and right or abs(turn) + math.copysign(rate, turn * rate) * self.ahead > self.fallen
 
     def run(self) -> Failure | None:
         """Step to the scene's end, to overturning or to the limit of steps; exudyn's failure, or None."""
-        steps, duration = self.steps, self.model.scene.duration
-        self.record(self.model.mbs, 0.0)
-        while steps.times[-1] < duration * (1 - SUMS):
-            t, count = steps.times[-1], len(steps.times)
-            q, v = steps.last()
-            self.implicit = self.quiet(t, q, v)
-            failure = self._piece(t, q, v)
-            if failure and not self.implicit:
-                return failure
-            if failure:
-                self.refused = steps.times[-1] + self.rule.settle  # explicit steps where Newton's method fails
-            elif len(steps.times) == count or steps.ended:
-                return None
+        steps, scene = self.steps, self.model.scene
+        begin, duration = standing_until(scene), scene.duration
+        for t in sorted({0.0, begin}):
+            self.record(self.model.mbs, t)
+        jumps = [t for t in scene.motion.jumps if begin < t < duration] if scene.motion else []
+        for self.end in (*jumps, duration):
+            self.since = steps.times[-1]  # a jump may lift a standing block within one implicit step
+            while steps.times[-1] < self.end - SUMS * duration:
+                count = len(steps.times)
+                self.implicit = self.quiet(steps.times[-1])
+                failure = self._piece(steps.times[-1])
+                if failure and not self.implicit:
+                    return failure
+                if failure:
+                    self.free = steps.times[-1] + self.settle
+                elif steps.ended:
+                    return None
+                elif len(steps.times) == count:
+                    return Failure("the solver made no step", f"from {steps.times[-1]:.9g} s")
         return None
 
-    def _piece(self, t, q, v):
-        """Integrate from a state to the next change of integrator; the failure, or None."""
-        mbs, settings = self.model.mbs, self.smooth if self.implicit else self.rule.explicit
+    def _meets(self, t):
+        """End [s] of equal implicit steps from t: a record bends at its samples, which they must meet."""
+        now, last = t / self.dt, math.floor(self.end / self.dt + WHOLE)
+        if abs(now - round(now)) > WHOLE:
+            return min(math.ceil(now) * self.dt, self.end)
+        return last * self.dt if round(now) < last else self.end
+
+    def _piece(self, t):
+        """Integrate from the last step to the next change of integrator or jump of the ground's acceleration; the
+        failure."""
+        mbs, (solver, settings), (q, v) = self.model.mbs, self.solvers[self.implicit], self.steps.last()
         mbs.systemData.SetODE2Coordinates(q, configuration=INITIAL)
         mbs.systemData.SetODE2Coordinates_t(v, configuration=INITIAL)
-        solver, integration = self.solvers[self.implicit], settings.timeIntegration
-        duration, first = self.model.scene.duration, FIRST * self.rule.longest
-        left = self.ground.begin(t, None if self.implicit else solver.it) if self.ground else duration - t
-        integration.startTime, integration.endTime = t, duration
-        if self.implicit:
-            end, count = self.ground.equal(t, self.step) if self.ground else (duration, math.ceil(left / self.step))
-            integration.endTime, integration.numberOfSteps = end, count
-        else:
-            integration.numberOfSteps = math.ceil((duration - t) / self.rule.longest)
-            integration.initialStepSize = min(left, first)
+        integration, end = settings.timeIntegration, self._meets(t) if self.implicit else self.end
+        self.ground.part = END if self.implicit else ALL
+        integration.startTime, integration.endTime = t, end
+        integration.numberOfSteps = math.ceil((end - t) / (self.step if self.implicit else self.longest) - WHOLE)
+        integration.initialStepSize = min(end - t, FIRST * self.longest)
         return solve(solver, mbs, settings)

@@ -17,49 +17,46 @@ from exudyn.itemInterface import (
     MarkerBodyPosition,
     Node1D,
     NodeRigidBody2D,
+    ObjectConnectorCartesianSpringDamper,
     ObjectGround,
     ObjectMass1D,
     ObjectRigidBody2D,
 )
 
+from analytic import Start
 from analytic.bearing import BearingLaw
 
 from ..placement import placement
-from .ground import ground_load
-from .model import Bearing, Model
+from .model import LEAST, Bearing, Model
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from analytic import Scene
 
-Real = exu.symbolic.Real
+
+def standing_until(scene: Scene) -> float:
+    """Time [s] at which a run begins: the beginning of the motion, if everything is at rest until then."""
+    return min(scene.motion.start, scene.duration) if scene.motion and scene.start == Start() else 0.0
 
 
-def start_coordinates(scene: Scene, sink: float) -> tuple[list[float], list[float]]:
-    """(q, v) of the block's centre [m, m/s; rad, rad/s], relative to its position at rest; `sink` is the static
-    penetration [m] of a standing block."""
-    x, z, across, up = placement(scene)
-    tilt, rate = scene.start.tilt, scene.start.tilt_rate
-    lower = sink if tilt == 0 and rate == 0 else 0.0
-    q = [x, z - lower, -tilt]
-    v = [across, up, -rate]
-    return q, v
-
-
-def build(scene: Scene, sink: float = 0.0) -> Model:
-    """The `Model` of a scene without contact."""
+def build(scene: Scene, deflected: Sequence[float] = (0.0, 0.0, 0.0)) -> Model:
+    """The `Model` of a scene without contact. A standing block is `deflected` by what carries it [m, m, rad]."""
+    start, (x, z, across, up) = scene.start, placement(scene)
+    dx, dz, turn = deflected = (0.0, 0.0, 0.0) if start.tilt or start.tilt_rate else deflected
     container = exu.SystemContainer()
     mbs = container.AddSystem()
     ground = mbs.AddObject(ObjectGround())
-    q, v = start_coordinates(scene, sink)
     node = mbs.AddNode(
         NodeRigidBody2D(
-            referenceCoordinates=[0.0, scene.block.half_height, 0.0], initialCoordinates=q, initialVelocities=v
+            referenceCoordinates=[0.0, scene.block.half_height, 0.0],
+            initialCoordinates=[x + dx, z + dz, turn - start.tilt],
+            initialVelocities=[across, up, -start.tilt_rate],
         )
     )
     block = mbs.AddObject(ObjectRigidBody2D(mass=scene.block.mass, inertia=scene.block.centre_inertia, nodeNumber=node))
     base = ground
     if scene.base:
-        start = scene.start
         node = mbs.AddNode(
             Node1D(
                 referenceCoordinates=[0.0],
@@ -68,7 +65,7 @@ def build(scene: Scene, sink: float = 0.0) -> Model:
             )
         )
         base = mbs.AddObject(ObjectMass1D(mass=scene.base.mass, nodeNumber=node))
-    model = Model(scene, container, mbs, ground, block, base)
+    model = Model(scene, container, mbs, ground, block, base, deflected)
     if scene.bearings:
         _add_bearing(model)
     _add_loads(model)
@@ -79,36 +76,19 @@ def _add_bearing(model: Model) -> None:
     mbs, law = model.mbs, BearingLaw.of(model.scene.bearings)
     model.bearing = Bearing(law, model.scene.start.base_displacement)
     markers = [mbs.AddMarker(MarkerBodyPosition(bodyNumber=body)) for body in (model.ground, model.base)]
-    model.bearing.connector = model.connect("bearing", markers, model.bearing.force, offset=model.bearing.memory())
+    damping = [law.count * law.damping, 0.0, 0.0]
+    spring = ObjectConnectorCartesianSpringDamper(markerNumbers=markers, damping=damping, **model.bearing.spring(LEAST))
+    model.bearing.connector = mbs.AddObject(spring)
 
 
 def _add_loads(model: Model) -> None:
-    """Weight of the block, and inertia of block and base in the ground's frame."""
+    """Weight of the block, and room for the inertia of the base in the ground's frame; see `Ground`."""
     scene, mbs = model.scene, model.mbs
     block = mbs.AddMarker(MarkerBodyMass(bodyNumber=model.block))
-    if scene.motion is None:
-        mbs.AddLoad(LoadMassProportional(markerNumber=block, loadVector=[0.0, -scene.gravity, 0.0]))
-        return
-    acceleration = ground_load(scene.motion)
-
-    def on_block(mbs, t, load):
-        return [-acceleration(t, load), Real(-scene.gravity), Real(0.0)]
-
-    model.load(LoadMassProportional(markerNumber=block), on_block, scene.motion)
-    if scene.motion.vertical:
-        rising = ground_load(scene.motion.vertical)
-
-        def upright(mbs, t, load):
-            return [Real(0.0), -rising(t, load), Real(0.0)]
-
-        model.load(LoadMassProportional(markerNumber=block), upright, scene.motion.vertical)
-    if scene.base:
+    model.weight = mbs.AddLoad(LoadMassProportional(markerNumber=block, loadVector=[0.0, -scene.gravity, 0.0]))
+    if scene.base and scene.motion:
         base = mbs.AddMarker(MarkerBodyPosition(bodyNumber=model.base))
-
-        def on_base(mbs, t, load):
-            return [-scene.base.mass * acceleration(t, load), Real(0.0), Real(0.0)]
-
-        model.load(LoadForceVector(markerNumber=base), on_base, scene.motion)
+        model.push = mbs.AddLoad(LoadForceVector(markerNumber=base, loadVector=[0.0, 0.0, 0.0]))
 
 
 def read_back(model: Model) -> dict[str, tuple[Any, Any]]:
@@ -123,7 +103,7 @@ def read_back(model: Model) -> dict[str, tuple[Any, Any]]:
         values["base.mass"] = (mbs.GetObject(model.base)["mass"], scene.base.mass)
     q = np.asarray(mbs.systemData.GetODE2Coordinates())
     v = np.asarray(mbs.systemData.GetODE2Coordinates_t())
-    values["start.tilt"] = (-q[2], scene.start.tilt)
+    values["start.tilt"] = (-q[2], scene.start.tilt - model.deflected[2])
     values["start.tilt_rate"] = (-v[2], scene.start.tilt_rate)
     if scene.base:
         values["start.base_displacement"] = (q[3], scene.start.base_displacement)

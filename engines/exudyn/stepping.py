@@ -157,7 +157,7 @@ def _recorder(model, steps, limit):
         if bearing is not None:
             forces.append(bearing.commit(mbs, q.item(3)))
         if anchor is not None:
-            anchor.commit(mbs, q, v)
+            anchor.commit(mbs)
         if twist is not None:
             twist.commit(mbs, t, q.item(2), v.item(2))
         # False for NaN, too

@@ -2,6 +2,8 @@
 
 from ..tolerance_rows import HELD, READING, ROUNDING, ToleranceRow
 
+# A jump of the ground's acceleration errs as the others only where the block is at rest from the start until then; see
+# `sizing.CompliantCorners`.
 STIFFNESS = "contact stiffness; goes as its inverse"
 SQUARE = "step squared; the impact is the model's own"
 
@@ -18,13 +20,13 @@ TOLERANCES = {
         ToleranceRow("peak displacement", "isolated Caryatid, synthetic motion", 1.4e-5, 1.09e-5, STIFFNESS),
         ToleranceRow("overturning time", "one-sine of 3.8 g slenderness, rigid ground", 8.2e-5, 4.12e-5, STIFFNESS),
         ToleranceRow(
-            "overturning boundary", "one-sine at 2 and 5 times omega_r, rigid ground", 1.75e-4, 1.11e-4, STIFFNESS
+            "overturning boundary", "one-sine at 2 and 5 times omega_r, rigid ground", 7.5e-5, 3.75e-5, STIFFNESS
         ),
         ToleranceRow(
             "overturning boundary",
             "one-sine at 7, one-cosine at 2 times omega_r, rigid ground",
-            2.2e-3,
-            1.18e-3,
+            5.3e-4,
+            2.67e-4,
             STIFFNESS,
         ),
         ToleranceRow("bearing force replayed", "rocking on bearings, one-sine", 1e-9, 2.2e-13, ROUNDING),

@@ -20,7 +20,7 @@ from analytic.response import Failure
 
 from ..contract import Run, Variant
 from ..leapfrog import raw_trace_of
-from ..stepping import FirstScript, FixedStep, ImpactAware, Settings, run_of
+from ..stepping import GIVEN, MEAN_LOADS, RULED, SAMPLED, FirstScript, FixedStep, ImpactAware, Settings, run_of
 from .scene import build
 
 if TYPE_CHECKING:
@@ -34,8 +34,7 @@ VARIANTS = {
         levels=(2e-3, 6e-4, 2e-4, 1e-4),
         takes_restitution=True,
         computes="motion, contact, impact and rest",
-        imposes="a plane, by joints; the steps, by gaps and closing speeds; restitution given: a couple before each "
-        "landing",
+        imposes=f"a plane, by joints; {RULED}; {GIVEN}",
     ),
     "fixed-step": Variant(
         FixedStep(1e-4),
@@ -43,7 +42,7 @@ VARIANTS = {
         levels=(4e-3, 1e-3, 1e-4),
         finer=({"step": 2e-5},),
         computes="motion, contact, impact and rest",
-        imposes="a plane, by joints",
+        imposes=f"a plane, by joints; {MEAN_LOADS}",
     ),
     "first-script": Variant(
         FirstScript(2e-3),  # MuJoCo's own default
@@ -51,7 +50,7 @@ VARIANTS = {
         levels=(1 / 120, 2e-3, 5e-4),
         finer=({"step": 2e-4},),
         computes="motion, contact, impact and rest",
-        imposes="a plane, by joints",
+        imposes=f"a plane, by joints; {SAMPLED}",
     ),
 }
 

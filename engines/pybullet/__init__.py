@@ -10,6 +10,7 @@ ENGINE = Engine(
     imported="engines.pybullet.imported",
     tolerances="engines.pybullet.tolerances",
     script="engines.pybullet:script.py.jinja",
+    mistakes="engines.pybullet.mistakes",
     colour="#0072B2",
     marker="^",
     dashes=":",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 from importlib.metadata import version
 from typing import TYPE_CHECKING
@@ -14,45 +13,50 @@ from analytic.response import Caution, Failure
 
 from ..contract import Run, Variant
 from ..leapfrog import raw_trace_of
-from ..stepping import Bodies, FirstScript, FixedStep, ImpactAware, Settings, run_of
-from . import first_script
+from ..stepping import GIVEN, MEAN_LOADS, RULED, SAMPLED, FirstScript, FixedStep, ImpactAware, Settings, run_of
+from . import calls
 from .constants import CONSTANTS
+from .first_script import MOST_VELOCITY, FreeBox
 from .imported import pybullet
-from .scene import MOST_FRICTION, MOST_VELOCITY, BulletBodies
+from .scene import FRICTION, BulletBodies
 
 if TYPE_CHECKING:
     from analytic import Scene
 
 
+TUNED, FIXED = ImpactAware(1e-3, 1e-3), FixedStep(1e-4)
+PLAIN = FirstScript(1 / 240)  # Bullet's own default
 VARIANTS = {
     "impact-aware": Variant(
-        ImpactAware(1e-3, 1e-3),
+        TUNED,
         kind="tuned",
         levels=(7e-3, 3e-3, 1e-3, 5e-4),
         constants=CONSTANTS,
         takes_restitution=True,
         computes="motion, contact, impact and rest",
-        imposes="a plane, by joints; the steps, by gaps and closing speeds; restitution given: a couple before each "
-        "landing",
+        imposes=f"a plane, by joints; {RULED}; {GIVEN}",
+        calls=calls.impact_aware(TUNED),
     ),
     "fixed-step": Variant(
-        FixedStep(1e-4),
+        FIXED,
         kind="tuned",
         levels=(4e-3, 1e-3, 2.5e-4, 1e-4),
         finer=({"step": 2e-5},),
         free_block="engines.pybullet.free_block:simulate",
         computes="motion, contact, impact and rest",
-        imposes="a plane, by joints",
+        imposes=f"a plane, by joints; {MEAN_LOADS}",
+        calls=calls.fixed_step(FIXED),
     ),
     "first-script": Variant(  # default damping: e off by .01 to .5 at every step
-        FirstScript(1 / 240),  # Bullet's own default
+        PLAIN,
         kind="defaults",
         levels=(1 / 60, 1 / 240, 1 / 1000),
         finer=({"step": 2e-4},),
         friction=0.5 * 0.5,  # the product of the defaults of both bodies
         flight_damping=0.04,  # the default of a multibody
         computes="motion, contact, impact and rest",
-        imposes="nothing",
+        imposes=SAMPLED,
+        calls=calls.first_script(PLAIN),
     ),
 }
 
@@ -67,13 +71,12 @@ def versions() -> dict[str, str]:
 def run(scene: Scene, variant: str, settings: Settings) -> Run:
     """The `Run` of a scene."""
     plain, edge, friction = isinstance(settings, FirstScript), FIRST_CONTACT * scene.block.slenderness, scene.friction
-    kind: Callable[..., Bodies] = first_script.FreeBox if plain else BulletBodies
     client = pybullet.connect(pybullet.DIRECT)
     try:
         ran = run_of(
             scene,
             settings,
-            lambda step: kind(client, scene, step),
+            lambda step: FreeBox(client, scene, step) if plain else BulletBodies(client, scene),
             lambda rows: raw_trace_of(rows, scene, edge),
             depth=0.0,  # contacts act before penetration
         )
@@ -81,14 +84,20 @@ def run(scene: Scene, variant: str, settings: Settings) -> Run:
         return Run(None, 0, math.nan, Failure("Bullet raised an error", str(error)))
     finally:
         pybullet.disconnect(client)
-    if friction is not None and friction > MOST_FRICTION and not plain:
-        words = f"friction = {friction:.4g} is above {MOST_FRICTION:g}: Bullet takes it as {MOST_FRICTION:g}"
-        ran = replace(ran, warnings=(Caution("engine", words, "friction", friction, MOST_FRICTION),))
+    if plain:
+        return _limited(ran)
+    if friction is not None and friction > FRICTION:
+        words = f"friction = {friction:.4g} is above {FRICTION:g}: Bullet takes it as {FRICTION:g}"
+        ran = replace(ran, warnings=(Caution("engine", words, "friction", friction, FRICTION),))
+    return ran
+
+
+def _limited(ran: Run) -> Run:
+    """A first script's run, failed where Bullet may have limited a velocity, as it does without a message."""
     if ran.trace is None or ran.failure:
         return ran
     fastest = max(np.abs(ran.trace.tilt_rate).max(), np.abs(ran.trace.base_velocity).max())
-    limit = first_script.MOST_VELOCITY if plain else MOST_VELOCITY
-    if fastest > 0.1 * limit:
-        words = f"{fastest:.3g} m/s or rad/s; its limit: {limit:g}"
-        return replace(ran, failure=Failure("Bullet limits velocities", words))
-    return ran
+    if fastest <= 0.1 * MOST_VELOCITY:
+        return ran
+    words = f"{fastest:.3g} m/s or rad/s; its limit: {MOST_VELOCITY:g}"
+    return replace(ran, failure=Failure("Bullet limits velocities", words))

@@ -65,6 +65,6 @@ def _undone(box, scene, step):
         numSolverIterations=max(LEAST_ITERATIONS, iterations(scene, 2)),
         physicsClientId=client,
     )
-    for part, link in ((box.body, -1), (slab, -1), *(((slab, 0),) if scene.base else ())):
-        without_losses(client, part, link, FRICTION)
+    without_losses(client, box.body, 0, FRICTION)
+    without_losses(client, slab, 1 if scene.base else 0, FRICTION)
     return box

@@ -5,15 +5,14 @@ from __future__ import annotations
 from .imported import pybullet
 
 
-def chain(client: int, links: list[tuple], **options: int) -> int:
-    """A multibody on a fixed origin of links (mass, shape, position, joint, axis, parent); their frames are level."""
+def chain(client: int, links: list[tuple], fixed: int = -1, **options: int) -> int:
+    """A multibody of links (mass, shape, position, joint, axis, parent) on a fixed body of shape `fixed`, by default of
+    none, at the origin."""
     masses, shapes, positions, joints, axes, parents = (list(column) for column in zip(*links, strict=True))
     count = len(links)
     return pybullet.createMultiBody(
         0,
-        -1,
-        -1,
-        [0, 0, 0],
+        fixed,
         linkMasses=masses,
         linkCollisionShapeIndices=shapes,
         linkVisualShapeIndices=[-1] * count,
@@ -29,13 +28,14 @@ def chain(client: int, links: list[tuple], **options: int) -> int:
     )
 
 
-def without_losses(client: int, body: int, link: int, friction: float, **limits: float) -> None:
-    """Remove Bullet's damping, restitution and motor from a link (-1: the body itself), and set its friction.
+def without_losses(client: int, body: int, links: int, friction: float, **limits: float) -> None:
+    """Remove Bullet's damping of .04 1/s and motors of 1 N s per step from a body and its links; set their friction.
 
     A call that sets damping or velocity limits forces linkIndex to -1, so that friction is set in a separate call.
     """
-    pybullet.changeDynamics(body, link, linearDamping=0.0, angularDamping=0.0, physicsClientId=client, **limits)
-    none = dict.fromkeys(("rollingFriction", "spinningFriction", "restitution", "jointDamping"), 0.0)
-    pybullet.changeDynamics(body, link, lateralFriction=friction, physicsClientId=client, **none)
-    if link >= 0:  # joints have a default motor of 1 N s per step
-        pybullet.setJointMotorControl2(body, link, pybullet.VELOCITY_CONTROL, force=0.0, physicsClientId=client)
+    for link in range(-1, links):
+        pybullet.changeDynamics(body, link, linearDamping=0.0, angularDamping=0.0, physicsClientId=client, **limits)
+        pybullet.changeDynamics(body, link, lateralFriction=friction, physicsClientId=client)
+    if links:
+        motors = pybullet.VELOCITY_CONTROL
+        pybullet.setJointMotorControlArray(body, range(links), motors, forces=[0.0] * links, physicsClientId=client)

@@ -11,7 +11,7 @@ import pymunk
 
 from ..contract import Run, Variant
 from ..leapfrog import raw_trace_of
-from ..stepping import FirstScript, ImpactAware, run_of, step_limits
+from ..stepping import RULED, SAMPLED, FirstScript, ImpactAware, run_of, step_limits
 from .scene import ChipmunkBodies
 
 if TYPE_CHECKING:
@@ -24,14 +24,14 @@ VARIANTS = {
         kind="tuned",
         levels=(2e-3, 6e-4, 2e-4, 1e-4),
         computes="motion, contact, impact and rest",
-        imposes="the steps, by gaps and closing speeds",
+        imposes=RULED,
     ),
     "first-script": Variant(
         FirstScript(1 / 240),  # four steps per frame; pymunk has no default step
         kind="defaults",
         levels=(1 / 60, 1 / 240, 1e-3),
         computes="motion, contact, impact and rest",
-        imposes="nothing",
+        imposes=SAMPLED,
     ),
 }
 

@@ -34,7 +34,7 @@ def test_record_holds_what_the_contract_names(engine, variant):
     for one in record.variants.values():
         assert is_dataclass(one.settings) and one.settings.__dataclass_params__.frozen
         assert fields(one.settings) and all(0 < value < math.inf for value in asdict(one.settings).values())
-        assert one.kind in KINDS and one.computes and one.imposes
+        assert one.kind in KINDS and one.computes and one.imposes and (one.calls or not record.subject)
         down = sorted(one.levels, reverse=True)  # from coarse to fine; of a stiffness the finer is the larger
         assert (
             list(one.levels) == (down[::-1] if one.accuracy_parameter == "stiffness" else down) and len(one.levels) > 1

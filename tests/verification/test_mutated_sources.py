@@ -34,34 +34,32 @@ class Mutation:
     limit: float = LIMIT
 
 
-RANGE, PHYSICS = "tests/engines/test_exudyn.py", "tests/engines/test_physics.py"
+RANGE = "tests/engines/test_exudyn.py"
+HOLDS = "tests/verification/test_tolerances_hold.py::test_row_of_the_tolerance_table"
 MUTATIONS = {
     "exudyn: a corner is drawn back to where it stood": Mutation(
         "engines.exudyn.model",
-        "    return min(max(anchor, low), high)\n",
-        "    return anchor\n",
+        "at = min(max(self.at, low), high)",
+        "at = self.at",
         f"{RANGE}::test_a_block_that_slid_stays_where_it_came_to_rest",
     ),
     "exudyn: the start forgets that the corners give way": Mutation(
-        "engines.exudyn.scene",
-        "lower = sink if tilt == 0 and rate == 0 else 0.0",
-        "lower = 0.0",
+        "engines.exudyn.corners",
+        "-normal / (2 * corner.stiffness)",
+        "0.0",
         f"{RANGE}::test_a_block_left_alone_does_not_sink",
     ),
-    "exudyn: exponents off by 2 %": Mutation(
+    "exudyn: a chord off by 2 %": Mutation(
         "engines.exudyn.model",
-        "exu.symbolic.exp(a)",
-        "exu.symbolic.exp(1.02 * a)",
-        f"{RANGE}::test_force_within_a_step_is_the_law_in_full",
+        "chord = law.kb +",
+        "chord = 1.02 * law.kb +",
+        f"{RANGE}::test_the_bearings_spring_meets_the_law_at_both_ends_of_a_step",
     ),
-    # For ever, within one call of exudyn, which makes a failed run of the limit's exception.
-    "exudyn: the motion's first segment is never left": Mutation(
-        "engines.exudyn.ground",
-        "        self.at += 1\n        self._enter()\n",
-        "        self._enter()\n",
-        f"{PHYSICS}::test_isolated_caryatid[synthetic-exudyn-compliant-corners]",
-        "'failed' == 'stands'",
-        limit=SHORT,
+    "exudyn: steps do not meet the samples of a record": Mutation(
+        "engines.exudyn.phases",
+        "self._meets(t) if self.implicit else self.end",
+        "self.end",
+        f"{HOLDS}[bearing impulse in the motion: exudyn, compliant-corners, isolated Caryatid, synthetic motion]",
     ),
     "twin: nobody counts its impacts": Mutation(
         "analytic.twin.run",
@@ -138,6 +136,6 @@ def test_a_mutation_of_the_source_is_caught(tmp_path, name):
 
 def test_a_copy_that_changes_nothing_passes(tmp_path):
     pytest.importorskip("exudyn")
-    one = MUTATIONS["exudyn: exponents off by 2 %"]
+    one = MUTATIONS["exudyn: a chord off by 2 %"]
     status, output = run_mutated(tmp_path, Mutation(one.module, one.old, one.old, one.test))
     assert status == 0, output[-3000:]

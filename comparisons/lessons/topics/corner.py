@@ -163,6 +163,20 @@ def order() -> float:
     return float(np.polyfit(np.log(SCAN[tops]), np.log(scanned()[tops]), 1)[0])
 
 
+MADE = "default damping"
+WHOSE, MISTAKE = next(
+    (name, known[MADE]) for name, engine in ENGINES.items() if MADE in (known := engine.known_mistakes())
+)
+((WAS, BECOMES),) = MISTAKE.replacements.items()
+
+
+def hidden_loss() -> float:
+    """Error [%] of restitution from the rates of successive impacts with `MISTAKE`; nan if its study is not stored."""
+    file = RESULTS / "mistakes.json"
+    rows = where(read_study(file).rows, engine=WHOSE, mistake=MADE, scene="released") if file.exists() else ()
+    return 100 * rows[0]["energy"] if rows else math.nan
+
+
 def code() -> float:
     import numpy as np
 
@@ -238,6 +252,20 @@ LESSON = Lesson(
             order,
             "",
             "The slope of the envelope in a doubly logarithmic plot.",
+            2,
+        ),
+        Exercise(
+            f"Make a mistake on purpose. `rocking script {WHOSE} free-rocking-rigid --output rock.py` writes a script "
+            "that is exact; run it, and note $e_{\\phi}$ and the times of the impacts. Then forget something in it: "
+            f"for `{WAS}` write `{BECOMES}`, so that the engine damps by 0.04 1/s, its default. Predict before you run "
+            "it again: does the $e_{\\phi}$ that it prints change, do the times? And by how much is $e_{\\phi}$ too "
+            "small if you take it from the rates just before two successive impacts?",
+            hidden_loss,
+            "%",
+            "The impacts are as they were, so the $e_{\\phi}$ printed keeps its digits. Between them the block loses "
+            "energy, so each impact is slower, and its time moves. An error that is not at the impact shows in "
+            "the energy, and in the graph of the tilt: measure these, too. What other mistakes cost is on the report’s "
+            "page *What a mistake costs*.",
             2,
         ),
     ),

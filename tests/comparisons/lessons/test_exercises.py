@@ -6,14 +6,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scripts import run_alone, written
 
 from analytic import PulseMotion, Scene, load_scene, simulate, synthetic_motion
 from analytic.caryatid import BASE, BEARINGS, MASS, RADIUS, caryatid_block
 from analytic.closed_form import swing_energy
-from analytic.rocking import restitution
+from analytic.rocking import RockingModel, restitution
 from analytic.twin import simulate_twin
 from comparisons.lessons import engine_runs
+from comparisons.lessons.notebook import answer
 from comparisons.lessons.topics import bearing, caryatid, chaos, checks, corner, cost, impacts, lessons, tipping
 
 
@@ -104,6 +106,37 @@ def test_the_first_step_that_is_off_by_more():
     place = int(np.argmin(np.abs(corner.SCAN - 1e-3 * corner.step_for_one_per_cent())))
     errors = [corner.rate_error(float(step)) for step in corner.SCAN[: place + 2]]
     assert max(errors[:-1]) < 0.01 <= errors[-1]
+
+
+def test_what_a_damping_hides():
+    """The law of the engine's damping, by scipy: a force d m v (1 + |v|), a moment d I w (1 + |w|), of each flight."""
+    scene, d = load_scene("free-rocking-rigid"), 0.04
+    model, inertia = RockingModel.of(scene), scene.block.inertia - MASS * RADIUS**2
+
+    def flight(t, state):
+        tilt, rate = state
+        damped = MASS * RADIUS**2 * (1 + RADIUS * abs(rate)) + inertia * (1 + abs(rate))
+        return rate, -(MASS * 9.81 * RADIUS * math.sin(model.gamma - tilt) + d * damped * rate) / scene.block.inertia
+
+    def lands(t, state):
+        return state[0]
+
+    lands.terminal, lands.direction = True, -1
+    rates, state, time = [], (scene.start.tilt, 0.0), 0.0
+    while True:
+        flown = solve_ivp(flight, (time, time + 5), state, events=lands, rtol=1e-9, atol=1e-12)
+        time = flown.t[-1]
+        if time > 5:
+            break
+        rates.append(-flown.y[1, -1])
+        state = (1e-15, model.restitution * rates[-1])
+    lost = model.restitution - np.divide(rates[1:], rates[:-1])
+    assert corner.hidden_loss() == pytest.approx(100 * math.sqrt(np.mean(lost**2)), rel=0.05)
+
+
+def test_the_exercise_on_a_mistake_stands_without_its_study(monkeypatch, tmp_path):
+    monkeypatch.setattr(corner, "RESULTS", tmp_path)
+    assert math.isnan(corner.hidden_loss()) and "–" in answer(corner.LESSON.exercises[-1])
 
 
 def test_two_horizons_give_the_same_growth():

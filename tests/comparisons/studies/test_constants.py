@@ -14,7 +14,7 @@ from comparisons.studies.restitution.cases import free_scene, variants_of
 from engines import installed_engines
 
 DECLARED = [one for one in variants_of(installed_engines()) if one[2].constants]
-HARD, STUDY = "engines.step_size:HOLD", get_study("constants")
+HARD, STUDY = "engines.step_size:GROWTH", get_study("constants")
 
 
 @pytest.fixture(scope="module")

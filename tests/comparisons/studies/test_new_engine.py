@@ -175,8 +175,8 @@ def test_the_growth_of_cost_and_the_report_run_it(crude):
 
 
 def test_every_study_of_this_project_is_covered():
-    # surface takes any solver a run at a time: test_surface; recorded: below; and test_constants
-    own_tests = {"overturning", "caryatid", "tolerances", "surface", "recorded", "constants"}
+    # surface takes any solver a run at a time: test_surface; recorded: below; and test_constants, test_mistakes
+    own_tests = {"overturning", "caryatid", "tolerances", "surface", "recorded", "constants", "mistakes"}
     assert set(BUILT_IN) == SHORT.keys() | own_tests
 
 

@@ -1,0 +1,1 @@
+"""What each of some mistakes in a script of a rocking block costs."""

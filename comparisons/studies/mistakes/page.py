@@ -1,0 +1,187 @@
+"""What is shown of the mistakes study: the script as it is and with each mistake, costliest first."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+from ...running.provenance import Result
+from ...showing.charts import Axis, Chart, figure, key_of, log_axis, room
+from ...showing.parts import Column, Figure, Page, grouped, number, short, table, where
+from ...showing.wording import TRUSTED, listed
+
+AS_IT_IS = "no mistake"
+MARKS: dict[str, dict[str, Any]] = {
+    "graph": {"filled": True},
+    "error": {"filled": False},
+    "lost": {"mark": "X"},
+}  # of a chart: {what: how its marks look}
+WORDS = {"graph": "tilt", "error": "restitution", "lost": "another outcome, or failed"}
+
+
+def page(result: Result) -> Page:
+    found = {engine: _ranked(result, engine) for (engine,) in grouped(result.rows, "engine")}
+    every = [row for rows in found.values() for row in rows]
+    made = [row for row in every if row["group"] not in (None, result.settings["no_matter"])]
+    lost = [row for row in made if row["lost"]]
+    quiet = [row for row in made if not row["lost"] and row["error"] is not None and row["error"] <= TRUSTED]
+    worst = max(quiet, key=lambda row: row["graph"], default=None)
+    hidden = (
+        f"The error of restitution does not show all: with {worst['mistake']} in {worst['engine']} it is "
+        f"{number(worst['error'], 1)} at most, and the tilt is off by {number(worst['graph'], 2)} of the slenderness."
+        if worst
+        else ""
+    )
+    return Page(
+        f"What a mistake costs: of {len(made)} in scripts for {listed(list(found)) or 'no engine'}, {len(lost)} give "
+        "another outcome in a scene, or a run that fails",
+        tuple(
+            filter(
+                None,
+                (
+                    "The scripts that rocking script writes agree with the analytic model. Here one thing in them is "
+                    "done as a first script may do it, all else as it is.",
+                    hidden,
+                ),
+            )
+        ),
+        first=(
+            _dots(found, result.settings["no_matter"]),
+            _counts(made, where(every, group=result.settings["no_matter"])),
+        ),
+        more=tuple(_table(engine, rows) for engine, rows in found.items()),
+        how=(
+            "Scenes: the Caryatid released from 0.6 of its slenderness, on rigid ground for 5 s and on its base and "
+            "bearings for 3 s; a block of 0.3 rad on rigid ground under a one-sine pulse that overturns it; one of "
+            "0.15 rad on the bearings under the first 9 s of the synthetic record. A mistake is made in the scenes "
+            "that have what it concerns.",
+            "Each script runs by itself; what is measured is read from its steps as that of any engine. Error of "
+            "restitution: against eq. (7), at impacts of at least a tenth of the fastest rate, root mean square, worst "
+            "scene. By energy: from the rates of successive impacts. Tilt: largest difference from the analytic model "
+            "at one time, until either block is beyond its unstable point, so that an impact that is late counts. "
+            "A run fails if it ends in an error, gains energy, or leaves its place.",
+        ),
+    )
+
+
+def _counts(made, harmless):
+    """How many mistakes there are of each kind, by engine and in all."""
+    found = {engine: (some, where(harmless, engine=engine)) for (engine,), some in grouped(made, "engine").items()}
+    found |= {"all": (made, harmless)} if len(found) > 1 else {}
+    rows = [
+        {
+            "engine": engine,
+            "mistakes": len(some),
+            "lost": sum(row["lost"] > 0 for row in some),
+            "off": sum((row["error"] or 0.0) > TRUSTED for row in where(some, lost=0)),
+            "harmless": len(others),
+        }
+        for engine, (some, others) in found.items()
+    ]
+    return table(
+        "How many mistakes",
+        rows,
+        Column("engine", "engine"),
+        Column("mistakes", "mistakes"),
+        Column("another outcome, or a run that fails", "lost"),
+        Column(f"of the others: e off by more than {TRUSTED:g}", "off"),
+        Column("what does not matter", "harmless"),
+    )
+
+
+def _ranked(result: Result, engine: str) -> list[dict[str, Any]]:
+    """A row for each mistake of an engine, over its scenes: the costliest first, and the script as it is."""
+    bearings = set(result.settings["on_bearings"])
+    rows = []
+    for _, runs in grouped(where(result.rows, engine=engine), "mistake").items():
+        on_rigid = [run for run in runs if run["scene"] not in bearings]
+        rows.append(
+            {
+                **runs[0],
+                "name": runs[0]["mistake"] or AS_IT_IS,
+                "lost": sum(run["outcome"] != run["expected"] for run in runs),
+                "outcomes": _outcomes(runs),
+                "rigid": _most(on_rigid, "error"),
+                "bearings": _most(where(runs, scene=bearings), "error"),
+                **{name: _most(runs, name) for name in ("error", "energy", "graph", "displacement")},
+            }
+        )
+    return sorted(rows, key=lambda row: (-row["lost"], -max(row["graph"] or 0.0, row["error"] or 0.0)))
+
+
+def _most(runs, name):
+    """The largest of the runs that have one."""
+    return max((run[name] for run in runs if run[name] is not None), default=None)
+
+
+def _outcomes(runs: Sequence[dict[str, Any]]) -> str:
+    """In words where the outcome is not the model's, or why the run failed, each with its scenes."""
+    wrong = [run for run in runs if run["outcome"] != run["expected"]]
+    found = grouped(
+        wrong, lambda run: f"fails: {run['reason']}" if run["reason"] else f"{run['outcome']} for {run['expected']}"
+    )
+    places = {words: ", ".join(run["scene"].replace(", ", " on ") for run in some) for (words,), some in found.items()}
+    everywhere = len(runs) > 1 and len(found) == 1 and len(wrong) == len(runs)
+    said = [f"{words} ({'all scenes' if everywhere else some})" for words, some in places.items()]
+    return "; ".join(said) or "as the model"
+
+
+def _table(engine, rows):
+    return table(
+        f"{engine}: each mistake, in its worst scene",
+        rows,
+        Column("mistake", "name"),
+        Column("what was done", lambda row: row["done"] or "the script as it is"),
+        Column("concerns", lambda row: row["group"] or "–"),
+        Column("outcome", "outcomes"),
+        Column("error of restitution, rigid ground [-]", "rigid"),
+        Column("on bearings [-]", "bearings"),
+        Column("by energy [-]", "energy"),
+        Column("tilt [slenderness]", "graph"),
+        Column("base displacement, of its peak [-]", "displacement"),
+    )
+
+
+def _dots(found: dict[str, list[dict[str, Any]]], no_matter: str) -> Figure | None:
+    """A panel for each engine: error of restitution and of the tilt, a row for each mistake."""
+    shown = {engine: [row for row in rows if row["group"] != no_matter] for engine, rows in found.items()}
+    values = [row[name] for rows in shown.values() for row in rows for name in ("graph", "error") if row[name]]
+    if not values:
+        return None
+    axis = log_axis("error of e; of the tilt over γ [-]", values)
+    axis = replace(axis, ticks=axis.marks()[::2])  # beside names there is room for no more
+    charts = [_chart(engine, rows, axis) for engine, rows in shown.items()]
+    keys = {
+        f"{engine}, {WORDS[name]}": key_of(engine, filled=look.get("filled", True), joined=False)
+        for engine in shown
+        for name, look in MARKS.items()
+        if name != "lost"
+    }
+    caption = (
+        "Each mistake in its worst scene, costliest first. Filled: largest difference of the tilt; open: error of "
+        "restitution at impacts. A cross at the right: another outcome than the model’s, or a run that fails. Last: "
+        "the script as it is. What does not matter is in the tables of the study’s page."
+    )
+    return figure(charts, caption, keys, keys)
+
+
+def _chart(engine: str, rows: Sequence[dict[str, Any]], axis: Axis) -> Chart:
+    names = tuple((place, f"{row['name']}\u2002") for place, row in enumerate(rows))
+    chart = Chart(
+        axis,
+        Axis("", len(rows) - 0.5, -0.5, ticks=names),
+        f"{engine}: errors with {', '.join(row['name'] for row in rows)}.",
+        title=engine,
+        height=90 + 21 * len(rows),
+        left=room(row["name"] for row in rows),
+        right=24,
+    )
+    for name, look in MARKS.items():
+        told = [row for row in rows if row[name]]
+        places = [rows.index(row) for row in told]
+        across = [axis.high if name == "lost" else row[name] for row in told]
+        says = [
+            f"{row['name']}: {row['outcomes'] if name == 'lost' else f'{WORDS[name]} {short(row[name])}'}"
+            for row in told
+        ]
+        chart.dots(across, places, f"{engine}, {WORDS[name]}", says=says, **look)
+    return chart

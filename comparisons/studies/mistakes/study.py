@@ -1,0 +1,133 @@
+"""The mistakes study: scripts of a few scenes, each with one mistake, compared with the analytic model."""
+
+import hashlib
+import math
+from typing import Any
+
+import numpy as np
+
+from analytic import PulseMotion, Response, Scene, load_scene, simulate
+from analytic.caryatid import caryatid_block
+from analytic.rocking import restitution
+from engines import get_engine
+from engines.contract import Engine
+from engines.mistakes import NO_MATTER, Mistake
+from engines.observe import observe
+from engines.swings import Trace
+
+from ...measuring.errors import impact_errors, rate_restitution, rms
+from ...running.cases import Case
+from ...running.plan import Batch, Computed, Plan, Request
+from .script import ScriptFailed, run_script, with_mistake
+
+SECONDS = 300.0  # of a script; those that end take 5 s of CPU time at most
+QUICK = ("inertia + 1 %", "default damping", "10 × softer")
+NOTHING = dict.fromkeys(("error", "energy", "graph", "displacement", "steps"))
+
+
+def scenes(quick: bool = False) -> dict[str, Scene]:
+    """{name: scene} of the scripts; quick: a block released on rigid ground alone."""
+    released = load_scene("free-rocking-rigid").with_(duration=5.0)
+    if quick:
+        return {"released": released}
+    stocky = Scene(block=caryatid_block(0.3))
+    amplitude = 1.3 * stocky.gravity * math.tan(stocky.block.slenderness)
+    return {
+        "released": released,
+        "released, bearings": load_scene("free-rocking-isolated").with_(duration=3.0),
+        "pulse": stocky.with_(motion=PulseMotion("one-sine", amplitude, 2.2 * stocky.rocking_frequency)),
+        "record, bearings": load_scene("caryatid-isolated").with_(block={"slenderness": 0.15}, duration=9.0),
+    }
+
+
+def changes(engine: Engine, quick: bool = False) -> list[Mistake | None]:
+    """The mistakes in an engine's scripts, after None for the script as it is; quick: few."""
+    known = engine.known_mistakes().values()
+    return [None, *(one for one in known if not quick or one.key in QUICK)] if known else []
+
+
+def plan(request: Request) -> Plan:
+    """The plan of the study; quick: few mistakes, on one scene. Engines without mistakes have no rows."""
+    cases = []
+    for name in request.engines:
+        engine = get_engine(name)
+        for mistake in changes(engine, request.quick):
+            for place, scene in scenes(request.quick).items():
+                if mistake is None or mistake.fits(scene):
+                    script = "".join(with_mistake(engine, scene, mistake).values())
+                    digest = hashlib.sha256(script.encode()).hexdigest()[:16]
+                    tag = {"scene": place, "mistake": mistake.key if mistake else None, "script": digest}
+                    cases.append(Case(scene, name, engine.default_variant, {"history": False}, tag))
+    runs = yield Batch(cases, cost, "mistakes", time_limit=2 * SECONDS)
+    model = {place: simulate(scene, history=False).outcome for place, scene in scenes(request.quick).items()}
+    rows = [
+        {
+            "part": "run",
+            "engine": run.case.solver,
+            "variant": run.case.variant,
+            **{name: run.case.tag[name] for name in ("scene", "mistake")},
+            **_described(get_engine(run.case.solver), run.case.tag["mistake"]),
+            "expected": model[run.case.tag["scene"]],
+            **(_failed(run.failure["reason"]) if run.failed else run.values),
+        }
+        for run in runs
+    ]
+    settings = {
+        "quick": request.quick,
+        "no_matter": NO_MATTER,
+        "on_bearings": [place for place, scene in scenes(request.quick).items() if scene.bearings],
+    }
+    return Computed(settings, rows)
+
+
+def _described(engine: Engine, key: str | None) -> dict[str, str | None]:
+    """What was done and what it concerns, of the mistake called `key`; None of the script as it is."""
+    mistake = engine.known_mistakes()[key] if key else None
+    return {"done": mistake.done if mistake else None, "group": mistake.group if mistake else None}
+
+
+def _failed(reason: str) -> dict[str, Any]:
+    return {"outcome": "failed", "reason": reason, **NOTHING}
+
+
+def cost(case: Case, response: Response) -> dict[str, Any]:
+    """Measure: what is wrong in a run of the script with the tag's mistake; the adapter's own run is not looked at."""
+    engine = get_engine(case.solver)
+    mistake = engine.known_mistakes().get(case.tag["mistake"])
+    try:
+        trace = run_script(with_mistake(engine, case.scene, mistake), SECONDS)
+    except ScriptFailed as failed:
+        return _failed(str(failed))
+    scene = case.scene if case.scene.duration else case.scene.with_(duration=float(trace.time[-1]))
+    over = "overturned" if abs(trace.tilt[-1]) >= math.pi / 2 else None
+    about: dict[str, Any] = dict(cpu_seconds=0.0, steps=len(trace.time) - 1, settings={}, versions={})
+    seen = observe(scene, trace, history=False, ended=over, engine=case.solver, variant="script", **about)
+    if seen.failure:
+        return _failed(seen.failure.reason)
+    return {"outcome": seen.outcome, "reason": None, **errors(scene, seen, trace), "steps": seen.steps}
+
+
+def errors(scene: Scene, seen: Response, trace: Trace) -> dict[str, float | None]:
+    """Errors of a sound run against the model; None where there is nothing to measure.
+
+    error: of restitution at strong impacts, rms; energy: the same from the rates of successive impacts, of a block
+    released on rigid ground, rms; graph: largest difference of the tilt at one time, over the slenderness, until
+    either block is beyond its unstable point; displacement: of the base, over the model's peak, as long.
+    """
+    model, free = simulate(scene), scene.base is None and scene.motion is None
+    at_impact, swings = impact_errors(scene, seen)["state"], rate_restitution(seen) if free else np.empty(0)
+    time = model.history.time[model.history.time <= trace.time[-1]]
+    tilts = np.interp(time, trace.time, trace.tilt), model.history.tilt[: len(time)]
+    beyond = np.flatnonzero(np.abs(tilts).max(axis=0) > scene.block.slenderness)
+    upright = slice(0, int(beyond[0]) if len(beyond) else len(time))
+
+    def apart(one, other):
+        return float(np.abs(one - other)[upright].max())
+
+    base = np.interp(time, trace.time, trace.base_displacement), model.history.base_displacement[: len(time)]
+    return {
+        "error": rms(at_impact) if len(at_impact) else None,
+        "energy": rms(swings - restitution(scene)) if len(swings) else None,
+        "graph": apart(*tilts) / scene.block.slenderness,
+        "displacement": apart(*base) / model.peak_base_displacement if scene.base else None,
+    }

@@ -1,0 +1,249 @@
+"""The calls that a variant's record names are those that its adapter makes, with these values; none is left out."""
+
+import ast
+import math
+from dataclasses import dataclass, field
+from unittest.mock import ANY
+
+import pytest
+from engine_cases import needs, scene
+
+from analytic import PulseMotion, Start
+from analytic.bearing import BearingLaw
+from analytic.caryatid import BEARINGS
+from engines import get_engine
+from engines.ground_velocity import ground_velocity
+from engines.scale import size_scale
+
+MOTION = PulseMotion("one-sine", 2.0, 9.0)
+START = Start(tilt=1e-3, base_velocity=0.1)
+ISOLATED = scene(0.2, 212.0, 0.05, bearings=BEARINGS, motion=MOTION, start=START).with_(
+    block={"radius": 0.7, "mass": 900.0}
+)
+
+
+@dataclass
+class Call:
+    """A function of an engine, its arguments in order and by name."""
+
+    name: str
+    values: list
+    named: dict = field(default_factory=dict)
+
+    def is_told(self, told):
+        """Whether it is the call that is told, of which the last arguments in order may be left out."""
+        return (
+            self.name == told.name
+            and same(told.values, self.values[: len(told.values)])
+            and all(name in self.named and same(value, self.named[name]) for name, value in told.named.items())
+        )
+
+
+def same(told, made):
+    """Whether values are equal, but for the digits that are told."""
+    if told is ANY or isinstance(told, str):
+        return told == made
+    if hasattr(told, "__iter__"):
+        told, made = list(told), list(made)
+        return len(told) == len(made) and all(map(same, told, made))
+    return math.isclose(told, made, rel_tol=1e-5, abs_tol=1e-12)
+
+
+def told(calls, names):
+    """(calls, {attribute: value}) that a record names, in order; what it assigns to a name is a name from there on."""
+    found, attributes = [], {}
+    for text in calls:
+        (node,) = ast.parse(text).body
+        if isinstance(node, ast.Assign):
+            target = ast.unparse(node.targets[0])
+            (attributes if "." in target else names)[target] = eval(ast.unparse(node.value), names)
+        else:
+            call = node.value
+            values = [eval(ast.unparse(one), names) for one in call.args]
+            named = {one.arg: eval(ast.unparse(one.value), names) for one in call.keywords}
+            found.append(Call(call.func.id, values, named))
+    return found, attributes
+
+
+def numbers(given):
+    """The names of a script's numbers, for this scene."""
+    block = given.block
+    return {
+        **{"sqrt": math.sqrt, "ceil": math.ceil, "g": given.gravity, "m": block.mass, "R": block.radius},
+        **{"gamma": block.slenderness, "J": block.inertia, "mb": given.base.mass},
+        **{"b": block.half_width, "h": block.half_height, "scale": size_scale(given)},
+    }
+
+
+# PyBullet: all functions of its module are watched.
+
+ANYTHING = ("body", "slab", "box", "link", "value", "rate", "place", "turn", "speed", "spin", "sweeps")
+LEFT_OUT = {"physicsClientId", "linkVisualShapeIndices", "linkCollisionShapeIndices", "linkOrientations"} | {
+    "linkInertialFramePositions",
+    "linkInertialFrameOrientations",
+}  # of a client; of frames that are level and shapes that cannot be told apart by their numbers
+KEPT = "setPhysicsEngineParameter"  # whose values hold until it is called again
+
+
+@pytest.fixture
+def made(monkeypatch):
+    """Calls that change something in Bullet, and at each step the joints' states before it."""
+    needs("pybullet")
+    from engines.pybullet.imported import pybullet
+
+    found = []
+
+    def watch(name, function):
+        def watching(*values, **named):
+            found.append(Call(name, list(values), named))
+            return function(*values, **named)
+
+        monkeypatch.setattr(pybullet, name, watching)
+
+    for name, function in list(vars(pybullet).items()):
+        if callable(function) and name[0].islower() and not name.startswith(("get", "connect", "disconnect")):
+            watch(name, function)
+    return found
+
+
+def each_step(made, rows):
+    """(calls that build the scene and those of a step, its begin, length, the one before, row before it) of each."""
+    ends = [i + 1 for i, one in enumerate(made) if one.name == "stepSimulation"]
+    build = [one for one in made[: ends[0]] if one.name not in ("setGravity", "applyExternalForce", KEPT)]
+    kept = []
+    for number, (a, b) in enumerate(zip([0, *ends], ends, strict=False)):
+        t, step = rows[number + 1][0] - rows[number + 1][1], rows[number + 1][1]
+        kept = [one for one in made[a:b] if one.name == KEPT] or kept
+        yield build + kept + made[a:b], t, step, rows[number][1], rows[number]
+
+
+@pytest.mark.parametrize("variant", ["impact-aware", "fixed-step", "first-script"])
+def test_bullet_is_called_as_its_record_says(made, monkeypatch, variant):
+    from engines import stepping
+    from engines.pybullet.imported import pybullet
+
+    march, ran = stepping.march, []
+    monkeypatch.setattr(stepping, "march", lambda *given: ran.append(march(*given)) or ran[-1])
+    engine = get_engine("pybullet")
+    assert engine.run(ISOLATED, variant, engine.variants[variant].settings).failure is None
+    ((rows, _),) = ran
+    law, velocity, calls = BearingLaw.of(ISOLATED.bearings), ground_velocity(MOTION), engine.variants[variant].calls
+    block, plain, lengths = ISOLATED.block, variant == "first-script", []
+    constants = {name: value for name, value in vars(pybullet).items() if name.isupper()}
+    for group, t, step, before, row in each_step(made, rows):
+        tilt, rate, z, vz = row[2], row[3], row[9], row[11]
+        gaps = [
+            (
+                z + block.half_height * (1 - math.cos(tilt)) - side * block.half_width * math.sin(tilt),
+                (side * block.half_width * math.cos(tilt) - block.half_height * math.sin(tilt)) * rate - vz,
+            )
+            for side in (-1, 1)
+        ]
+        mean = (velocity(t + step / 2) - velocity(t - before / 2)) / ((step + before) / 2)
+        names = {**numbers(ISOLATED), **constants, **dict.fromkeys(ANYTHING, ANY), "before": before, "corners": gaps}
+        names |= {"a": MOTION.acceleration(t) if plain else mean, "force": law.force(row[4], row[6])}
+        found, _ = told(calls, names)
+        lengths.append((names["step"], step))
+        if not same(*lengths[-1]):
+            break
+        assert not [one for one in found if not any(call.is_told(one) for call in group)], (t, before)
+        for call in group:
+            of = [one for one in found if call.is_told(Call(one.name, one.values))]
+            assert of and call.named.keys() - LEFT_OUT <= set().union(*(one.named for one in of)), call
+    assert len(rows) - 2 <= len(lengths) > 10  # the last step ends with the run
+    if variant == "impact-aware":
+        assert len({step for _, step in lengths}) > 20 and min(lengths)[1] < 1e-6
+
+
+# exudyn: its system and its settings as they are when a solver is called, beside exudyn's defaults.
+
+WITHOUT_OUTPUT = ("solution.", "timeIntegration.verboseMode")
+OF_THE_RUN = ("timeIntegration.startTime", "timeIntegration.endTime", "timeIntegration.numberOfSteps")
+OF_THE_SYSTEM = {"name", "markerNumbers", "nodeNumber", "trianglePoints", "offset", "initialCoordinates"} | {
+    "initialVelocities",
+    "numberOfDataCoordinates",
+    "markerNumber",
+    "loadVector",
+}
+
+
+def flat(settings, above=""):
+    """{dotted name: value} of exudyn's settings."""
+    found = {}
+    for name, value in settings.items():
+        found |= flat(value, f"{above}{name}.") if isinstance(value, dict) else {f"{above}{name}": value}
+    return found
+
+
+def contacts(mbs, kinds):
+    """(displacement, velocity, force) of the connectors of the corners, where a variant has them: the last two."""
+    of = range(mbs.systemData.NumberOfObjects())
+    springs = [one for one in of if mbs.GetObject(one)["objectType"] == "ConnectorCartesianSpringDamper"][1:]
+    return [
+        [mbs.GetObjectOutput(one, kind) for kind in (kinds.Displacement, kinds.Velocity, kinds.Force)]
+        for one in springs
+    ]
+
+
+def items(mbs):
+    """(call that makes it, names of what is not as usual) of the objects, nodes and loads of a system."""
+    of, found = mbs.systemData, []
+    for kind, count, get, usual in (
+        ("Object", of.NumberOfObjects(), mbs.GetObject, mbs.GetObjectDefaults),
+        ("Node", of.NumberOfNodes(), mbs.GetNode, mbs.GetNodeDefaults),
+        ("Load", of.NumberOfLoads(), mbs.GetLoad, mbs.GetLoadDefaults),
+    ):
+        for item in map(get, range(count)):
+            name = item[f"{kind.lower()}Type"]
+            own = {key for key, value in item.items() if str(value) != str(usual(name).get(key)) and key[0] != "V"}
+            name = "ContactSphereTriangle" if "trianglePoints" in item else name  # exudyn 1.13 tells another
+            found.append((Call(kind + name, [], item), own - OF_THE_SYSTEM - {f"{kind.lower()}Type"}))
+    return found
+
+
+@pytest.mark.parametrize("variant", ["compliant-corners", "switched-joints", "native-contact"])
+def test_exudyn_is_called_as_its_record_says(monkeypatch, variant):
+    needs("exudyn")
+    import exudyn as exu
+
+    solved = {}
+
+    def watch(solver):
+        solve = solver.SolveSystem
+
+        def watching(self, mbs, settings):
+            way = ("explicit", "implicit")["Implicit" in solver.__name__]
+            done = solve(self, mbs, settings)
+            solved[way] = flat(settings.GetDictionary()), items(mbs), contacts(mbs, exu.OutputVariableType)
+            return done
+
+        monkeypatch.setattr(solver, "SolveSystem", watching)
+
+    watch(exu.MainSolverExplicit), watch(exu.MainSolverImplicitSecondOrder)
+    engine = get_engine("exudyn")
+    given = ISOLATED.with_(duration=0.5)
+    assert engine.run(given, variant, engine.variants[variant].settings).failure is None
+    assert solved.keys() == {"implicit"} | ({"explicit"} if variant == "compliant-corners" else set())
+    usual, calls = flat(exu.SimulationSettings().GetDictionary()), engine.variants[variant].calls
+    for way, (settings, made, forces) in solved.items():
+        start, end = settings["timeIntegration.startTime"], settings["timeIntegration.endTime"]
+        names = {**numbers(given), "DynamicSolverType": exu.DynamicSolverType, "start": start, "end": end}
+        names |= dict.fromkeys(("f", "mbs", "name", "item", "on_it", "stands", "chord", "dampers"), ANY)
+        corners = []
+        for where, rate, force in forces:
+            names |= {"depth": -where[1], "rise": rate[1], "across": where[0], "slide": rate[0]}
+            found, attributes = told(calls, dict(names))
+            corners.append((found[-1].named["springForceUserFunction"], list(force)))
+        assert all(same(*pair) for pair in corners) and bool(corners) == (variant == "compliant-corners")
+        found, attributes = told(calls, names)
+        found = [one for one in found if one.name != "CreateSymbolicUserFunction"]
+        wanted = {
+            name.partition(".")[2]: value for name, value in attributes.items() if name.startswith((way, "settings"))
+        }
+        assert all(same(value, settings[name]) for name, value in wanted.items()), (way, wanted)
+        others = {name for name, value in settings.items() if str(value) != str(usual[name])}
+        assert {one for one in others if not one.startswith(WITHOUT_OUTPUT)} <= {*wanted, *OF_THE_RUN}
+        for one in found[: -1 if forces else None]:  # the last was compared at each corner
+            assert any(call.is_told(one) for call, _ in made), one
+        for call, own in made:
+            assert own <= set().union(*(one.named for one in found if one.name == call.name)), (call.name, own)
