@@ -170,7 +170,7 @@ def model_warnings(scene: Scene, friction_demand: float, min_normal_ratio: float
             "outcome is outside the model"
         )
         found.append(Caution("model", words, "min_normal_ratio", min_normal_ratio, 0.0))
-    if scene.friction is not None and friction_demand > scene.friction:
+    if scene.friction is not None and friction_demand > scene.friction:  # of a solver that does not slide
         words = (
             f"the friction demand {friction_demand:.3g} is above the scene's friction {scene.friction:.3g}: the block "
             "would slide, and the outcome is outside the model"

@@ -1,7 +1,7 @@
 """Margins: the change of a quantity at which a scene reaches another limit state, or its outcome changes.
 
-A limit state is reached if the block lifts, if its peak tilt exceeds a share of the slenderness, if the base exceeds
-the x_max of its bearings, or if the block overturns.
+A limit state is reached if the block slides (where the scene gives a friction), if it lifts, if its peak tilt exceeds a
+share of the slenderness, if the base exceeds the x_max of its bearings, or if the block overturns.
 
 The outcome may change more than once: resonances cause narrow bands of another outcome far from the first boundary, and
 safe gaps beyond it. Each quantity is therefore scanned, one at a time, at equidistant relative changes, and every
@@ -30,7 +30,7 @@ from .rocking import restitution
 from .scene import KEYS, Scene
 from .solver import simulate
 
-LIMIT_STATES = ("lifts", "tilt", "stroke", "overturns")
+LIMIT_STATES = ("slides", "lifts", "tilt", "stroke", "overturns")
 TILT = 0.5  # share of the slenderness
 SPAN, STEP = 0.2, 5e-4
 LARGEST_SPAN = 9.0  # ten times the motion: a record of 0.1 g then has 1 g
@@ -43,7 +43,7 @@ FINER = 20
 class Band:
     """Relative changes from `low` to `high` of a quantity that reach the same of LIMIT_STATES.
 
-    holds: the model is valid, N > 0 without sliding.
+    holds: the model is valid: N > 0, or a friction is given, with which a block that flies is modelled.
     """
 
     low: float
@@ -56,7 +56,9 @@ class Band:
         """See `Response.outcome`."""
         if "overturns" in self.reached:
             return "overturns"
-        return "rocks" if "lifts" in self.reached else "stands"
+        if "lifts" in self.reached:
+            return "rocks"
+        return "slides" if "slides" in self.reached else "stands"
 
 
 @dataclass(frozen=True)
@@ -102,7 +104,7 @@ class Margin:
 
     @property
     def leaves_model(self) -> float | None:
-        """The smallest change at which the model is not valid (N <= 0, or sliding); 0 if it is not valid now."""
+        """The smallest change at which the model is not valid (N <= 0); 0 if it is not valid now."""
         return _nearer(self._edges(lambda band: band.holds)) if self._own.holds else 0.0
 
     @property
@@ -198,6 +200,11 @@ QUANTITIES = {
         "-", _restitution, lambda scene, factor: scene.with_(block={"restitution": factor * _restitution(scene)})
     ),
     "size": Quantity("m", lambda scene: scene.block.radius, _size),
+    "friction": Quantity(
+        "-",
+        lambda scene: scene.friction,
+        lambda scene, factor: scene.with_(friction=factor * scene.friction),  # type: ignore[operator]  # asked where there is one
+    ),
     # the batch scales the motion without a copy of its samples
     "motion": Quantity("m/s2", lambda scene: scene.motion and scene.motion.peak, lambda scene, factor: scene),  # type: ignore[arg-type, return-value]  # a motion or None is the number or None
     "start": Quantity(
@@ -218,9 +225,12 @@ QUANTITIES = {
 
 
 def limit_states(scene: Scene) -> tuple[str, ...]:
-    """The LIMIT_STATES that a scene can reach: "stroke" needs bearings with an x_max."""
-    stroke = scene.bearings is not None and scene.bearings.x_max is not None
-    return tuple(state for state in LIMIT_STATES if stroke or state != "stroke")
+    """The LIMIT_STATES that a scene can reach: "stroke" needs bearings with an x_max, "slides" a friction."""
+    needs = {
+        "stroke": scene.bearings is not None and scene.bearings.x_max is not None,
+        "slides": scene.friction is not None,
+    }
+    return tuple(state for state in LIMIT_STATES if needs.get(state, True))
 
 
 def margins(
@@ -295,17 +305,19 @@ def check_cost(scene: Scene, runs: int, most: float = MOST_STEPS) -> None:
 
 @dataclass(frozen=True)
 class Contact:
-    """Reserves of the contact: min N/(m g), friction demand |H|/N, and the scene's coefficient or None."""
+    """Reserves of the contact: min N/(m g), friction demand |H|/N, the scene's coefficient, whether it slides."""
 
     least_normal: float
     friction_demand: float
     friction: float | None
+    slides: bool = False
 
 
 def contact_margins(scene: Scene) -> Contact:
     """The `Contact` of the unchanged scene, run until its outcome is decided."""
     response = simulate(scene.with_(duration=None), history=False)
-    return Contact(response.min_normal_ratio, response.friction_demand, scene.friction)
+    slides = response.sliding is not None and response.sliding.path > 0
+    return Contact(response.min_normal_ratio, response.friction_demand, scene.friction, slides)
 
 
 def _finer(margin, changes):
@@ -361,13 +373,13 @@ def _states(scene, name, changes, scenes, tilt, workers):
         raise SceneError(name, None, f"changed by {changes[index]:.2%} the analytic model fails", "give a smaller span")
     slenderness = np.array([each.block.slenderness for each in scenes])
     farthest = scene.bearings.x_max if "stroke" in limit_states(scene) else math.inf
-    limit = math.inf if scene.friction is None else scene.friction
     return np.column_stack(
         [
+            outcomes.slid,
             outcomes.lifted | outcomes.overturns,
             (outcomes.peak_tilt > tilt * slenderness) | outcomes.overturns,  # the peak tilt of a fall is not final
             outcomes.peak_base_displacement > farthest,
             outcomes.overturns,
-            (outcomes.min_normal_ratio > 0) & ~(outcomes.friction_demand > limit),
+            (outcomes.min_normal_ratio > 0) | (scene.friction is not None),
         ]
     )

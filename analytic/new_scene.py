@@ -124,9 +124,7 @@ def scene_text(
     """
     lines = [*(f"# {line}" for line in about), f"name = {_toml(name)}"]
     if friction is not None:
-        lines.append(
-            f"friction = {_toml(friction)}  # of the block on its support; the friction demand is compared with it"
-        )
+        lines.append(f"friction = {_toml(friction)}  # of the block on its support")
     lines += ["", "[block]"]
     lines += _rows({"mass": (block.mass, "kg"), "radius": (block.radius, "m; base corner to centre of mass")})
     degrees = math.degrees(block.slenderness)

@@ -47,6 +47,7 @@ DIFFERENCES = {
     "outcome": "the block {here}, in the analytic model it {model}",
     "peak_tilt": "peak tilt {here:.4g} rad, in the analytic model {model:.4g}",
     "peak_base_displacement": "peak base displacement {here:.4g} m, in the analytic model {model:.4g}",
+    "peak_slip": "the block slips by up to {here:.4g} m, in the analytic model {model:.4g}",
     "fall_time": "falls from {here:.6g} s on, in the analytic model from {model:.6g} s",
     "overturning_time": "has overturned at {here:.6g} s, in the analytic model at {model:.6g} s",
     "impacts_before_fall": "falls after {here:.0f} impacts, in the analytic model after {model:.0f}",

@@ -164,9 +164,8 @@ class Scene(Part):
     """All that is simulated. A part that is None is not modelled.
 
     Without a base the block stands on rigid ground; without bearings the base slides without friction; without a motion
-    the block moves freely. Without a duration [s] a run continues until its outcome is decided. friction: coefficient
-    between the block and its support. An engine uses it; the analytic model, which does not slide, compares its
-    friction demand with it.
+    the block moves freely. Without a duration [s] a run continues until its outcome is decided. friction: Coulomb's
+    coefficient between the block and its support; without one the block does not slide.
     """
 
     block: Block

@@ -44,8 +44,9 @@ Under a vertical motion a_v, gravity is g + a_v(t) for the block. The bearings a
 real ones vibrate vertically at some 10 to 20 Hz; a warning says so. Components with different steps or lengths are
 resampled and padded, and ``warnings`` say how. Where the normal force reaches zero, the outcome is outside the model.
 
-An engine uses ``friction`` in place of its own setting. The analytic model, which does not slide, warns if its friction
-demand exceeds it.
+With ``friction``, Coulomb's coefficient between the block and its support, the block slides where it is used up, in the
+analytic model and, in place of its own setting, in an engine. Without it the block does not slide, and the friction
+demand says what that takes.
 
 ``rocking run`` also runs the analytic model with start, motion and restitution changed by a millionth. It warns if the
 outcome changes: so near an outcome boundary no solver can be trusted.

@@ -10,7 +10,7 @@ from scipy.interpolate import CubicHermiteSpline
 
 from analytic.bearing import BearingLaw
 from analytic.motion import SampledMotion
-from analytic.response import Failure
+from analytic.response import Failure, Sliding
 
 from .swings import ArrayModel
 
@@ -25,8 +25,10 @@ if TYPE_CHECKING:
 # 1/60 s). A contact instability reaches 1, as its gain becomes the largest kinetic energy.
 GAIN_LIMIT = 0.5
 
-# Sliding and height of the lower corner [share of R] that end a run as failed.
+# Sliding, where the scene gives no friction, and height of the lower corner [share of R] that end a run as failed.
 SLIDING_TOLERANCE, HEIGHT_TOLERANCE = 0.03, 2e-3
+# Slip [share of R] that is none: contacts creep, and compliant ones yield.
+LEAST_SLIP = 1e-4
 
 
 def replayed_force(scene: Scene, trace: Trace) -> np.ndarray:
@@ -87,8 +89,24 @@ def pivoting_centre(scene: Scene, trace: Trace) -> np.ndarray:
     )
 
 
+def slip_of(scene: Scene, trace: Trace) -> Sliding | None:
+    """Slip of the lower corner along the base, where the scene gives a friction; its work and modes are not known.
+
+    None if the block's position was not read from the engine, or a slip is none.
+    """
+    if scene.friction is None or trace.centre is None:
+        return None
+    slip = (trace.centre - pivoting_centre(scene, trace))[:, 0]
+    slip = slip - slip[0]
+    peak = float(np.abs(slip).max())
+    if peak < LEAST_SLIP * scene.block.radius:
+        return None
+    return Sliding(peak=peak, end=float(slip[-1]), path=float(np.abs(np.diff(slip)).sum()), work=math.nan, modes=())
+
+
 def check_place(scene: Scene, trace: Trace, overturned: bool) -> Failure | None:
-    """A `Failure` if at the end the block has slid on its base, sunk into it or left it, else None.
+    """A `Failure` if at the end the block has sunk into its base, left it or, without a friction in the scene, slid on
+    it, else None.
 
     During the run it may fly and land again, if it lands where it stood. A block that overturns may do so anywhere.
     None, too, if the block's position was not read from the engine.
@@ -98,7 +116,7 @@ def check_place(scene: Scene, trace: Trace, overturned: bool) -> Failure | None:
     R = scene.block.radius
     slid, height = (trace.centre - pivoting_centre(scene, trace))[:, :2].T
     flown = f"; its lower corner was at up to {height.max():.3g} m before"
-    if abs(slid[-1]) > SLIDING_TOLERANCE * R:
+    if scene.friction is None and abs(slid[-1]) > SLIDING_TOLERANCE * R:
         return Failure(
             "the block slid on its base", f"by {slid[-1]:.6g} m; tolerated: {SLIDING_TOLERANCE * R:.3g} m{flown}"
         )

@@ -15,14 +15,16 @@ A `Difference` is reported where a limit is exceeded:
 - restitution: the ratio of the rates after and before an impact differs by more than `RESTITUTION` from that of the
   matching impact of the model. Where no impact exceeds this, the loss 1 - e^2 is compared, by `LOSS` of the model's,
   which is more sensitive for slender blocks. A loss below `LEAST_LOSS` is compared as one of that size.
+- largest slip, of a block that stays upright in a scene with a friction: by more than `PEAK` of the model's, or
+  `LEAST_SLIP` of R.
 - missing or extra impacts: impacts without a match (`engines.matching`), up to the first one that is `OUT_OF_PHASE`.
 
-A run cannot be compared where the model does not hold (N <= 0, or a friction demand that no contact provides), or does
-not reach an end. The model is also run with start, motion, slenderness and restitution changed by `copies.CHANGE`.
-Where such a copy differs from the model in the outcome, a peak or a time, the scene is near an outcome boundary, for
-all engines alike; the stored value is "on an edge". There, an outcome that a copy has is not a difference. Neither is a
-number within the range of the copies with the run's outcome, widened by the limit. Impacts are compared up to the first
-one that the copies do not share.
+A run cannot be compared where the model does not hold (without a friction in the scene: N <= 0, or a friction demand
+that no contact provides), or does not reach an end. The model is also run with start, motion, slenderness and
+restitution changed by `copies.CHANGE`. Where such a copy differs from the model in the outcome, a peak or a time, the
+scene is near an outcome boundary, for all engines alike; the stored value is "on an edge". There, an outcome that a
+copy has is not a difference. Neither is a number within the range of the copies with the run's outcome, widened by the
+limit. Impacts are compared up to the first one that the copies do not share.
 """
 
 from __future__ import annotations
@@ -38,6 +40,7 @@ from analytic import simulate
 from analytic.errors import SceneError
 from analytic.response import COMPARED, EDGE, JUDGED, UNCOMPARED, Difference
 
+from .checks import LEAST_SLIP
 from .copies import near_copies
 from .couple import FRICTION
 from .events import at_contact
@@ -127,15 +130,27 @@ def _numbers(scene: Scene, known: Sequence[Response], run: Response) -> list[Dif
     if not alike:
         return found
     falls = run.outcome == FALLS
-    for name in ("peak_base_displacement", "fall_time") if falls else ("peak_tilt", "peak_base_displacement"):
-        values = [getattr(one, name) for one in alike]
-        low, high, here = min(values), max(values), getattr(run, name)
+    upright = ("peak_tilt", "peak_base_displacement", *(["peak_slip"] if _slides(run) else []))
+    for name in ("peak_base_displacement", "fall_time") if falls else upright:
+        values = [_value(one, name) for one in alike]
+        low, high, here = min(values), max(values), _value(run, name)
         if not low - _room(scene, name, low) <= here <= high + _room(scene, name, high):  # not: NaN
             limit = PEAK if name.startswith("peak") else _room(scene, name, values[0])
             found.append(Difference(name, here, _own(known, alike, values), limit, _span(known, low, high)))
     if falls:
         found += [*_before_fall(scene, known, alike, run), *_overturning(scene, known, alike, run, found)]
     return found
+
+
+def _slides(response: Response) -> bool:
+    return response.sliding is not None
+
+
+def _value(response: Response, name: str) -> float:
+    """A number by its name, see `response.DIFFERENCES`."""
+    if name == "peak_slip":
+        return response.sliding.peak if response.sliding else 0.0
+    return getattr(response, name)
 
 
 def _own(known: Sequence[Response], alike: Sequence[Response], values: Sequence[float]) -> float | None:
@@ -153,6 +168,8 @@ def _room(scene: Scene, name: str, value: float) -> float:
     gamma = scene.block.slenderness
     if name == "peak_tilt":
         return PEAK * max(value, LEAST_TILT * gamma)
+    if name == "peak_slip":
+        return max(PEAK * value, LEAST_SLIP * scene.block.radius)
     if name == "peak_base_displacement":
         return PEAK * max(value, LEAST_DISPLACEMENT * scene.block.radius * gamma)
     return FALL * 2 * math.pi / scene.rocking_frequency
@@ -173,13 +190,15 @@ def _overturning(
 
 
 def _released(scene: Scene, model: Response) -> float:
-    """Time [s] at which the model loses contact in its last fall, at most that of overturning."""
+    """Time [s] at which the model loses contact in its last fall, at most that of overturning; that if it slides."""
     over = model.overturning_time
+    if scene.friction is not None:
+        return over
     step = max((over - model.fall_time) / FALL_POINTS, over / MOST_POINTS)
     history = simulate(scene.with_(duration=over), output_step=step).history
     trace = Trace(*(getattr(history, name) for name in Trace.COLUMNS), contact_tilt=LEAST_TILT)  # type: ignore[misc]  # the columns come before it
     demand, normal, _ = at_contact(scene, trace)
-    holds = (normal > 0) & (demand <= (scene.friction or FRICTION))
+    holds = (normal > 0) & (demand <= FRICTION)
     return float(trace.time[(trace.time >= model.fall_time) & ~holds].min(initial=over))
 
 
@@ -238,17 +257,21 @@ def _restitution_differences(here: np.ndarray, there: np.ndarray) -> list[Differ
 
 def _outcome(scene: Scene, response: Response) -> str:
     """The outcome; "stands" where the peak tilt is too small to count."""
-    none = PEAK * LEAST_TILT * scene.block.slenderness
-    return "stands" if response.outcome == "rocks" and response.peak_tilt < none else response.outcome
+    still = response.peak_tilt < PEAK * LEAST_TILT * scene.block.slenderness
+    if response.outcome not in ("rocks", "slides") or not still:
+        return response.outcome
+    return "slides" if _value(response, "peak_slip") > LEAST_SLIP * scene.block.radius else "stands"
 
 
 def _outside(scene: Scene, model: Response) -> str | None:
     """Why no run of the scene can be compared with the model's, or None."""
     if model.failure:
         return f"the analytic model fails: {model.failure.reason}"
+    if scene.friction is not None:
+        return None
     if not model.min_normal_ratio > 0:
-        return "the normal force falls to 0 in the analytic model"
-    limit = scene.friction or FRICTION
-    if not model.friction_demand <= limit:
-        return f"the friction demand is {model.friction_demand:.3g} in the analytic model, above {limit:g}"
+        return "the normal force falls to 0 in the analytic model; give the scene a friction, and it flies"
+    if not model.friction_demand <= FRICTION:
+        demand = f"the friction demand is {model.friction_demand:.3g} in the analytic model, above {FRICTION:g}"
+        return f"{demand}; give the scene a friction, and it slides"
     return None

@@ -20,7 +20,7 @@ from analytic.motion import SampledMotion
 from analytic.response import Caution, Failure, History, Response, about_record
 from analytic.termination import is_decided
 
-from .checks import check_energy, check_place
+from .checks import check_energy, check_place, slip_of
 from .events import check_impacts, contact_measures, find_events
 from .momentum import check_impulse
 from .swings import Trace, find_swings
@@ -84,7 +84,10 @@ def observe(
     end = last_state(trace)
     seen, missed, lifted = _measured(scene, trace, beyond or trace, overturning_time)
     failure, warnings = _judged(scene, trace, seen, missed, failure, warnings)
-    upright = "rocks" if lifted else "stands"
+    sliding = slip_of(scene, trace)
+    upright = "rocks" if lifted else "slides" if sliding else "stands"
+    if sliding and scene.friction:  # what no-slip formulas ask for is no demand
+        seen["friction_demand"] = min(seen["friction_demand"], scene.friction)
     response = Response(
         outcome="failed" if failure else upright if overturning_time is None else "overturns",
         end=end,
@@ -92,6 +95,7 @@ def observe(
         warnings=_warnings(scene, warnings),
         history=_history(scene, trace) if history else None,
         scene=scene.name,
+        sliding=sliding,
         **seen,
         **run,
     )

@@ -20,9 +20,10 @@ from ..showing.wording import listed
 from .next_step import needed_by, next_step
 from .sections import different
 
-WORST = ("stands", "rocks", "failed", "overturns")  # of a record's motions, from the best to the worst
+WORST = ("stands", "slides", "rocks", "failed", "overturns")  # of a record's motions, from the best to the worst
 WORDS = {
     "stands": "does not lift",
+    "slides": "slides and does not lift",
     "rocks": "rocks and stays upright",
     "overturns": "overturns",
     "failed": "leaves the model",

@@ -52,11 +52,12 @@ class Margin(Part):
 
 
 class Contact(Part):
-    """What the contact has to spare: min N/(m g), the demand max |H|/N, the scene's coefficient."""
+    """What the contact has to spare: min N/(m g), the demand max |H|/N, the scene's coefficient; whether it slides."""
 
     least_normal: float
     friction_demand: float
     friction: float | None
+    slides: bool = False
 
 
 class MotionMargin(Part):

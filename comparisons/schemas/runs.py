@@ -36,6 +36,18 @@ class Energy(Part):
     hysteretic: float | None
     viscous: float | None
     impact_loss: float | None
+    friction: float | None = 0.0
+
+
+class Sliding(Part):
+    """Slip of a block that slides: largest and last [m], whole way [m], friction work [J], and (time [s], mode) of each
+    change: stick, slide, rock, slide-rock, flight."""
+
+    peak: float | None
+    end: float | None
+    path: float | None
+    work: float | None
+    modes: list[tuple[float, str]]
 
 
 class MotionRun(Part):
@@ -96,7 +108,7 @@ class _Values(Form):
     engine: str
     variant: str
     scene: str
-    outcome: Literal["stands", "rocks", "overturns", "failed"]
+    outcome: Literal["stands", "slides", "rocks", "overturns", "failed"]
     decided: bool = Field(description="False: it ended before the outcome was certain.")
     overturning_time: float | None = Field(description="s, |tilt| = pi/2")
     unstable_time: float | None = Field(description="s, first |tilt| = slenderness; no proof of overturning")
@@ -121,6 +133,7 @@ class _Values(Form):
     comparable: str = Field(description=COMPARABLE)
     failure: Failure | None
     energy: Energy | None
+    sliding: Sliding | None = Field(default=None, description="where a friction is given and used up")
 
 
 class Run(_Values):
@@ -205,7 +218,7 @@ class Reported(Part):
     scene: str
     engine: str
     variant: str | None
-    outcome: Literal["stands", "rocks", "overturns", "failed"]
+    outcome: Literal["stands", "slides", "rocks", "overturns", "failed"]
     decided: bool | None
     peak_tilt_ratio: float | None
     peak_base_displacement: float | None = Field(description="m")

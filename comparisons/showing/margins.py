@@ -21,7 +21,13 @@ from .plots import TITLE_CHARACTERS
 from .terminal import Grid, echo, grid
 
 # Okabe and Ito; hatches, and the lines’ places, tell them apart in print.
-COLOURS = {"stands": ("#009E73", ""), "rocks": ("#F0E442", ".."), "overturns": ("#D55E00", "//"), "failed": ("0.4", "")}
+COLOURS = {
+    "stands": ("#009E73", ""),
+    "slides": ("#E69F00", "--"),
+    "rocks": ("#F0E442", ".."),
+    "overturns": ("#D55E00", "//"),
+    "failed": ("0.4", ""),
+}
 
 # Lines along a strip: colour, and where they begin.
 OUTSIDE, TILT, STROKE = ("#CC79A7", -0.43), ("#0072B2", 0.35), ("#56B4E9", 0.43)
@@ -68,7 +74,8 @@ def print_margins(scene: Scene, margins: Sequence[Margin], contact: Contact, spa
 
 def _names(tilt):
     """{limit state: as it is called here}."""
-    return {"lifts": "lifts", "tilt": f"tilt > {tilt:g} γ", "stroke": "base > x_max", "overturns": "overturns"}
+    names = {"slides": "slides", "lifts": "lifts", "tilt": f"tilt > {tilt:g} γ"}
+    return {**names, "stroke": "base > x_max", "overturns": "overturns"}
 
 
 def named(changes: Mapping[str, float | None], reached: Collection[str], tilt: float) -> dict[str, str]:
@@ -127,7 +134,7 @@ def draw_margins(scene: Scene, margins: Sequence[Margin], tilt: float) -> Figure
         if name in shown
     ]
     names = _names(tilt)
-    labels = {TILT: names["tilt"], STROKE: names["stroke"], OUTSIDE: "outside the model (N ≤ 0, or sliding)"}
+    labels = {TILT: names["tilt"], STROKE: names["stroke"], OUTSIDE: "outside the model (N ≤ 0)"}
     drawn = {line for margin in margins for band in margin.bands for line in _lines(band)}
     handles += [Patch(facecolor=line[0], label=label) for line, label in labels.items() if line in drawn]
     figure.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False)
@@ -160,6 +167,8 @@ def _percent(change):
 
 
 def _normal_words(contact):
+    if contact.least_normal <= 0 and contact.friction is not None:
+        return "The normal force falls to 0: the block flies."
     if contact.least_normal <= 0:
         return f"The normal force falls to {contact.least_normal:.3g} m g: the outcome is outside the model."
     return f"The normal force falls to {contact.least_normal:.3g} m g; at 0 the block would jump."
@@ -169,9 +178,8 @@ def _friction_words(contact):
     demand = f"The friction demand is {contact.friction_demand:.3g}"
     if contact.friction is None:
         return f"{demand}; the scene gives no coefficient to hold it against."
-    if contact.friction_demand > contact.friction:
-        return f"{demand}, above the scene's {contact.friction:g}: the outcome is outside the model."
-    return f"{demand}, the scene's coefficient {contact.friction:g}."
+    slides = ", and the block slides" if contact.slides else ""
+    return f"{demand}, the scene's coefficient {contact.friction:g}{slides}."
 
 
 LIFTED = ("rocks", "overturns")

@@ -134,12 +134,19 @@ def summary(scene: Scene, response: Response) -> Grid:
         "peak base displacement [m]": digits(response.peak_base_displacement),
         "peak base acceleration [m/s2]": digits(response.peak_base_acceleration),
         "impacts": str(response.impact_count),
+        **_slip(response),
         "friction demand |H|/N": digits(response.friction_demand),
         "least normal force N/(m g)": digits(response.min_normal_ratio),
         "CPU time [s]": digits(response.cpu_seconds, ".3g"),
         "steps": str(response.steps),
     }
     return named_values(rows, title)
+
+
+def _slip(response):
+    """Rows of a block that slides on its support."""
+    slid = response.sliding
+    return {"largest slip [m]": digits(slid.peak), "slip at the end [m]": digits(slid.end)} if slid else {}
 
 
 def named_values(rows: Mapping[str, str], title: str) -> Grid:

@@ -20,7 +20,12 @@ RATINGS = {
     "bad": "is not to be trusted",
 }
 NOT_COMPARED = {EDGE: "near an outcome boundary"}  # values of `comparable` that rows name otherwise
-OUTCOMES = {"stands": "never lifts", "rocks": "rocks and stays upright", "overturns": "overturns"}
+OUTCOMES = {
+    "stands": "never lifts",
+    "slides": "slides and never lifts",
+    "rocks": "rocks and stays upright",
+    "overturns": "overturns",
+}
 MOST_NAMED = 3  # solvers of the commonest outcome; more are counted
 
 
