@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from . import corners, phases
+from . import phases
 from .sizing import MEASURED
 
 if TYPE_CHECKING:
