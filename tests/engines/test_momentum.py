@@ -74,16 +74,18 @@ def test_a_bearing_too_soft_to_matter_is_not_asked_for():
 
 
 def mutate_exudyn(monkeypatch, gain, delay):
-    """The symbolic force is `gain` times as much, of where the base was `delay` [s] ago."""
-    from engines.exudyn import scene as model
+    """The spring of the bearings is `gain` times as stiff, and acts from where the base was `delay` [s] ago."""
+    from engines.exudyn import model
 
-    force = model.Bearing.force
+    spring = model.Bearing.spring
 
-    def changed(self, displacement, velocity, offset):
-        before = displacement[0] - delay * velocity[0]
-        return [gain * part for part in force(self, [before], velocity, offset)]
+    def changed(self, ahead):
+        one = spring(self, ahead)
+        k = gain * one["stiffness"][0]
+        late = {} if self.connector is None else {"damping": [self.law.count * self.law.damping - k * delay, 0.0, 0.0]}
+        return {**one, "stiffness": [k, 0.0, 0.0], **late}  # at x - delay v
 
-    monkeypatch.setattr(model.Bearing, "force", changed)
+    monkeypatch.setattr(model.Bearing, "spring", changed)
 
 
 def mutate_leapfrog(monkeypatch, gain, delay):

@@ -5,6 +5,7 @@ import numpy as np
 from analytic import Block, Scene, Start, load_scene, simulate
 from analytic.caryatid import BASE, MASS, RADIUS, caryatid_block
 from analytic.rocking import RockingModel, momentum_restitution
+from engines import ENGINES
 
 from ...showing.diagrams import labelled
 from ..engine_runs import edge, history_until
@@ -13,6 +14,12 @@ from ..lesson import MODEL, OTHER, SOFT, Control, Equation, Exercise, Lesson, Vi
 START, WINDOW = 0.8, 8.0  # tilt over slenderness, s
 CURVE = np.linspace(0.02, 1.2, 80)
 SCRIPTED, MEASURED = "free-rocking-rigid", 0.8  # the scene whose script is changed, and a restitution
+# The engine whose contact has a restitution, and where its script would give it.
+WHOSE, (WAS,) = next(
+    (name, known["restitution 1"].replacements)
+    for name, engine in ENGINES.items()
+    if "restitution 1" in (known := engine.known_mistakes())
+)
 
 
 def released(slenderness: float) -> Scene:
@@ -148,9 +155,8 @@ LESSON = Lesson(
             0,
         ),
         Exercise(
-            f"`rocking script pybullet {SCRIPTED}` writes the Caryatid, released at $0.6\\,\\gamma$, in plain calls of "
-            "PyBullet. In its `build`, change `lateralFriction=math.sqrt(10)` to `lateralFriction=math.sqrt(10), "
-            "restitution=0.5`. Predict the `e` of the first impact, then run the script.",
+            f"`rocking script {WHOSE} {SCRIPTED}` writes the Caryatid, released at $0.6\\,\\gamma$, in plain calls of "
+            f"the engine. In its `build`, change `{WAS}` to `{WAS}, restitution=0.5`. Predict the `e` of the first impact, then run the script.",
             with_a_material,
             "",
             "Not 0.5, but as before: the contact’s impulse acts at the new corner, and has no moment about it.",
@@ -158,7 +164,7 @@ LESSON = Lesson(
         Exercise(
             f"A test of your statue gave {MEASURED:g}. In a file `measured.toml`, put `mass = 3172.05`, "
             f"`radius = 1.0884`, `slenderness = 0.28` and `restitution = {MEASURED:g}` under `[block]`, and "
-            "`tilt = 0.168` under `[start]`. `rocking script pybullet measured.toml` then has what a contact lacks: "
+            f"`tilt = 0.168` under `[start]`. `rocking script {WHOSE} measured.toml` then has what a contact lacks: "
             "find the couple that acts before each landing. Predict after how many impacts the peaks stay below "
             "$0.1\\,\\gamma$, then run the script.",
             swings_of_the_measured,

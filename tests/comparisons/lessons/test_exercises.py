@@ -71,8 +71,7 @@ def test_the_script_of_the_lesson_does_what_is_told_of_it(tmp_path, given, e):
     """A material's restitution changes no impact, a couple does."""
     pytest.importorskip("pybullet")
     scene = load_scene(impacts.SCRIPTED).with_(block={"restitution": given}, duration=2.0)
-    script = written("pybullet", scene, tmp_path)
-    plain = "lateralFriction=math.sqrt(10)"
+    script, plain = written(impacts.WHOSE, scene, tmp_path), impacts.WAS
     question = next(one.question for one in impacts.LESSON.exercises if one.compute is impacts.with_a_material)
     assert f"change `{plain}` to `{plain}, restitution=0.5`" in question
     assert script.read_text().count(plain) == 1 and ("couple" in script.read_text()) == (given is not None)
