@@ -156,7 +156,8 @@ LESSON = Lesson(
         ),
         Exercise(
             f"`rocking script {WHOSE} {SCRIPTED}` writes the Caryatid, released at $0.6\\,\\gamma$, in plain calls of "
-            f"the engine. In its `build`, change `{WAS}` to `{WAS}, restitution=0.5`. Predict the `e` of the first impact, then run the script.",
+            f"the engine. In its `build`, change `{WAS}` to `{WAS}, restitution=0.5`. Predict the `e` of the first "
+            "impact, then run the script.",
             with_a_material,
             "",
             "Not 0.5, but as before: the contact’s impulse acts at the new corner, and has no moment about it.",
