@@ -15,19 +15,21 @@ CHANGE = 1e-4  # relative; errors of tuned engines are 1e-5 to 1e-4
 
 
 def near_copies(scene: Scene) -> Iterator[Scene]:
-    """The scene with its slenderness, restitution, motion or start changed by `CHANGE`, up and down."""
+    """The scene with its slenderness, restitution (or friction, if given), motion or start changed by +-`CHANGE`."""
     for factor in (1 + CHANGE, 1 - CHANGE):
         yield from _changed(scene, block={"slenderness": scene.block.slenderness * factor})
     yield from changed_copies(scene, CHANGE).values()
 
 
 def changed_copies(scene: Scene, change: float) -> dict[str, Scene]:
-    """{name: scene} with restitution, motion and start changed by +-change, relative."""
+    """{name: scene} with restitution (or friction, if given), motion and start changed by +-change, relative."""
     copies = {}
     e, start = restitution(scene), scene.start
     for sign, word in ((1, "up"), (-1, "down")):
         factor = 1 + sign * change
-        if 0 < e * factor <= 1:
+        if scene.friction is not None:  # a restitution that is given needs a corner that sticks
+            copies[f"friction {word}"] = scene.with_(friction=scene.friction * factor)
+        elif 0 < e * factor <= 1:
             copies[f"restitution {word}"] = scene.with_(block={"restitution": e * factor})
         if scene.motion is not None:
             copies[f"motion {word}"] = scene.with_(motion=scene.motion.scaled(factor))
