@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 # 4 steps over 1/60 s leave 1e-11 rad/s; each correction cubes the error of the end time. A fast base on its bearings
 # takes more steps: each is at most PACE of its time constant, well inside the stability limit of 2.8.
 RK_STEPS, CORRECTIONS = 4, 3
+# Speed of a corner [sqrt(g R)] from which it slides: a corner that sticks vibrates, a stiff one by less.
+LEAST_SLIDING = 1e-3
 PACE, MOST_STEPS = 0.5, 256
 # Backward in time viscous damping amplifies errors: beyond e to this power only the steps' errors would remain.
 GROWTH = 1.0
@@ -188,7 +190,7 @@ def to_contact(scene: Scene, trace: Trace, swings: Swings, direction: int) -> tu
         # A step before the one at which the couple begins: a leapfrog's rate there is half that of the next step.
         before = np.searchsorted(trace.time, trace.time[swings.last] - trace.early) - 2
         index = np.clip(before, swings.clean, swings.last)
-    ground = scene.motion.acceleration if scene.motion else np.zeros_like
+    ground, slips = scene.motion.acceleration if scene.motion else np.zeros_like, _slips(scene, trace, index, side)
     t, tilt, rate, x, v = (getattr(trace, name)[index].copy() for name in Trace.COLUMNS[:5])
     if len(t) == 0:
         return t, rate, v
@@ -206,6 +208,9 @@ def to_contact(scene: Scene, trace: Trace, swings: Swings, direction: int) -> tu
                 force = np.where(fast & unseen, along(t), force)
         up = vertical_acceleration(scene.motion, t)
         tilting, sliding = model.accelerations(side, tilt, rate, ground(t), force, up)
+        if slips.any():
+            slid = _slid(scene, model, side, slips, (tilt, rate), (ground(t), force, up))
+            tilting, sliding = (np.where(slips, *pair) for pair in zip(slid, (tilting, sliding), strict=True))
         return np.stack([rate, tilting, v, np.broadcast_to(sliding, rate.shape)])
 
     state, fast, carried = np.stack([tilt, rate, x, v]), np.zeros(len(t), dtype=bool), index != edge
@@ -229,6 +234,29 @@ def to_contact(scene: Scene, trace: Trace, swings: Swings, direction: int) -> tu
     missed = (side * state[1] * direction > 0) | ~(np.abs(state[0]) <= trace.contact_tilt)
     at, rate, velocity = np.where(missed, np.nan, (t, state[1], state[3]))
     return at, rate, velocity
+
+
+def _slips(scene: Scene, trace: Trace, index: np.ndarray, side: np.ndarray) -> np.ndarray:
+    """Direction in which the block's corner slides at these steps, +1 or -1; 0 where it sticks."""
+    if scene.friction is None or trace.centre is None:
+        return np.zeros(len(index))
+    c, _ = ArrayModel.of(scene).lever(side, trace.tilt[index])
+    speed = trace.centre[index, 2] - trace.base_velocity[index] - c * trace.tilt_rate[index]
+    least = LEAST_SLIDING * math.sqrt(scene.gravity * scene.block.radius)
+    return np.where(np.abs(speed) > least, np.sign(speed), 0.0)
+
+
+def _slid(scene, model, side, slips, block, acting):
+    """(phi'', x'') of a block whose corner slides; block: tilt and rate; acting: a_g, bearing force, a_v.
+
+    Equations (S1) to (S4) of `analytic.sliding.equations` with eta'' = 0 and H = -sigma mu N.
+    """
+    (tilt, rate), (ground, force, up), centre = block, acting, scene.block.centre_inertia
+    c, n = model.lever(side, tilt)
+    lever = n - slips * scene.friction * c
+    normal = (model.g + up - c * rate**2) / (1 / model.m + lever * n / centre)
+    absolute = (slips * scene.friction * normal - force) / scene.base.mass if scene.base else ground
+    return -lever * normal / centre, absolute - ground
 
 
 def _runge_kutta(slope, t, state, h, steps):
