@@ -158,19 +158,23 @@ def longest_duration(scene: Scene) -> float:
     return motion_end(scene) + CAP_PERIODS * period(scene)
 
 
-def model_warnings(scene: Scene, friction_demand: float, min_normal_ratio: float) -> tuple[Caution, ...]:
+def model_warnings(
+    scene: Scene, friction_demand: float, min_normal_ratio: float, slides: bool = False
+) -> tuple[Caution, ...]:
     """Warnings where a run violates the model's assumptions: compressive contact, no sliding, and bearings that are
-    rigid under a vertical motion."""
+    rigid under a vertical motion. slides : by a solver whose block slides and flies with a friction."""
     found = []
     if scene.bearings is not None and scene.motion is not None and scene.motion.vertical is not None:
         found.append(Caution("model", RIGID_BEARINGS))
+    if slides and scene.friction is not None:
+        return tuple(found)
     if min_normal_ratio <= 0:
         words = (
             f"the least normal force at the contact is {min_normal_ratio:.3g} m g: the block would jump, and the "
             "outcome is outside the model"
         )
         found.append(Caution("model", words, "min_normal_ratio", min_normal_ratio, 0.0))
-    if scene.friction is not None and friction_demand > scene.friction:  # of a solver that does not slide
+    if scene.friction is not None and friction_demand > scene.friction:
         words = (
             f"the friction demand {friction_demand:.3g} is above the scene's friction {scene.friction:.3g}: the block "
             "would slide, and the outcome is outside the model"

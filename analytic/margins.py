@@ -186,6 +186,8 @@ def _size(scene, factor):
 
 
 def _restitution(scene):
+    if scene.friction is not None and scene.block.restitution is None:
+        return None  # one that is given does not slip
     return restitution(scene) or None
 
 

@@ -161,7 +161,7 @@ def _judged(
     if failure:
         warnings = (*warnings, Caution("engine", f"{failure.reason}: {failure.message}"))
     beyond = limit_warnings(scene, seen["peak_base_displacement"])
-    return None, (*warnings, *model_warnings(scene, seen["friction_demand"], seen["min_normal_ratio"]), *beyond)
+    return None, (*warnings, *model_warnings(scene, seen["friction_demand"], seen["min_normal_ratio"], True), *beyond)
 
 
 def failed_response(

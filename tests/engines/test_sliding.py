@@ -1,0 +1,44 @@
+"""Engines with the friction that a scene gives: slip is a result, and as the model's."""
+
+import numpy as np
+import pytest
+from engine_cases import needs
+from sliding_scenes import random_slider, scene_of
+
+from analytic import PulseMotion, simulate
+from engines import get_engine
+
+SAVED = scene_of(0.4, 0.348, 1.86, motion=PulseMotion("half-sine", 9.38, 6.34), duration=4.0)
+LOST = scene_of(0.5, 0.449, 1.044, motion=PulseMotion("one-sine", 17.39, 10.13), duration=3.0)
+SLIDES = scene_of(0.2, 0.4, motion=PulseMotion("rectangular", 4.0, 6.0), duration=2.0)
+ENGINES = ("exudyn", "pybullet")
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("scene", [SAVED, LOST, SLIDES], ids=["saved", "overturned", "slides"])
+def test_a_block_that_slides_does_so_in_engines(engine, scene):
+    needs(engine)
+    model, run = simulate(scene, history=False), get_engine(engine).simulate(scene)
+    assert (run.failure, run.outcome, run.differences) == (None, model.outcome, ())
+    assert run.comparable in ("yes", "on an edge") and not [one for one in run.warnings if one.kind == "model"]
+    assert run.sliding.peak == pytest.approx(model.sliding.peak, rel=1e-3)
+    assert run.friction_demand <= scene.friction
+    if model.outcome == "overturns":
+        assert run.overturning_time == pytest.approx(model.overturning_time, abs=2e-3)
+    else:
+        assert run.peak_tilt == pytest.approx(model.peak_tilt, abs=1e-4)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("engine, most", [("exudyn", 4), ("pybullet", 0)])
+def test_forty_random_scenes(engine, most):
+    """exudyn is off in some scenes on rigid ground that a jump of the ground's acceleration lifts."""
+    needs(engine)
+    rng, wrong = np.random.default_rng(7), 0
+    for number in range(40):
+        scene = random_slider(rng, number)
+        scene = scene.with_(friction=float(rng.uniform(0.2, 0.8)))
+        run = get_engine(engine).simulate(scene)
+        assert run.failure is None
+        wrong += bool(run.differences)
+    assert wrong <= most
