@@ -13,12 +13,12 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 
 # Insensitive: a share of .1 to .45, growth of .2 to 1 and hold of 1 to 10 change the error of e by factors of .9 to 1.5
-# in four engines; without hold and the test of the speed DART's peak tilts are off by 1e-3 for 3e-4. With a share of
-# .7 or more, points land in steps that are too long.
+# in four engines. With a share of .7 or more, points land in steps that are too long.
 SHARE, GROWTH, HOLD = 0.3, 0.5, 4
 # A body that pivots at the rate w about a held point moves along the tangent in a step and rises by w^2 R h^2/2, at
 # most .1 g h^2 for a block that does not overturn. It falls back at g h or less, which does not count as a landing.
-# Insensitive: NEAR .02 to 1, SLOW 1 to 4.
+# Insensitive: NEAR .15 to 1, SLOW 1 to 4; with .1 and less, steps shrink for the hops of DART's standing corners, and
+# its peak tilts are off by up to 4e-2.
 NEAR, SLOW = 0.25, 2.0
 
 LEAST_AHEAD = 1e-3  # of a step: a jump that is closer does not get its own step
