@@ -29,7 +29,7 @@ from .ground_velocity import ground_velocity
 from .leapfrog import MOST_ROWS, failure_of, row_limit, trace_of
 from .placement import placement
 from .scale import size_scale
-from .step_size import ROUNDING, Rule, fixed_rule, gap_rule, limits
+from .step_size import ROUNDING, SLOW, Rule, fixed_rule, gap_rule, limits
 from .vibration import added_mass, driven_mass, leapfrog_stiffness, longest_step
 
 if TYPE_CHECKING:
@@ -38,14 +38,11 @@ if TYPE_CHECKING:
     from .swings import Trace
 
 # s, at `scale.UNIT_RADIUS` and the default level. On a light base the error of e is proportional to it.
-SMALLEST_STEP = 5e-7
-# s, likewise: time before a landing in which the couple of a given restitution acts, 200 of these. With 2e-4 and
+SMALLEST_STEP = 1e-6
+# s, likewise: time before a landing in which the couple of a given restitution acts, a hundred of these. With 2e-4 and
 # 4e-4 e is up to 2 and 4 times as far off on a base.
 ACTS = 1e-4
 SMEARED = 3  # steps before and after an impact over which a contact solver may spread it; see `leapfrog.trace_of`
-DEPTH = (
-    2.0  # largest penetration of a corner that the rule does not anticipate, over g h^2: it falls back at g h or less
-)
 LANDING = 1.0  # largest landing speed of a corner, over the slenderness, the width 2 b and sqrt(g/R)
 # Numbers that were chosen in impact-aware steps, for `engines.contract.Variant.constants`.
 CONSTANTS = {
@@ -53,6 +50,8 @@ CONSTANTS = {
     "engines.stepping:SMALLEST_STEP": "step while a corner lands [s]",
     "engines.step_size:SHARE": "step over the time to a landing",
     "engines.step_size:GROWTH": "largest growth of a step over the one before",
+    "engines.step_size:HOLD": "steps after a landing for which the step does not grow",
+    "engines.step_size:SLOW": "closing speed above which a corner counts as landing at any gap, over g h",
     "engines.step_size:NEAR": "least gap of a closing corner that counts as landing, over g h^2",
     "engines.step_size:LEAST_AHEAD": "least time to a jump of the ground motion that gets its own step, over the step",
     "engines.step_size:ROUNDING": "tolerated difference of the steps' sum from the duration, over the step",
@@ -261,7 +260,7 @@ def run_of(
     settings: Settings,
     bodies_of: Callable[[float], Bodies],
     raw: Callable[[np.ndarray], Trace],
-    depth: float = DEPTH,
+    depth: float = SLOW,
 ) -> Run:
     """The `Run` of a scene.
 
@@ -274,7 +273,7 @@ def run_of(
     raw : function
         From rows to the trace of a first script.
     depth : float
-        Largest penetration of a corner that the rule does not anticipate, over g h^2.
+        Largest penetration of a corner that closes too slowly for the rule, over g h^2.
     """
     largest, smallest = step_limits(scene, settings)
     duration = scene.duration or 0.0  # never None in a run

@@ -185,11 +185,7 @@ def to_contact(scene: Scene, trace: Trace, swings: Swings, direction: int) -> tu
     """
     model = ArrayModel.of(scene)
     law, side = model.bearing, swings.side
-    index, edge = (swings.last, swings.last) if direction > 0 else (swings.clean, swings.first)
-    if direction > 0 and trace.early:
-        # A step before the one at which the couple begins: a leapfrog's rate there is half that of the next step.
-        before = np.searchsorted(trace.time, trace.time[swings.last] - trace.early) - 2
-        index = np.clip(before, swings.clean, swings.last)
+    index, edge = (_before_landing(trace, swings), swings.last) if direction > 0 else (swings.clean, swings.first)
     ground, slips = scene.motion.acceleration if scene.motion else np.zeros_like, _slips(scene, trace, index, side)
     t, tilt, rate, x, v = (getattr(trace, name)[index].copy() for name in Trace.COLUMNS[:5])
     if len(t) == 0:
@@ -234,6 +230,15 @@ def to_contact(scene: Scene, trace: Trace, swings: Swings, direction: int) -> tu
     missed = (side * state[1] * direction > 0) | ~(np.abs(state[0]) <= trace.contact_tilt)
     at, rate, velocity = np.where(missed, np.nan, (t, state[1], state[3]))
     return at, rate, velocity
+
+
+def _before_landing(trace: Trace, swings: Swings) -> np.ndarray:
+    """Index of the last clean step of each swing: where a couple acts before the landing, one without it."""
+    if not trace.early:
+        return swings.last
+    # A step before the one at which the couple begins: a leapfrog's rate there is half that of the next step.
+    before = np.searchsorted(trace.time, trace.time[swings.last] - trace.early) - 2
+    return np.clip(before, swings.clean, swings.last)
 
 
 def _slips(scene: Scene, trace: Trace, index: np.ndarray, side: np.ndarray) -> np.ndarray:

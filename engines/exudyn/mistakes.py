@@ -82,7 +82,6 @@ CONTACT = (
     ),
 )
 STEPS = (
-    Mistake("tolerance 10⁻⁴", "Tolerance 10⁻⁴", "steps", {TOLERANCE: "absoluteTolerance = 1e-4 *"}),
     Mistake("tolerance 10⁻³", "Tolerance 10⁻³", "steps", {TOLERANCE: "absoluteTolerance = 1e-3 *"}),
     Mistake("RK44", "Runge-Kutta of order 4, steps of 0.1 ms", "steps", _solver("RK44", "1e-4")),
     Mistake("RK67", "Runge-Kutta of order 6, without control of the error", "steps", _solver("RK67")),
@@ -151,7 +150,7 @@ WITHOUT = (
     Mistake(
         "slower rebound", "Corners that rebound three times slower", NO_MATTER, {REBOUND: "rebound, slip = 1e-4 *"}
     ),
-    Mistake("tolerance 10⁻⁵", "Tolerance 10⁻⁵", NO_MATTER, {TOLERANCE: "absoluteTolerance = 1e-5 *"}),
+    Mistake("tolerance 10⁻⁴", "Tolerance 10⁻⁴", NO_MATTER, {TOLERANCE: "absoluteTolerance = 1e-4 *"}),
     Mistake("tolerance 10⁻⁹", "Tolerance 10⁻⁹", NO_MATTER, {TOLERANCE: "absoluteTolerance = 1e-9 *"}),
     Mistake("half longest step", "Longest step halved", NO_MATTER, {LONGEST: "longest = 1.5 /"}),
     Mistake("10 × longest step", "Longest step ten times longer", NO_MATTER, {LONGEST: "longest = 30 /"}),

@@ -1,6 +1,6 @@
 """Bullet's calls in each variant, for `engines.contract.Variant.calls`."""
 
-from ..step_size import GROWTH, NEAR, SHARE
+from ..step_size import GROWTH, NEAR, SHARE, SLOW
 from ..stepping import SMALLEST_STEP, FirstScript, FixedStep, ImpactAware
 from .first_script import BREAKING_THRESHOLD, THICKNESS
 from .scene import CORNER_RADIUS, FRICTION, MOST_VELOCITY, ROCKING_REST, STANDING_REST
@@ -40,11 +40,12 @@ def impact_aware(settings: ImpactAware) -> dict[str, str]:
     largest, smallest = settings.largest_step, SMALLEST_STEP * (settings.largest_step / settings.balanced_step) ** 2
     return {
         **CHAIN,
-        f"most = min({1 + GROWTH:g} * before, {largest:g} * scale)": "s; shorter on stiff bearings",
-        f"near = {NEAR:g} * g * most**2": "m",
-        f"landing = [{SHARE:g} * gap / closing for gap, closing in corners if closing > 0 and gap > near]": (
-            "s, of corners on their way to a landing, by gap and closing speed of both"
-        ),
+        f"last = max(before, {smallest:g} * scale)": "s",
+        f"most = min({1 + GROWTH:g} * last, {largest:g} * scale)": "s; shorter on stiff bearings",
+        f"near = {NEAR:g} * g * last**2": "m",
+        f"slow = {SLOW:g} * g * last": "m/s",
+        f"landing = [{SHARE:g} * gap / closing for gap, closing in corners if gap > 0 < closing and (gap > near or "
+        "closing > slow)]": "s, of corners on their way to a landing, by gap and closing speed of both",
         f"step = max(min([most] + landing), {smallest:g} * scale)": "before each call of stepSimulation",
         **EACH_STEP,
     }

@@ -78,5 +78,6 @@ def test_a_slender_block_outside_the_range_is_not_said_to_agree():
     pytest.importorskip("pybullet")
     scene = FREE.with_(block={"slenderness": 0.01}, start=Start(tilt=0.006))
     run = get_engine("pybullet").simulate(scene, history=False)
+    assert [one.value for one in run.warnings if one.quantity == "slenderness"] == [0.01]
     (found,) = (one for one in run.differences if one.quantity == "impact_loss")
     assert found.model == pytest.approx(3e-4, rel=1e-3) and found.here > 10 * found.model

@@ -1,10 +1,10 @@
-"""The length of steps: small where a point lands, growing else; jumps of the ground and the end met."""
+"""The length of steps: small where a point lands, held after it, growing else; jumps of the ground and the end met."""
 
 import math
 
 import pytest
 
-from engines.step_size import GROWTH, NEAR, SHARE, aligned, gap_rule, limits
+from engines.step_size import GROWTH, HOLD, NEAR, SHARE, aligned, gap_rule, limits
 
 LARGEST, SMALLEST, G = 1e-3, 1e-6, 9.81
 APART = (1.0, 0.0)  # gap and closing speed of a point that nothing is about to happen to
@@ -57,6 +57,7 @@ def test_steps_grow_but_not_while_a_point_lands(fresh):
     first = fresh((APART,))
     assert {fresh(((-1e-8, 0.3), APART)) for _ in range(12)} == {first}
     standing = (-1e-8, 1.9 * G * first)  # falls in a step at g h or less
+    assert {fresh((standing, APART)) for _ in range(HOLD - 1)} == {first}
     assert [fresh((standing, APART)) for _ in range(3)] == pytest.approx([first * (1 + GROWTH) ** k for k in (1, 2, 3)])
 
 

@@ -25,25 +25,20 @@ def page(result: Result) -> Page:
     lost = [row for row in made if row["lost"]]
     quiet = [row for row in made if not row["lost"] and row["error"] is not None and row["error"] <= TRUSTED]
     worst = max(quiet, key=lambda row: row["graph"], default=None)
-    hidden = (
-        f"The error of restitution does not show all: with {worst['mistake']} in {worst['engine']} it is "
-        f"{number(worst['error'], 1)} at most, and the tilt is off by {number(worst['graph'], 2)} of the slenderness."
-        if worst
-        else ""
-    )
+    says = [
+        "The scripts that rocking script writes agree with the analytic model. Here one thing in them is done as a "
+        "first script may do it, all else as it is."
+    ]
+    if worst:
+        says.append(
+            f"The error of restitution does not show all: with {worst['mistake']} in {worst['engine']} it is "
+            f"{number(worst['error'], 1)} at most, and the tilt is off by {number(worst['graph'], 2)} of the "
+            "slenderness."
+        )
     return Page(
         f"What a mistake costs: of {len(made)} in scripts for {listed(list(found)) or 'no engine'}, {len(lost)} give "
         "another outcome in a scene, or a run that fails",
-        tuple(
-            filter(
-                None,
-                (
-                    "The scripts that rocking script writes agree with the analytic model. Here one thing in them is "
-                    "done as a first script may do it, all else as it is.",
-                    hidden,
-                ),
-            )
-        ),
+        tuple(says),
         first=(
             _dots(found, result.settings["no_matter"]),
             _counts(made, where(every, group=result.settings["no_matter"])),
