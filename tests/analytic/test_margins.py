@@ -59,26 +59,47 @@ def test_a_released_block_keeps_within_a_limit_that_its_start_keeps():
 
 
 def test_a_standing_block_rocks_from_its_uplift_acceleration_on():
-    """The uplift acceleration of a block on rigid ground is g tan(slenderness); its friction demand is a/g."""
+    """The uplift acceleration of a block on rigid ground is g tan(slenderness)."""
     a = 2.5
-    scene = block_scene(motion=PulseMotion("rectangular", a, 12.0), friction=0.26)
+    scene = block_scene(motion=PulseMotion("rectangular", a, 12.0))
     found = by_name(scene)
     assert found["motion"].up == pytest.approx(G * math.tan(0.28) / a - 1, abs=1e-7)
     assert found["slenderness"].down == pytest.approx(math.atan(a / G) / 0.28 - 1, abs=1e-7)
-    assert found["motion"].leaves_model == pytest.approx(0.26 * G / a - 1, abs=1e-7)
     assert contact_margins(scene).friction_demand == pytest.approx(a / G, rel=1e-12)
 
 
+def test_a_standing_block_slides_where_the_ground_exceeds_its_friction():
+    """Its friction demand is a/g; below a friction of tan(slenderness) it slides and never lifts."""
+    a, friction = 2.5, 0.26
+    found = by_name(block_scene(motion=PulseMotion("rectangular", a, 12.0), friction=friction))
+    assert found["motion"].change("slides") == found["motion"].up == pytest.approx(friction * G / a - 1, abs=1e-7)
+    assert [outcome for _, _, outcome in found["motion"].outcomes] == ["stands", "slides"]
+    assert found["friction"].change("slides") == found["friction"].down == pytest.approx(a / G / friction - 1, abs=1e-7)
+    assert found["slenderness"].down == pytest.approx(math.atan(a / G) / 0.28 - 1, abs=1e-7)
+    assert found["slenderness"].beyond(found["slenderness"].down) == "rocks"
+
+
+def test_a_block_that_lifts_slides_from_shentons_acceleration_on():
+    """Under a jump of A g it lifts at A = tan(slenderness), and slides at once where A exceeds Shenton's, q = 3/4."""
+    a, friction = 2.5, math.tan(0.28) + 1e-4
+    found = by_name(block_scene(motion=PulseMotion("rectangular", a, 12.0), friction=friction))["motion"]
+    sine, cosine, q = math.sin(0.28), math.cos(0.28), 0.75
+    shenton = friction * (1 - q * sine**2) - q * sine * cosine
+    shenton /= 1 - q * cosine**2 - friction * q * sine * cosine
+    assert found.change("lifts") == pytest.approx(G * math.tan(0.28) / a - 1, abs=1e-7)
+    assert found.change("slides") == pytest.approx(G * shenton / a - 1, abs=1e-7)
+    assert found.beyond(found.up) == "rocks" and found.leaves_model is None
+
+
 def test_a_wide_span_finds_the_uplift_at_several_times_the_motion():
-    """In one step the friction is overcome, the block lifts, exceeds half its slenderness and overturns."""
+    """In one step the block lifts, exceeds half its slenderness and overturns."""
     a, step = 0.5, 9.0 / 400
     lift = G * math.tan(0.28) / a - 1
-    scene = block_scene(motion=PulseMotion("rectangular", a, 1.0), friction=math.tan(0.28) - 1e-4)
+    scene = block_scene(motion=PulseMotion("rectangular", a, 1.0))
     margin = by_name(scene, span=9.0, step=step)["motion"]
     assert 4 < lift < 5 and margin.outcome == "stands" and not any(map(margin.reached, LIMIT_STATES))
     assert margin.change("lifts") == margin.up == pytest.approx(lift, abs=step / 2**BISECTIONS)
-    assert margin.leaves_model == pytest.approx(scene.friction * G / a - 1, abs=step / 2**BISECTIONS)
-    assert margin.leaves_model < lift < margin.change("tilt") < margin.change("overturns") < lift + step
+    assert lift < margin.change("tilt") < margin.change("overturns") < lift + step
     assert [outcome for _, _, outcome in margin.outcomes] == ["stands", "rocks", "overturns"] and not margin.interleaved
     # 44 steps down would leave less than half a step
     assert (margin.bands[0].low, margin.bands[-1].high) == (pytest.approx(-43 * step, abs=1e-9), 9.0)
@@ -102,7 +123,8 @@ def reached(scene, tilt):
     """The limit states that a run of its own reaches."""
     response = simulate(scene, history=False)
     states = {
-        "lifts": response.outcome != "stands",
+        "slides": response.sliding is not None and response.sliding.path > 0,
+        "lifts": response.outcome in ("rocks", "overturns"),
         "tilt": response.peak_tilt > tilt * scene.block.slenderness or response.outcome == "overturns",
         "stroke": response.peak_base_displacement > scene.bearings.x_max,
         "overturns": response.outcome == "overturns",
@@ -127,9 +149,10 @@ def test_bands_are_what_runs_in_their_middle_and_just_within_their_ends_reach(is
             assert one.high == other.low and (one.reached, one.holds) != (other.reached, other.holds)
 
 
-def test_only_bearings_with_a_limit_have_a_stroke():
+def test_only_bearings_with_a_limit_have_a_stroke_and_only_a_friction_slides():
     scene = load_scene("caryatid-isolated")
-    assert limit_states(scene) == LIMIT_STATES
+    assert limit_states(scene.with_(friction=0.3)) == LIMIT_STATES
+    assert limit_states(scene) == LIMIT_STATES[1:]
     without = scene.with_(bearings={"x_max": None}, motion=scene.motion.scaled(3.0))
     assert limit_states(without) == limit_states(load_scene("caryatid-rigid")) == ("lifts", "tilt", "overturns")
     found = by_name(without, span=0.01, step=5e-3)

@@ -10,13 +10,23 @@ from comparisons.showing.margins import draw_margins, print_margins
 from comparisons.studies.stability.cases import BLOCK, GAP, THRESHOLD
 
 RELEASED = """
-friction = 0.3
 [block]
 mass = 3172.05
 radius = 1.0884
 slenderness = 0.28
 [start]
 tilt = {tilt}
+"""
+PUSHED = """
+friction = 0.26
+[block]
+mass = 3172.05
+radius = 1.0884
+slenderness = 0.28
+[motion]
+pulse = "rectangular"
+amplitude = 2.5
+frequency = 12.0
 """
 
 
@@ -43,7 +53,21 @@ def test_margin_names_the_nearest_change_of_the_outcome_and_draws_it(rocking, tm
         (["lifts", "tilt", "overturns"], "overturns"),
         (["lifts", "tilt"], "rocks"),
     ]
-    assert content["contact"]["friction"] == 0.3 and 0 < content["contact"]["friction_demand"] < 0.3
+    assert content["contact"]["friction"] is None and 0 < content["contact"]["friction_demand"] < 0.3
+
+
+def test_margin_of_a_friction_says_where_the_block_slides(rocking, tmp_path):
+    """Under a constant acceleration of 2.5 m/s2, .2548 g, it slides from friction .26 (1 - .0198) down."""
+    (tmp_path / "pushed.toml").write_text(PUSHED)
+    status, out, _ = rocking("margin", tmp_path / "pushed.toml", "--json", tmp_path / "margin.json")
+    words, content = " ".join(out.split()), json.loads((tmp_path / "margin.json").read_text())
+    assert status == 0 and "pushed: stands" in words
+    assert "Nearest change of the outcome: friction -1.98 %, the block then slides." in words
+    assert "quantity value slides lifts > 0.5 γ" in words and "friction 0.26 -1.98 %" in words
+    assert "The friction demand is 0.255, the scene's coefficient 0.26." in words
+    nearest = next(one for one in content["margins"] if one["quantity"] == "friction")
+    assert nearest["nearest"] == pytest.approx(2.5 / 9.81 / 0.26 - 1, abs=1e-7)
+    assert [band["outcome"] for band in nearest["bands"]] == ["slides", "stands"]
 
 
 SAID = {
