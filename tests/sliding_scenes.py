@@ -1,4 +1,4 @@
-"""Scenes of blocks that may slide."""
+"""Scenes of blocks that may slide, drawn at random."""
 
 import math
 
@@ -34,3 +34,28 @@ def random_slider(rng, number):
     keys = {"ka": 10 * stiff, "kb": stiff, "count": 4, "damping": float(rng.choice([0.0, 100.0]))}
     name = NAMES[number // 2 % len(NAMES)]
     return scene.with_(base=Base(mass=mass), bearings=bearings_of(name, **keys))
+
+
+KINDS = ("vertical motion", "bilinear", "bouc-wen", "viscous", "ricker", "flight")
+
+
+def slider_of(kind, rng):
+    """A statue at rest under a pulse above uplift, with what `kind` says; every bearing law has its own kind."""
+    radius, slenderness = float(10 ** rng.uniform(-0.5, 0.7)), float(rng.uniform(0.12, 0.45))
+    omega = math.sqrt(0.75 * GRAVITY / radius)
+    shape = "ricker" if kind == "ricker" else str(rng.choice(["one-sine", "one-cosine", "half-sine"]))
+    a, w = GRAVITY * math.tan(slenderness) * rng.uniform(1.02, 4.0), omega * rng.uniform(1.5, 6.0)
+    up = {"vertical motion": a * rng.uniform(0.2, 1.0), "flight": GRAVITY * rng.uniform(1.2, 2.5)}.get(kind)
+    vertical = up and PulseMotion(shape, float(up * rng.choice([-1, 1])), float(w))
+    motion = PulseMotion(shape, float(a), float(w), vertical=vertical)
+    duration = motion.end + 4 / omega
+    scene = scene_of(float(rng.uniform(0.05, 0.7)), slenderness, radius, motion=motion, duration=duration)
+    law = {"bilinear": "bilinear", "bouc-wen": "bouc-wen", "viscous": "algebraic"}.get(kind)
+    if law is None and rng.random() < 0.5:
+        return scene
+    mass = float(scene.block.mass * rng.uniform(0.1, 2.0))
+    stiff = (scene.block.mass + mass) * (2 * math.pi / rng.uniform(1, 3)) ** 2 / 4
+    share = rng.uniform(0.05, 0.3) if kind == "viscous" else 0.0
+    damping = float(share * math.sqrt(4 * stiff * (scene.block.mass + mass)) / 2)
+    bearings = bearings_of(law or "algebraic", ka=10 * stiff, kb=stiff, count=4, damping=damping)
+    return scene.with_(base=Base(mass=mass), bearings=bearings)

@@ -10,6 +10,7 @@ import numpy as np
 
 from .. import layout as L
 from ..compiled import entry, inner
+from ..events import find_fall
 from ..laws import law_function
 from ..polynomial import MAX_ORDER, SCRATCH, value
 from ..readings import gravity_at
@@ -99,6 +100,9 @@ def end_of_step(par, block, found, step, P, totals, work):
     slip, speed, gap, rise = value(P[S.SLIP], order, h), value(P[S.SPEED], order, h), 0.0, 0.0
     if block.mode == FLIGHT:
         gap, rise = value(P[S.GAP], order, h), value(P[S.RISE], order, h)
+        root = find_fall(P[S.SPEED], math.copysign(1.0, block.speed), 0.0, order, h, P[L.EVENT], work)
+        if root > 0:  # in contact the slip turns back at an event
+            totals[S.PEAK_SLIP] = max(totals[S.PEAK_SLIP], abs(value(P[S.SLIP], order, root)))
     elif block.sigma != 0:
         totals[S.PATH] += abs(slip - block.slip)
     else:
