@@ -197,9 +197,10 @@ def simulate(
 
         if sliding.is_needed(par, contact, totals):
             known = dict(settings=settings, versions=dict(versions()), scene=scene.name)
-            response, table = sliding.response(scene, par, contact, shaking, chosen, known)
-            end = response.end, response.sliding.end  # type: ignore[union-attr]  # it has one
-            return replace(response, history=_history(scene, table[:, :7], *end) if history else None)
+            if slid := sliding.response(scene, par, contact, shaking, chosen, known):
+                response, table = slid
+                end = response.end, response.sliding.end  # type: ignore[union-attr]  # it has one
+                return replace(response, history=_history(scene, table[:, :7], *end) if history else None)
     response = _response(scene, par, totals, result, cpu, settings, history)
     if totals[layout.WILL_OVERTURN] and totals[layout.MODE] == layout.ROCKING:  # ends during the fall
         later = par._replace(duration=par.duration + longest_duration(scene))

@@ -20,21 +20,22 @@ def contact_of(scene: Scene) -> Contact | None:
     return Contact(float(scene.friction), mass, scene.block.centre_inertia, scene.block.restitution is not None)
 
 
-def slipping_friction(par: Parameters, contact: Contact) -> float:
-    """mu_c: below it the impact of a block that did not slide makes it slip.
+def slipping_friction(par: Parameters) -> float:
+    """mu_c: horizontal over vertical impulse of the impact of a block that does not slide, the friction that it needs.
 
-    m b h/(J_G + m h^2 + J_G m/m_b), on rigid ground without the last term; always below tan(gamma), so that a block
-    that lifts from rest does not slip at its impacts unless it slid before.
+    (1 - e) (h - arm)/((1 + e) b), from the velocities of the centre of mass before and after it and the base's jump,
+    eq. (8): with e of eq. (7) m b h/(J_G + m h^2 + J_G m/m_b), on rigid ground without the last term. That is always
+    below tan(gamma), so that a block that lifts from rest does not slip at its impacts unless it slid before.
     """
-    m, b, h, centre = _numbers(par, contact)
-    return m * b * h / (centre + m * h**2 + centre * m / contact.mb)
+    b, h = par.R * math.sin(par.gamma), par.R * math.cos(par.gamma)
+    return (1 - par.e) * (h - par.arm) / ((1 + par.e) * b)
 
 
 def slipping_restitution(par: Parameters, contact: Contact) -> float:
     """Restitution of an impact at a friction below mu_c of a block that did not slide before it, on any base."""
-    m, b, h, centre = _numbers(par, contact)
-    gripping = contact.mu * m * b * h
-    return (centre - m * b**2 + gripping) / (centre + m * b**2 - gripping)
+    b, h = par.R * math.sin(par.gamma), par.R * math.cos(par.gamma)
+    gripping = par.m * b * (b - contact.mu * h)
+    return (contact.centre - gripping) / (contact.centre + gripping)
 
 
 def paradoxical_friction(par: Parameters, contact: Contact) -> float:
@@ -44,7 +45,3 @@ def paradoxical_friction(par: Parameters, contact: Contact) -> float:
     """
     k = contact.centre / (par.m * par.R**2)
     return 2 * math.sqrt(k * (1 + k))
-
-
-def _numbers(par, contact):
-    return par.m, par.R * math.sin(par.gamma), par.R * math.cos(par.gamma), contact.centre

@@ -73,7 +73,7 @@ def test_the_first_mode_is_shentons():
 @pytest.mark.parametrize("share", [0.3, 0.6, 0.9, 1.001, 1.5, 4.0])
 def test_a_first_impact_is_equation_7_or_slips(base, share):
     scene = scene_of(1.0, 0.3, base=base, start={"tilt": 1e-4, "tilt_rate": -0.5}, duration=1e-3)
-    limit = slipping_friction(parameters(scene), contact_of(scene))
+    limit = slipping_friction(parameters(scene))
     scene = scene.with_(friction=share * limit)
     _, impacts, _ = march_of(scene)
     _, before, after, jump, kind, speed = impacts[0]

@@ -9,7 +9,8 @@ from sliding_scenes import scene_of
 import analytic.sliding.run as sliding
 from analytic import PulseMotion, SceneError, load_scene, overturning_map, simulate, simulate_many
 from analytic.response import Response
-from analytic.sliding.bounds import contact_of, slipping_friction
+from analytic.rocking import RockingModel
+from analytic.sliding.bounds import slipping_friction
 from analytic.sliding.moreau import simulate_moreau
 from analytic.solver import parameters
 from analytic.synthetic import synthetic_motion
@@ -106,6 +107,16 @@ def test_a_friction_that_is_not_exceeded_leaves_the_kernels_answer(monkeypatch):
     assert with_friction.impacts == simulate(scene).impacts
 
 
+def test_a_march_that_does_not_slide_leaves_the_kernels_answer():
+    """A demand of almost the friction may exceed it between the points at which it is read: the march decides."""
+    scene = load_scene("free-rocking-rigid")
+    plain = simulate(scene)
+    tight = simulate(scene.with_(friction=plain.friction_demand / sliding.NEAR * 0.95))
+    assert tight.sliding is None and tight.impacts == plain.impacts and tight.end == plain.end
+    many = simulate_many([scene, scene.with_(friction=plain.friction_demand / sliding.NEAR * 0.95)], contact=True)
+    assert many.peak_tilt[0] == many.peak_tilt[1] and not many.slid.any()
+
+
 def test_a_fall_slides_at_any_friction():
     scene = scene_of(0.6, radius=1.0, motion=pulse("one-sine", 4.0, 5.0), duration=5.0)
     plain, slid = simulate(scene.with_(friction=None)), simulate(scene)
@@ -119,7 +130,7 @@ def test_a_fall_slides_at_any_friction():
 
 def test_a_release_below_the_slipping_friction_is_refused():
     scene = scene_of(0.15, 0.28, start=RELEASED, duration=2.0)
-    limit = slipping_friction(parameters(scene), contact_of(scene))
+    limit = slipping_friction(parameters(scene))
     with pytest.raises(SceneError, match=rf"friction = 0.15: below {limit:.4g}, .*; give {limit:.4g} or more"):
         simulate(scene)
     assert simulate_many([scene]).failed.all()
@@ -136,8 +147,17 @@ def test_a_friction_above_painleves_bound_is_refused_only_where_it_is_used():
 
 def test_a_given_restitution_that_needs_more_friction_is_refused():
     scene = scene_of(0.5, 0.449, 1.044, motion=pulse("one-sine", 17.39, 10.13), duration=4.0)
-    with pytest.raises(SceneError, match=r"block.restitution = 0.8: needs, at 0.55\d+ s, more than the friction 0.5"):
+    with pytest.raises(SceneError, match=r"restitution = 0.8: needs, at 0.55\d+ s, .* and a block that sticks"):
         simulate(scene.with_(block={"restitution": 0.8}))
+    # dissipating more needs more friction: .6 of eq. (7) a horizontal impulse above that of eq. (7)
+    released = scene_of(0.3, 0.28, start=RELEASED, duration=2.0)
+    assert simulate(released, history=False).sliding is None
+    low = released.with_(block={"restitution": 0.6 * RockingModel.of(released).restitution})
+    needed = slipping_friction(parameters(low))
+    assert needed > 0.3
+    with pytest.raises(SceneError, match=rf"needs, at 0.6\d+ s, a friction of {needed:.4g} \(it is 0.3\)"):
+        simulate(low)
+    assert simulate(low.with_(friction=1.01 * needed), history=False).outcome == "rocks"
 
 
 def test_many_runs_are_the_single_ones():
