@@ -4,9 +4,9 @@
 
 A folder is of one of two layouts. That of the tests of two granite boulders, as their authors publish them (`granite`),
 or the checkout of their repository. Or one's own: a scene file ``scene.toml`` of the block, and ``tests.csv`` with a
-line for each test, its columns ``motion`` (a record file in the folder, and its unit in the file or in the scene file's
-place: ``units``), ``overturned`` (1 or 0) and, if there are any, ``name`` and ``record``: tests under one record at
-several scales say the same there, and count as one where intervals are told.
+line for each test, its columns ``motion`` (a record file in the folder), ``overturned`` (1 or 0) and, if there are any,
+``units`` (of a file that states none), ``name`` and ``record``: tests under one record at several scales say the same
+there, and count as one where intervals are told. Its motions are taken as they are.
 """
 
 import csv
@@ -16,7 +16,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -24,7 +23,6 @@ from analytic import SampledMotion, Scene, SceneError, load_scene
 from analytic.errors import SettingError
 from analytic.files import read_plain
 from analytic.records import UNITS, read_record
-from analytic.rocking import RockingModel
 
 SCENE, TESTS = "scene.toml", "tests.csv"
 LARGEST = 10_000_000  # bytes of a list of tests
@@ -47,21 +45,6 @@ class Specimen:
     def slendernesses(self) -> np.ndarray:
         """Those of the grid [rad], from `GRID` one to the next."""
         return np.linspace(*self.span, GRID)
-
-
-def leaning(scene: Scene, slenderness: float, *, restitution: float = 1, inertia: float = 1, friction: Any = None) -> Scene:
-    """A scene whose block has another slenderness [rad], its centre of mass as high as before.
-
-    restitution: factor on that of the block. inertia: factor on the moment about the centre of mass. friction: in place
-    of the scene's.
-    """
-    block = scene.block
-    radius = float(block.half_height / np.cos(slenderness))
-    corner = float(inertia * block.centre_inertia + block.mass * radius**2)
-    changed = scene.with_(block={"radius": radius, "slenderness": float(slenderness), "corner_inertia": corner})
-    if restitution != 1:
-        changed = changed.with_(block={"restitution": restitution * RockingModel.of(changed).restitution})
-    return changed if friction is None else changed.with_(friction=friction)
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,8 +121,8 @@ def _own(place, every, progress):
     tests = []
     for count, (number, row) in enumerate(rows[::every], 1):
         name = row.get("name") or str(number - 1)
-        motion = _motion(place, number, row)
-        tests.append(TableTest(name, row.get("record") or name, (flag(place / TESTS, number, "overturned", row),), motion))
+        fell = flag(place / TESTS, number, "overturned", row)
+        tests.append(TableTest(name, row.get("record") or name, (fell,), _motion(place, number, row)))
         progress(count, len(rows[::every]))
     names = [test.name for test in tests]
     if twice := next((name for name in names if names.count(name) > 1), None):
@@ -175,14 +158,17 @@ def _rows(path):
 
 def _motion(place, number, row):
     """The table's motion of a test, as its file has it."""
+    where = f"{place / TESTS}, row {number}"
     if row.get("units", "") not in ("", *UNITS):
-        raise SettingError(f"{place / TESTS}, row {number}, units = {row['units']!r}: give one of {', '.join(UNITS)}")
+        raise SettingError(
+            f"{where}, units = {row['units']!r}: no unit of acceleration; give one of {', '.join(UNITS)}"
+        )
     if not row["motion"]:
-        raise SettingError(f"{place / TESTS}, row {number}, motion = '': missing; give a record file, or remove the row")
+        raise SettingError(f"{where}, motion = '': missing; give a record file, or remove the row")
     try:
         return read_record(place / row["motion"], row.get("units") or None)
     except SceneError as error:
-        raise SettingError(f"{place / TESTS}, row {number}, motion = {row['motion']!r}: {error}") from error
+        raise SettingError(f"{where}, motion = {row['motion']!r}: {error}") from error
 
 
 def flag(file: str | PathLike[str], number: int, column: str, row: dict) -> bool:

@@ -1,7 +1,8 @@
 """The shake-table tests of two granite boulders: their published layout, and what is known of the two.
 
-Chen, Arrowsmith, Das, Wittich, Madugo and Kottke, Virtual Shake Robot, Seismica 3(1), 2024. Nothing of the data is here:
-their licence is another (GPL-3.0). What is here describes the two boulders, from the authors' meshes.
+"Virtual Shake Robot: Simulating Dynamics of Precariously Balanced Rocks for Overturning and Large-displacement
+Processes", Seismica 3(1), 2024. Nothing of the data is here: their licence is another (GPL-3.0). What is here describes
+the two boulders, by the authors' meshes.
 """
 
 import re
@@ -51,7 +52,9 @@ def specimens() -> tuple[Specimen, ...]:
         corner = INERTIA * DENSITY + mass * radius**2
         block = Block(mass=mass, radius=radius, slenderness=float(UPRIGHT), corner_inertia=corner)
         angles = " or ".join(f"{angle:g}" for angle in footprints)
-        note = f"slenderness by the mesh: {angles} deg, where the footprint is all within 2, 5 or 10 mm of the lowest point"
+        note = (
+            f"slenderness by the mesh: {angles} deg, the footprint being all within 2, 5 or 10 mm of the lowest point"
+        )
         low, high = np.radians(SPAN).tolist()
         found.append(Specimen(name, Scene(block=block, name=name), (low, high), note))
     return tuple(found)

@@ -13,18 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ...measuring.forecasts import (
-    HALF,
-    brier,
-    clustered,
-    folds,
-    halves,
-    held_out,
-    logistic,
-    middle,
-    right,
-    threshold,
-)
+from ...measuring.forecasts import HALF, brier, clustered, folds, halves, held_out, logistic, middle, right, threshold
 
 BY_RECORD, BY_HALVES, IN_SAMPLE = "held out by record", "fitted to every other test", "fitted to the same tests"
 SPREADS = np.arange(1, 21) / 60  # of the normal spread, over the width of the grid of slendernesses
