@@ -85,8 +85,8 @@ ROWS = {
         "where": "engine variant specimen forecast size right",
         "cell": "engine variant specimen size pga ratio overturned mean",
         "run": "engine variant specimen slenderness outcomes failed cpu_seconds?",
-        "engine": """engine variant tier specimen size failed both_stand both_overturn only_a only_b p_value? equal
-            interval right? low? high? misses? false_alarms? model_right? tilt?""",
+        "engine": """engine variant tier specimen size failed both_stand both_overturn only_a only_b p_value?
+            records_a records_b p_records? equal interval right? low? high? misses? false_alarms? model_right? tilt?""",
         "failure": "engine variant specimen test kind reason message",
         "absent": "engine variant reason",
     },

@@ -127,6 +127,9 @@ def _own(place, every, progress):
     names = [test.name for test in tests]
     if twice := next((name for name in names if names.count(name) > 1), None):
         raise SettingError(f"{place / TESTS}: two tests are called {twice!r}; give each a name of its own")
+    if (given := scene.block.restitution) is not None:
+        words = "engines that are judged decide it; leave it out"
+        raise SettingError(f"{place / SCENE}: block.restitution = {given!r}: {words}")
     drawn = scene.block.slenderness
     span = (OWN_SPAN[0] * drawn, min(OWN_SPAN[1] * drawn, STEEPEST))
     note = f"slenderness of its scene file: {drawn:.4g} rad"

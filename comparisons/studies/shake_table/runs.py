@@ -5,6 +5,7 @@ from dataclasses import asdict
 from typing import Any
 
 import numpy as np
+from scipy.stats import binomtest
 
 from engines import get_engine
 
@@ -16,6 +17,9 @@ from .shaking import OVERTURNS, STANDS
 from .telling import NOT_RUN, array_of, may_be_told, text_of
 
 MODEL = "analytic"
+ALL = "all"  # specimens together
+COUNTS = ("both_stand", "both_overturn", "only_a", "only_b")
+ANSWERS = ("right", "low", "high", "misses", "false_alarms", "model_right")
 
 
 def run_row(campaign: Campaign, k: int, rows: Iterable[Row], slenderness: float) -> dict[str, Any]:
@@ -37,34 +41,58 @@ def run_row(campaign: Campaign, k: int, rows: Iterable[Row], slenderness: float)
     }
 
 
-def engine_row(
+def engine_rows(
     campaign: Campaign,
-    k: int,
-    run: dict[str, Any],
+    own: Sequence[dict[str, Any]],
     rows: Sequence[dict[str, Any]],
-    own: Sequence[Row],
-    found: Sequence[Row],
-) -> dict[str, Any]:
-    """The row of an engine's run beside the model: the sign of its differences, and its right answers where they are
-    told. rows: those before it; own, found: runs of the model and of the engine."""
-    runs = [row for row in rows if row["part"] == "run" and row["specimen"] == run["specimen"]]
-    theirs, ours = array_of(run["outcomes"]), array_of(runs[0]["outcomes"])
-    sound, asked = np.isin(theirs, [STANDS, OVERTURNS]), theirs != NOT_RUN
-    records = np.array([test.record for test in campaign.tests])[asked].tolist()
-    pair = confusion(ours[sound] == OVERTURNS, theirs[sound] == OVERTURNS) if sound.any() else None
-    equal, interval = equality((theirs != ours)[asked], records)
-    counts = {key: asdict(pair)[key] if pair else 0 for key in ("both_stand", "both_overturn", "only_a", "only_b")}
+    runs: tuple[Sequence[Row], Sequence[Row]],
+) -> list[dict[str, Any]]:
+    """Rows of an engine beside the model, of each specimen and of all together: the sign of its differences, and its
+    right answers where they are told.
+
+    own: its `run_row` of each specimen. rows: those of the answer before. runs: of the model and of the engine.
+    """
+    records = [test.record for test in campaign.tests]
+    first = {"part": "engine", **{key: own[0][key] for key in ("engine", "variant")}}
+    first["tier"] = get_engine(own[0]["engine"]).variants[own[0]["variant"]].kind
+    found, texts = [], []
+    for k, run in enumerate(own):
+        others = [row for row in rows if row["part"] == "run" and row["specimen"] == run["specimen"]]
+        texts.append((run["outcomes"], others[0]["outcomes"]))
+        said = answers(run["outcomes"], others, rows, outcomes_of(campaign.tests, k), records)
+        tilt = _tilts(run["specimen"], *runs)
+        found.append({**first, "specimen": run["specimen"], **differences(*texts[-1], records), **said, "tilt": tilt})
+    if len(own) > 1:
+        theirs, ours = ("".join(pair[side] for pair in texts) for side in (0, 1))
+        together = differences(theirs, ours, records * len(own))
+        found.append({**first, "specimen": ALL, **together, **dict.fromkeys((*ANSWERS, "tilt"))})
+    return found
+
+
+def differences(theirs: str, ours: str, records: Sequence[str]) -> dict[str, Any]:
+    """In what an engine's outcomes differ from the model's, which way, and whether the two are equal.
+
+    p_value: of a sign test over tests. records_a, records_b, p_records: of one over records, each by what most of its
+    differences say, as those under one record are alike. A failed run is no difference of a sign, but differs.
+    """
+    engine, model = array_of(theirs), array_of(ours)
+    sound, asked = np.isin(engine, [STANDS, OVERTURNS]), engine != NOT_RUN
+    names = np.array(records)
+    pair = confusion(model[sound] == OVERTURNS, engine[sound] == OVERTURNS) if sound.any() else None
+    equal, interval = equality((engine != model)[asked], names[asked].tolist())
+    sign = np.where(sound, (model == OVERTURNS).astype(int) - (engine == OVERTURNS), 0)
+    by_record = [int(np.sign(sign[names == name].sum())) for name in dict.fromkeys(records)]
+    one, other = by_record.count(1), by_record.count(-1)
     return {
-        "part": "engine",
-        **{key: run[key] for key in ("engine", "variant", "specimen", "failed")},
-        "tier": get_engine(run["engine"]).variants[run["variant"]].kind,
         "size": int(asked.sum()),
-        **counts,
+        "failed": int((asked & ~sound).sum()),
+        **{key: asdict(pair)[key] if pair else 0 for key in COUNTS},
         "p_value": mcnemar(pair) if pair else None,
+        "records_a": one,
+        "records_b": other,
+        "p_records": float(binomtest(one, one + other).pvalue) if one + other else None,
         "equal": equal,
         "interval": list(interval),
-        **answers(run["outcomes"], runs, rows, outcomes_of(campaign.tests, k), records),
-        "tilt": _tilts(run["specimen"], own, found),
     }
 
 
@@ -77,20 +105,28 @@ def answers(
 ) -> dict[str, Any]:
     """Right answers of a solver, and of the model on the same tests, with the interval of their share; a failed run is
     not right. None where they are not told; with few failed runs misses and false alarms are not told apart."""
-    keys = ("right", "low", "high", "misses", "false_alarms", "model_right")
-    told = [row["outcomes"] for row in runs if _told(row, rows)]
-    if not may_be_told(text, told):
-        return dict.fromkeys(keys)
-    digits = array_of(text)
+    if not may_be_told(text, [row["outcomes"] for row in runs if _told(row, rows)]):
+        return dict.fromkeys(ANSWERS)
+    said = counted(text, runs[0]["outcomes"], measured, records)
+    failed = said.pop("failed")
+    return said if failed == 0 or failed >= FEWEST else said | {"misses": None, "false_alarms": None}
+
+
+def counted(text: str, model: str, measured: np.ndarray, records: Sequence[str]) -> dict[str, Any]:
+    """What `answers` counts, all of it."""
+    digits, truth = array_of(text), np.where(measured, OVERTURNS, STANDS)
     asked = digits != NOT_RUN
-    hit = (np.where(measured, OVERTURNS, STANDS) == digits)[asked]
-    model = (np.where(measured, OVERTURNS, STANDS) == array_of(runs[0]["outcomes"]))[asked]
-    low, high = clustered(hit, records)
-    failed = int((asked & ~np.isin(digits, [STANDS, OVERTURNS])).sum())
-    apart = failed == 0 or failed >= FEWEST
-    counts = [int((measured & (digits == STANDS)).sum()), int((~measured & (digits == OVERTURNS)).sum())]
-    said = (int(hit.sum()), low, high, *(counts if apart else (None, None)), int(model.sum()))
-    return dict(zip(keys, said, strict=True))
+    hit = (truth == digits)[asked]
+    low, high = clustered(hit, np.array(records)[asked].tolist())
+    return {
+        "right": int(hit.sum()),
+        "low": low,
+        "high": high,
+        "misses": int((measured & (digits == STANDS)).sum()),
+        "false_alarms": int((~measured & (digits == OVERTURNS)).sum()),
+        "model_right": int((truth == array_of(model))[asked].sum()),
+        "failed": int((asked & ~np.isin(digits, [STANDS, OVERTURNS])).sum()),
+    }
 
 
 def _told(run, rows):

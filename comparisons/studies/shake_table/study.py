@@ -23,7 +23,6 @@ from ...running.plan import Batch, Computed, Plan, Request
 from ...running.progress import bar
 from ...running.provenance import Result
 from ...running.sweep import Row
-from ..fragility.study import peak_velocity
 from . import at_hand, granite
 from .campaign import Campaign, outcomes_of, read_campaign
 from .judging import (
@@ -42,7 +41,8 @@ from .judging import (
     paired,
     score,
 )
-from .runs import engine_row, run_row
+from .measures import measures_of
+from .runs import engine_rows, run_row
 from .shaking import OVERTURNS, ended, leaning, over_slendernesses
 from .telling import cell_rows
 
@@ -88,12 +88,13 @@ def plan(request: Request, *, data: Data = None) -> Plan:
         return Computed({"quick": request.quick, "campaign": "", "variants": []}, [row])
     with bar("reading the tests") as progress:
         campaign = read_campaign(data, QUICK if request.quick else 1, progress)
-    at_hand.keep(campaign)
     model = yield Batch(_on_grids(campaign), over_slendernesses, "model over slenderness")
     known = _outcomes(campaign, model)
     places = [one[0].best(np.ones(len(campaign.tests), dtype=bool)) for one in known]
     slendernesses = [float(one[0].slendernesses[place]) for one, place in zip(known, places, strict=True)]
     rows = [row for k in range(len(known)) for row in _of_specimen(campaign, k, known[k])]
+    records = [test.record for test in campaign.tests]
+    at_hand.keep(campaign, [judged(Forecast(MODEL, one[0].spread), records) for one in known])
     settings = _settings(request, campaign, slendernesses) | {"model_runs": len(model) * len(KINDS) * _grid(campaign)}
     settings["model_seconds"] = float(sum(row.cost["grid_seconds"] for row in model))
     arrays = {
@@ -108,9 +109,8 @@ def plan(request: Request, *, data: Data = None) -> Plan:
         found = yield Batch(
             _at(campaign, slendernesses, engine, variant, every), ended, f"{engine}, {variant}", TIME_LIMIT
         )
-        for k in range(len(known)):
-            run = run_row(campaign, k, found, slendernesses[k])
-            rows = [*rows, run, engine_row(campaign, k, run, rows, own, found)]
+        runs = [run_row(campaign, k, found, slendernesses[k]) for k in range(len(known))]
+        rows = [*rows, *runs, *engine_rows(campaign, runs, rows, (own, found))]
         rows = [*rows, *(_failure(row) for row in found if row.failed)]
         settings = {**settings, "variants": [*settings["variants"], variant_settings(engine, variant)]}
         answer = Computed(settings, rows, arrays, seed=SEED)
@@ -177,23 +177,6 @@ def _outcomes(campaign: Campaign, rows: Sequence[Row]) -> list[list[Outcomes]]:
         measured, grid = outcomes_of(campaign.tests, k), specimen.slendernesses()
         found.append([Outcomes(grid, overturned[:, kind], measured) for kind in range(len(KINDS))])
     return found
-
-
-def measures_of(campaign: Campaign) -> dict[str, np.ndarray]:
-    """Of each test PGA [g] and PGV [m/s]: as the campaign states them of what the table was to play, where it does.
-    The table's measured acceleration has noise, which its integral gathers; those of it stand beside them."""
-    tests, gravity = campaign.tests, campaign.specimens[0].scene.gravity
-    table = np.array([(test.motion.peak / gravity, _drifting_less(test.motion)) for test in tests]).T
-    if not all({"peak", "ratio"} <= test.stated.keys() for test in tests):
-        return {"PGA": table[0], "PGV": table[1]}
-    peak, ratio = (np.array([test.stated[name] for test in tests]) for name in ("peak", "ratio"))
-    stated = {"PGA": peak, "PGV": peak * ratio * gravity}
-    return stated | {"PGA of the table": table[0], "PGV of the table": table[1]}
-
-
-def _drifting_less(motion):
-    """Peak velocity [m/s] of a table that is at rest before and after."""
-    return peak_velocity(type(motion)(motion.dt, motion.samples - motion.samples.mean(), motion.label))
 
 
 def _of_specimen(campaign: Campaign, k: int, kinds: Sequence[Outcomes]) -> list[dict[str, Any]]:
