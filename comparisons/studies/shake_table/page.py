@@ -301,8 +301,8 @@ def _not_shown(result):
     return (
         "What this does not show: it is one campaign, of one kind of stone, on one axis; boulders of another size or "
         "slenderness may do otherwise. A threshold of PGV has nearly as many right answers: what the model knows more "
-        f"shows in its probability alone, and {better} with 95 %. Records repeat at many scales; intervals go by record, and "
-        "nothing is said of records unlike these. Restitution and friction of granite on the table were not measured; "
+        f"shows in its probability alone, and {better} with 95 %. Records repeat at many scales; intervals go by record"
+        " and say nothing of records unlike these. Restitution and friction of granite on the table were not measured; "
         "the table above says what they move."
     )
 
