@@ -22,10 +22,8 @@ def pulse(peak, rate, seconds=4.0, frequency=1.5):
 
 def labview(t, acceleration, offset=OFFSET):
     """A motion as LabVIEW exports it, in six digits: the acceleration first, then plots that say nothing of it."""
-    rows = (
-        f"{a:.6g}\t{b + offset:.6g}\t{a:.6g}\t7\t{a:.6g}\t-900.5\t{a:.6g}\t33\t\n"
-        for a, b in zip(t, acceleration, strict=True)
-    )
+    pairs = zip(t, acceleration + offset, strict=True)
+    rows = (f"{a:.6g}\t{b:.6g}\t{a:.6g}\t7\t{a:.6g}\t-900.5\t{a:.6g}\t33\t\n" for a, b in pairs)
     return f"{TITLES}\n{''.join(rows)}"
 
 
@@ -81,10 +79,8 @@ def own(folder, numbers=range(24), rate=200, header="motion,overturned,record"):
     write(folder, SCENE, "scene.toml")
     lines = [header]
     for n in numbers:
-        t, a = pulse(peak_of(n), rate)
-        write(
-            folder, "time [s],acc [g]\n" + "".join(f"{x:.4f},{y:.6f}\n" for x, y in zip(t, a, strict=True)), f"{n}.csv"
-        )
+        rows = "".join(f"{x:.4f},{y:.6f}\n" for x, y in zip(*pulse(peak_of(n), rate), strict=True))
+        write(folder, f"time [s],acc [g]\n{rows}", f"{n}.csv")
         lines.append(f"{n}.csv,{fell(n, 0)},{NAMES[n % len(NAMES)].strip()}")
     write(folder, "\n".join(lines) + "\n", "tests.csv")
     return folder

@@ -15,7 +15,6 @@ from answered import answered, by_model, by_runs, stored
 from record_files import write
 from table_tests import (
     MEASURED,
-    OFFSET,
     RECORDS,
     RESULTS,
     SCENE,
@@ -71,7 +70,7 @@ def small(monkeypatch):
 
 def unlike(case):
     """The scene of a run, which in an engine ends otherwise in a few tests."""
-    if case.solver == "analytic" or case.tag["test"] not in ("28", "30"):
+    if case.solver == "analytic" or case.tag["test"] not in ("22", "23"):
         return case.scene
     return case.scene.with_(motion=case.scene.motion.scaled(0.01))
 
@@ -112,7 +111,7 @@ def test_the_published_layout_is_read_at_any_sampling(tmp_path, rate, packed):
         assert test.motion.samples[:10].tolist() == pytest.approx([0.0] * 10, abs=1e-5)
         assert test.overturned == (bool(fell(number, 0)), bool(fell(number, 1)))
         assert list(test.authors[0]) == ["KN=1 KS=1", "KN=3 KS=1"] and test.authors[0]["KN=1 KS=1"] is True
-        assert test.stated == {"peak": peak_of(number), "ratio": 0.1 + 0.001 * number}
+        assert test.stated == pytest.approx({"peak": peak_of(number), "ratio": 0.1 + 0.001 * number})
 
 
 def test_a_checkout_of_the_repository_and_the_folder_in_it_are_one_campaign(tmp_path):
@@ -190,7 +189,7 @@ def test_a_damaged_or_missing_workbook_a_missing_sheet_and_a_missing_reader_are_
 def test_damaged_motions_are_refused_and_missing_ones_left_out(tmp_path):
     published(tmp_path, range(11, 14), packed=False)
     text = labview(*pulse(0.2, 200))
-    write(tmp_path, text.replace("0.5\t", "0.x\t", 1), "Test012.txt")
+    write(tmp_path, text.replace("\n0.5\t", "\n0.x\t", 1), "Test012.txt")
     refused(tmp_path, "Test012.txt: line ")
     write(tmp_path, "", "Test012.txt")
     refused(tmp_path, "Test012.txt: record: is empty")
@@ -424,21 +423,16 @@ def test_rows_of_the_study_are_what_was_counted(found, folder):
         assert row["misses"] + row["false_alarms"] == 22 - row["right"]
         (fit,) = where(result.rows, part="fit", specimen=specimen, change="as it is")
         grid = result.settings["specimens"][k]["grid"]
-        best = grid.index(fit["slenderness"])
-        assert (
-            result.arrays["right/as it is"][k][best] == fit["alone_right"] == result.arrays["right/as it is"][k].max()
-        )
+        best, counts = grid.index(fit["slenderness"]), result.arrays["right/as it is"][k]
+        assert counts[best] == fit["alone_right"] == counts.max()
         ours = where(result.rows, part="run", engine="analytic", specimen=specimen)[0]
         assert int((array_of(ours["outcomes"]) == np.where(measured, "1", "0")).sum()) == fit["alone_right"]
         assert sum(cell["overturned"] for cell in where(result.rows, part="cell", specimen=specimen)) == measured.sum()
         for row in where(result.rows, part="engine", specimen=specimen):
             assert row["failed"] == (specimen == "boulder 2") and row["only_b"] == 0 < row["only_a"] <= 2
+    apart = sum(fell(n, 0) != fell(n, 1) for n in range(11, 35) if n not in (13, 20))
     (where_alike,) = where(result.rows, part="where", specimen="boulder 1", forecast=MODEL)
-    assert (
-        where_alike["size"]
-        == result.settings["agree"]
-        == 22 - sum(fell(n, 0) != fell(n, 1) for n in range(11, 35) if n not in (13, 20))
-    )
+    assert where_alike["size"] == result.settings["agree"] == 22 - apart
     for row in where(result.rows, part="engine", specimen=ALL):
         parts = where(result.rows, part="engine", engine=row["engine"], variant=row["variant"])
         assert row["only_a"] == sum(part["only_a"] for part in parts if part["specimen"] != ALL)
@@ -504,6 +498,6 @@ def test_real_runs_of_the_model_are_those_of_the_study(tmp_path, folder, monkeyp
 def test_the_real_campaign_is_read():
     one = read_campaign(REAL, every=40)
     assert len(one.tests) == 13 and one.missing == 92
-    assert all(test.motion.samples[:200].std() < 0.02 * G for test in one.tests)
+    assert all(abs(np.median(test.motion.samples[:200])) < 1e-9 for test in one.tests)
     assert {len(test.authors[0]) for test in one.tests} == {5} and {len(test.authors[1]) for test in one.tests} == {8}
-    assert OFFSET and all(test.motion.dt == pytest.approx(0.005) for test in one.tests)
+    assert all(test.motion.dt == pytest.approx(0.005) for test in one.tests)
