@@ -66,7 +66,7 @@ def place_in(folder: Path) -> Path | None:
 
 
 def read(place: Path, every: int, progress: Callable[[int, int], None]) -> Campaign:
-    """The published campaign in a folder; see `campaign.read_campaign`."""
+    """The published campaign in a folder; see `reading.read_campaign`."""
     results = _table(place / RESULTS, NUMBER, SHEET)
     records = {row["Test No."]: row for _, row in _table(place / RECORDS, "Test No.")}
     names = list(BOULDERS)

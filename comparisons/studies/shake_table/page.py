@@ -138,7 +138,7 @@ def _sentence(result, engines):
     wrong = listed([str(row["size"] - row["right"]) for row in scores])
     words = [f"The model itself is wrong in {wrong} of {len(result.settings['tests'])} tests."]
     together = where(engines, specimen=ALL) or engines
-    for kind, told in (("tuned", "Tuned"), ("defaults", "With default settings")):
+    for kind, told in (("tuned", "Tuned"), ("defaults", "With their defaults")):
         rows = where(together, tier=kind)
         said = [f"{row['engine']} ends otherwise than the model in {_apart(row)} of {row['size']} runs" for row in rows]
         if said:

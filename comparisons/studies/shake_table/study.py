@@ -24,7 +24,7 @@ from ...running.progress import bar
 from ...running.provenance import Result
 from ...running.sweep import Row
 from . import at_hand, granite
-from .campaign import Campaign, outcomes_of, read_campaign
+from .campaign import Campaign, outcomes_of
 from .judging import (
     AUTHORS,
     BOTH,
@@ -42,6 +42,7 @@ from .judging import (
     score,
 )
 from .measures import measures_of
+from .reading import read_campaign
 from .runs import engine_rows, run_row
 from .shaking import OVERTURNS, ended, leaning, over_slendernesses
 from .telling import cell_rows
@@ -80,7 +81,7 @@ def plan(request: Request, *, data: Data = None) -> Plan:
     ----------
     request : Request
     data : str, optional
-        Folder of the tests, see `campaign`.
+        Folder of the tests, see `reading`.
     """
     if data is None:
         reason = f"--data is missing: {granite.WHERE}"

@@ -41,8 +41,9 @@ from comparisons.showing.parts import where
 from comparisons.studies import get_study
 from comparisons.studies.rows import ROWS, wrong_with
 from comparisons.studies.shake_table import at_hand, campaign, granite, study
-from comparisons.studies.shake_table.campaign import outcomes_of, read_campaign
+from comparisons.studies.shake_table.campaign import outcomes_of
 from comparisons.studies.shake_table.judging import BY_RECORD, MODEL, Forecast, Outcomes, judged, paired, score
+from comparisons.studies.shake_table.reading import read_campaign
 from comparisons.studies.shake_table.runs import ALL, answers, differences
 from comparisons.studies.shake_table.shaking import leaning, over_slendernesses
 from comparisons.studies.shake_table.telling import array_of, cell_rows, cells, may_be_told, text_of
@@ -82,20 +83,8 @@ def spoilt(case):
 @pytest.fixture
 def found(folder, small, tmp_path):
     """(the answer with the model in the engine's place, which misses two and fails once; its result)."""
-    last = answered(study.plan(Request((ENGINE,)), data=str(folder)), timed(by_model(unlike, spoilt)))[-1]
+    last = answered(study.plan(Request((ENGINE,)), data=str(folder)), by_model(unlike, spoilt))[-1]
     return last, stored(tmp_path, "shake-table", last)
-
-
-def timed(run):
-    """Rows with the measure's own cost apart, as the runner keeps it."""
-
-    def rows(batch):
-        return [
-            dataclasses.replace(row, cost=row.cost | row.values.pop("cost", {})) if row.values else row
-            for row in run(batch)
-        ]
-
-    return rows
 
 
 @pytest.mark.parametrize("packed", [True, False])
@@ -396,7 +385,7 @@ def _row_of(result, run):
 def test_no_motion_of_a_table_is_stored_with_the_runs(folder, small):
     done, rows = [], None
     plan = study.plan(Request(()), data=str(folder))
-    run = timed(by_model())
+    run = by_model()
     while True:
         try:
             step = plan.send(rows)
@@ -470,7 +459,7 @@ def test_tests_of_ones_own_go_all_the_way(tmp_path, small):
     place = tmp_path / "own"
     place.mkdir()
     plan = study.plan(Request((ENGINE,)), data=str(own(place)))
-    result = stored(tmp_path, "shake-table", answered(plan, timed(by_model()))[-1])
+    result = stored(tmp_path, "shake-table", answered(plan, by_model())[-1])
     assert result.settings["agree"] is None and result.settings["cite"] == ""
     assert not where(result.rows, part="where") and not where(result.rows, specimen=ALL)
     assert get_study("shake-table").page(result).whole().figures
@@ -479,7 +468,7 @@ def test_tests_of_ones_own_go_all_the_way(tmp_path, small):
 
 
 def test_quick_takes_one_test_in_twenty(folder, small):
-    answer = answered(study.plan(Request((), quick=True), data=str(folder)), timed(by_model()))[-1]
+    answer = answered(study.plan(Request((), quick=True), data=str(folder)), by_model())[-1]
     assert answer.settings["tests"] == ["11", "33"] or len(answer.settings["tests"]) == 2
 
 
