@@ -49,6 +49,32 @@ def reliabilities(rows: Sequence[dict[str, Any]]) -> Figure | None:
     return figure(charts, caption, keys, keys) if charts else None
 
 
+def agreement(specimens: Sequence[dict[str, Any]], right: dict[str, np.ndarray]) -> Figure | None:
+    """Right answers over the slenderness, a line for each restitution; right: {kind of model: by specimen and
+    slenderness}."""
+    looks = {name: curve(place) for place, name in enumerate(right)}
+    low, high = (float(find([find(one) for one in right.values()])) for find in (np.min, np.max))
+    charts = []
+    for k, specimen in enumerate(specimens):
+        angles = np.degrees(specimen["grid"])
+        chart = Chart(
+            Axis("slenderness [deg]", float(angles[0]), float(angles[-1])),
+            Axis("right answers", 0.98 * low, 1.02 * high),
+            f"{specimen['name']}: right answers of the model over the slenderness; {', '.join(right)}.",
+            title=specimen["name"],
+            height=300,
+        )
+        for name, look in looks.items():
+            chart.line(angles, right[name][k], name, look=look)
+        charts.append(chart)
+    keys = {name: key_of(name, look=look) for name, look in looks.items()}
+    caption = (
+        "Right answers of the model over its slenderness, as it is and with its restitution times a factor, fitted to "
+        "nothing. Sums over all tests."
+    )
+    return figure(charts, caption, keys, keys) if charts else None
+
+
 def plane(cells: Sequence[dict[str, Any]], here: AtHand | None) -> Figure | None:
     """Where in the plane of PGA and PGV/PGA it overturned, and what the model says: every test with the campaign at
     hand, else cells of tests."""

@@ -19,6 +19,7 @@ BY_RECORD, BY_HALVES, IN_SAMPLE = "held out by record", "fitted to every other t
 SPREADS = np.arange(1, 21) / 60  # of the normal spread, over the width of the grid of slendernesses
 MODEL, ONE, PGV, BOTH = "model", "model, one slenderness", "PGV, logistic", "model and PGV, logistic"
 OTHER, AUTHORS = "the other specimen", "authors’ discrete elements"
+AS_IT_IS = "as it is"  # the model without a change
 SURE = 1e-3  # nearest to 0 and 1 that a probability is taken where its odds are asked for
 
 

@@ -7,20 +7,20 @@ from typing import Any
 from ...measuring.statistics import TOO_FEW
 from ...running.provenance import Result
 from ...showing.charts import Axis
-from ...showing.figures import lines, ranks
-from ...showing.parts import NAME, Column, Figure, Head, Judgement, Page, number, percent, short, table, where
+from ...showing.figures import ranks
+from ...showing.parts import NAME, Column, Figure, Head, Judgement, Page, number, short, table, where
 from ...showing.wording import equal_mark, listed
 from . import at_hand
 from .campaign import outcomes_of
-from .drawn import plane, reliabilities
-from .judging import AUTHORS, BY_RECORD, IN_SAMPLE, MODEL, ONE, PGV
+from .drawn import agreement, plane, reliabilities
+from .judging import AS_IT_IS, AUTHORS, BY_RECORD, IN_SAMPLE, MODEL, ONE, PGV
 from .runs import ALL, ANSWERS, counted
 
 SHARES = (0.5, 1.0)  # between which shares of right answers are drawn
 BARS = (MODEL, AUTHORS, "PGA and PGV, logistic", PGV, "PGV, threshold", "PGA, threshold")  # besides the solvers
 SPECIMEN, FORECAST = Column("specimen", "specimen"), Column("foretold by", "forecast")
 RIGHT = Column("right", lambda row: None if row["right"] is None else f"{row['right']} of {row['size']}")
-SHARE = Column("right answers", "share", percent=True, within="within")
+SHARE = Column("right answers [%]", "share", percent=True, within="within")
 BRIER = Column("Brier score [-]", "brier", 2, within="brier_interval")
 CHANGE = Column("change of the model", "change")
 
@@ -36,17 +36,10 @@ def page(result: Result) -> Page:
         first=(_bars(result, engines), _table_of_engines(engines)),
         more=(
             Head("On tests that nothing was fitted to"),
-            table(
-                "Right answers with the 95 % interval of their share, and Brier scores (smaller is better) with theirs",
-                scores,
-                FORECAST,
-                SPECIMEN,
-                Column("judged on tests", "judged"),
-                RIGHT,
-                Column("share", _share, percent=True, within=lambda row: (row["low"], row["high"])),
-                Column("misses", "misses"),
-                Column("false alarms", "false_alarms"),
-                BRIER,
+            _scores(
+                "Each record held out in turn: right answers with the 95 % interval of their share, and Brier scores "
+                "(smaller is better) with theirs",
+                where(scores, judged=BY_RECORD),
             ),
             Head("As a probability"),
             reliabilities(where(result.rows, part="reliability")),
@@ -66,8 +59,9 @@ def page(result: Result) -> Page:
             plane(where(result.rows, part="cell"), at_hand.of(settings)),
             Head("What is fitted, and what is not known"),
             _fitted(result),
-            _agreement(result),
+            agreement(settings["specimens"], _by_restitution(result)),
             _fits(result),
+            _scores("Judged otherwise", [row for row in scores if row["judged"] != BY_RECORD]),
             _not_shown(result),
         ),
         how=_how(result),
@@ -75,6 +69,22 @@ def page(result: Result) -> Page:
             (f"{NAME.text(row)}, {row['specimen']}, test {row['test']}: {row['reason']}", row["message"])
             for row in where(result.rows, part="failure")
         ),
+    )
+
+
+def _scores(caption, rows):
+    ways = {row["judged"] for row in rows}
+    return table(
+        caption,
+        rows,
+        FORECAST,
+        SPECIMEN,
+        *((Column("judged on tests", "judged"),) if len(ways) > 1 else ()),
+        RIGHT,
+        Column("share", _share, percent=True, within=lambda row: (row["low"], row["high"])),
+        Column("misses", "misses"),
+        Column("false alarms", "false_alarms"),
+        BRIER,
     )
 
 
@@ -166,7 +176,10 @@ def _bounds(result):
     words = f"{settings['campaign'].capitalize()}, {len(settings['tests'])} tests under {settings['records']} records"
     words += f" at many scales; {listed([str(count) for count in settings['overturned']])} overturned ({names})."
     if settings["agree"] is not None:
-        words += f" The two end alike in {settings['agree']} of them: no model of the one can be asked for much more."
+        words += (
+            f" The two end alike in {settings['agree']} of them. No test of one was repeated: that is the nearest to a "
+            "repeatability that is known, and bounds what a model of any such block can be asked for."
+        )
     return words + (
         " The model is planar, the block is not; one number of it is fitted, the slenderness, with its spread, and "
         "judged on records that it was not fitted to."
@@ -193,7 +206,7 @@ def _bars(result: Result, engines: Sequence[dict[str, Any]]) -> Figure | None:
         "Share of outcomes foretold, with 95 % intervals by record. “model, as engines” and the engines: one "
         "slenderness, fitted to all tests. Where an engine differs in fewer than five tests, its right answers are "
         "told as between those that this leaves.",
-        Axis(SHARE.head, *SHARES, ticks=tuple((share, percent(share)) for share in (0.5, 0.6, 0.7, 0.8, 0.9, 1.0))),
+        Axis(SHARE.head, *SHARES, ticks=tuple((share / 100, str(share)) for share in range(50, 101, 10))),
         panel="specimen",
         rules=rules,
     )
@@ -244,7 +257,7 @@ def _where_alike(result):
 
 def _fitted(result):
     said = []
-    for row in where(result.rows, part="fit", change="as it is"):
+    for row in where(result.rows, part="fit", change=AS_IT_IS):
         angles = [number(math.degrees(row[name]), 2) for name in ("slenderness", "centre", "spread")]
         (one,) = (each for each in result.settings["specimens"] if each["name"] == row["specimen"])
         said.append(
@@ -257,21 +270,10 @@ def _fitted(result):
     )
 
 
-def _agreement(result: Result) -> Figure | None:
-    rows = [
-        {"engine": "analytic", "variant": kind, "specimen": one["name"], "slenderness": math.degrees(angle), "right": n}
-        for kind in result.settings["kinds"]
-        for one, counts in zip(result.settings["specimens"], result.arrays[f"right/{kind}"], strict=True)
-        for angle, n in zip(one["grid"], counts.tolist(), strict=True)
-    ]
-    return lines(
-        rows,
-        Column("slenderness [deg]", "slenderness", 3),
-        Column("right answers", "right"),
-        "Right answers of the model over the slenderness, fitted to nothing: as it is, with its restitution times a "
-        "factor, with friction, with another moment of inertia. Sums over all tests.",
-        panel="specimen",
-    )
+def _by_restitution(result):
+    """{kind of model: right answers by specimen and slenderness}, of those that differ in the restitution alone."""
+    names = [kind for kind in result.settings["kinds"] if kind == AS_IT_IS or kind.startswith("restitution")]
+    return {name: result.arrays[f"right/{name}"] for name in names}
 
 
 def _degrees(name):

@@ -26,6 +26,7 @@ from ...running.sweep import Row
 from . import at_hand, granite
 from .campaign import Campaign, outcomes_of
 from .judging import (
+    AS_IT_IS,
     AUTHORS,
     BOTH,
     BY_HALVES,
@@ -120,7 +121,7 @@ def plan(request: Request, *, data: Data = None) -> Plan:
 
 
 def _name(kind):
-    return ", ".join(f"{name} {value:g}" for name, value in kind.items()) or "as it is"
+    return ", ".join(f"{name} {value:g}" for name, value in kind.items()) or AS_IT_IS
 
 
 def _grid(campaign):
