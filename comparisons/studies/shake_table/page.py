@@ -177,8 +177,9 @@ def _bounds(result):
     words += f" at many scales; {listed([str(count) for count in settings['overturned']])} overturned ({names})."
     if settings["agree"] is not None:
         words += (
-            f" The two end alike in {settings['agree']} of them. No test of one was repeated: that is the nearest to a "
-            "repeatability that is known, and bounds what a model of any such block can be asked for."
+            f" The two end alike in {settings['agree']} of them. No test of one was repeated: of two blocks that "
+            "differ a little, that is the nearest to a repeatability that is known, and no model can be asked for very "
+            "much more."
         )
     return words + (
         " The model is planar, the block is not; one number of it is fitted, the slenderness, with its spread, and "
