@@ -86,7 +86,8 @@ ROWS = {
         "cell": "engine variant specimen size pga ratio overturned mean",
         "run": "engine variant specimen slenderness outcomes failed cpu_seconds?",
         "engine": """engine variant tier specimen size failed both_stand both_overturn only_a only_b p_value?
-            records_a records_b p_records? equal interval right? low? high? misses? false_alarms? model_right? tilt?""",
+            records_a records_b p_records? on_edge equal interval right? low? high? misses? false_alarms?
+            model_right? tilt?""",
         "failure": "engine variant specimen test kind reason message",
         "absent": "engine variant reason",
     },

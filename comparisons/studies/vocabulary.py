@@ -249,6 +249,7 @@ OWN: dict[str, dict[str, Explained]] = {
         "records_a": whole("records most of whose differences are of tests that overturn in the model alone"),
         "records_b": whole("records most of whose differences are of tests that overturn in the engine alone"),
         "p_records": number("of a sign test of these two"),
+        "on_edge": whole("differing tests in which a change of the scene by 1e-4 makes the model end otherwise, too"),
         "equal": word("whether the engine ends as the model does, as comparisons.measuring.statistics.equality says"),
         "tilt": number("peak tilt over the model's where both rock and stay upright: median over tests"),
     },

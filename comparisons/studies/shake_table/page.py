@@ -150,7 +150,11 @@ def _sentence(result, engines):
     together = where(engines, specimen=ALL) or engines
     for kind, told in (("tuned", "Tuned"), ("defaults", "With their defaults")):
         rows = where(together, tier=kind)
-        said = [f"{row['engine']} ends otherwise than the model in {_apart(row)} of {row['size']} runs" for row in rows]
+        said = [
+            f"{row['engine']} ends otherwise than the model in {_apart(row)} of {row['size']} runs, "
+            f"{row['on_edge']} of them near an outcome boundary"
+            for row in rows
+        ]
         if said:
             words.append(f"{told}, {listed(said)}.")
     one_way = [row for row in where(together, tier="defaults") if row["p_records"] is not None]
@@ -236,6 +240,7 @@ def _table_of_engines(engines):
         Column("kind", "tier"),
         SPECIMEN,
         Column("outcomes that differ", lambda row: f"{_apart(row)} of {row['size']}"),
+        Column("of these near an outcome boundary", "on_edge"),
         Column("up to", lambda row: row["interval"][1], percent=True),
         Column("equal", lambda row: "inconclusive" if row["equal"] == TOO_FEW else row["equal"]),
         Column("only the model’s overturns", "{only_a} ({records_a})"),

@@ -55,25 +55,29 @@ def engine_rows(
     records = [test.record for test in campaign.tests]
     first = {"part": "engine", **{key: own[0][key] for key in ("engine", "variant")}}
     first["tier"] = get_engine(own[0]["engine"]).variants[own[0]["variant"]].kind
-    found, texts = [], []
+    found, texts, near = [], [], []
     for k, run in enumerate(own):
         others = [row for row in rows if row["part"] == "run" and row["specimen"] == run["specimen"]]
         texts.append((run["outcomes"], others[0]["outcomes"]))
         said = answers(run["outcomes"], others, rows, outcomes_of(campaign.tests, k), records)
         tilt = _tilts(run["specimen"], *runs)
-        found.append({**first, "specimen": run["specimen"], **differences(*texts[-1], records), **said, "tilt": tilt})
+        near.append(_near(campaign, run["specimen"], runs[0]))
+        found.append(
+            {**first, "specimen": run["specimen"], **differences(*texts[-1], records, near[-1]), **said, "tilt": tilt}
+        )
     if len(own) > 1:
         theirs, ours = ("".join(pair[side] for pair in texts) for side in (0, 1))
-        together = differences(theirs, ours, records * len(own))
+        together = differences(theirs, ours, records * len(own), np.concatenate(near))
         found.append({**first, "specimen": ALL, **together, **dict.fromkeys((*ANSWERS, "tilt"))})
     return found
 
 
-def differences(theirs: str, ours: str, records: Sequence[str]) -> dict[str, Any]:
+def differences(theirs: str, ours: str, records: Sequence[str], near: np.ndarray) -> dict[str, Any]:
     """In what an engine's outcomes differ from the model's, which way, and whether the two are equal.
 
     p_value: of a sign test over tests. records_a, records_b, p_records: of one over records, each by what most of its
-    differences say, as those under one record are alike. A failed run is no difference of a sign, but differs.
+    differences say, as those under one record are alike. A failed run is no difference of a sign, but differs. near: bool,
+    shape (tests,): near an outcome boundary of the model; on_edge: differences there.
     """
     engine, model = array_of(theirs), array_of(ours)
     sound, asked = np.isin(engine, [STANDS, OVERTURNS]), engine != NOT_RUN
@@ -91,9 +95,16 @@ def differences(theirs: str, ours: str, records: Sequence[str]) -> dict[str, Any
         "records_a": one,
         "records_b": other,
         "p_records": float(binomtest(one, one + other).pvalue) if one + other else None,
+        "on_edge": int((asked & near & (engine != model)).sum()),
         "equal": equal,
         "interval": list(interval),
     }
+
+
+def _near(campaign, name, rows):
+    """Whether each test is near an outcome boundary of the model."""
+    known = {row.case.tag["test"]: row.values["near"] for row in rows if row.case.tag["specimen"] == name}
+    return np.array([known[test.name] for test in campaign.tests])
 
 
 def answers(

@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 
 from analytic import Response, Scene, simulate_many
+from analytic.response import EDGE
 from analytic.rocking import RockingModel
+from engines.comparison import Reference
 
 from ...running.cases import Case
 
@@ -50,3 +52,8 @@ def over_slendernesses(case: Case, response: Response) -> dict[str, Any]:
 def ended(case: Case, response: Response) -> dict[str, Any]:
     """Measure: how a run ended, and its peak tilt over the slenderness."""
     return {"outcome": response.outcome, "tilt": response.peak_tilt_ratio}
+
+
+def ended_near(case: Case, response: Response) -> dict[str, Any]:
+    """Measure of the model's run: `ended`, and whether a change of the scene by 1e-4 makes the block end otherwise."""
+    return {**ended(case, response), "near": Reference.of(case.scene).end_comparable == EDGE}

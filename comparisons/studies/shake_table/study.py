@@ -45,7 +45,7 @@ from .judging import (
 from .measures import measures_of
 from .reading import read_campaign
 from .runs import engine_rows, run_row
-from .shaking import OVERTURNS, ended, leaning, over_slendernesses
+from .shaking import OVERTURNS, ended, ended_near, leaning, over_slendernesses
 from .telling import cell_rows
 
 # Why one engine's rows cannot be computed anew by themselves, see `Study.whole`.
@@ -103,7 +103,7 @@ def plan(request: Request, *, data: Data = None) -> Plan:
         f"right/{_name(kind)}": np.array([(one[k].model == one[k].measured[:, None]).sum(axis=0) for one in known])
         for k, kind in enumerate(KINDS)
     }
-    own = yield Batch(_at(campaign, slendernesses, "analytic", None, 1), ended, "model")
+    own = yield Batch(_at(campaign, slendernesses, "analytic", None, 1), ended_near, "model")
     rows += [run_row(campaign, k, own, slendernesses[k]) for k in range(len(known))]
     answer = Computed(settings, rows, arrays, seed=SEED)
     yield answer

@@ -280,11 +280,11 @@ def test_paired_differences_by_hand():
 
 def test_differences_of_an_engine_and_their_sign_by_hand():
     ours, theirs = "1111110000", "0000110x0-"
-    said = differences(theirs, ours, ["a", "a", "a", "b", "b", "c", "c", "d", "d", "e"])
+    said = differences(theirs, ours, ["a", "a", "a", "b", "b", "c", "c", "d", "d", "e"], np.arange(10) < 2)
     assert (said["size"], said["failed"], said["only_a"], said["only_b"]) == (9, 1, 4, 0)
     assert (said["both_overturn"], said["both_stand"]) == (2, 2) and said["p_value"] == pytest.approx(0.125)
     assert (said["records_a"], said["records_b"], said["p_records"]) == (2, 0, pytest.approx(0.5))
-    assert said["interval"] == pytest.approx(wilson(5 / 9 * 4, 4))
+    assert said["on_edge"] == 2 and said["interval"] == pytest.approx(wilson(5 / 9 * 4, 4))
 
 
 @pytest.mark.parametrize(
@@ -344,7 +344,19 @@ STORED = {
     "cell": {"size", "pga", "ratio", "overturned", "mean"},
     "run": {"slenderness", "outcomes", "failed", "cpu_seconds"},
     "engine": {"tier", "size", "failed", "both_stand", "both_overturn", "only_a", "only_b", "p_value", "records_a"}
-    | {"records_b", "p_records", "equal", "interval", "right", "low", "high", "misses", "false_alarms", "model_right"}
+    | {
+        "records_b",
+        "p_records",
+        "on_edge",
+        "equal",
+        "interval",
+        "right",
+        "low",
+        "high",
+        "misses",
+        "false_alarms",
+        "model_right",
+    }
     | {"tilt"},
     "failure": {"test", "kind", "reason", "message"},
     "absent": {"reason"},
@@ -435,13 +447,13 @@ def test_the_page_with_the_campaign_at_hand_draws_every_test_and_without_it_cell
     here = "".join(figure.svg.decode() for figure in text.figures)
     assert here.count("test 11: ") == 2 and "Every test: filled" in "".join(one.caption for one in text.figures)
     (told,) = [one for one in text.tables if one.caption.startswith("Engines beside")]
-    assert all(row[11] != "–" for row in told.rows if row[2] != ALL)
+    assert all(row[12] != "–" for row in told.rows if row[2] != ALL)
     monkeypatch.setattr(at_hand, "_READ", {})
     bare = get_study("shake-table").page(result).whole()
     cells_drawn = "".join(figure.svg.decode() for figure in bare.figures)
     assert "test 11: " not in cells_drawn and "overturned; model" in cells_drawn
     (told,) = [one for one in bare.tables if one.caption.startswith("Engines beside")]
-    assert any(row[11] == "–" for row in told.rows if row[2] != ALL)
+    assert any(row[12] == "–" for row in told.rows if row[2] != ALL)
     assert "fitted" in " ".join(bare.text) and granite.DOI in " ".join(bare.measured)
     assert "misses" in " ".join(bare.text) or "otherwise" in " ".join(bare.text)
     assert str(result.settings["agree"]) in " ".join(bare.text)
