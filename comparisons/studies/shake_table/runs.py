@@ -76,8 +76,8 @@ def differences(theirs: str, ours: str, records: Sequence[str], near: np.ndarray
     """In what an engine's outcomes differ from the model's, which way, and whether the two are equal.
 
     p_value: of a sign test over tests. records_a, records_b, p_records: of one over records, each by what most of its
-    differences say, as those under one record are alike. A failed run is no difference of a sign, but differs. near: bool,
-    shape (tests,): near an outcome boundary of the model; on_edge: differences there.
+    differences say, as those under one record are alike. A failed run is no difference of a sign, but differs. near: of
+    each test, whether it is near an outcome boundary of the model; on_edge: differences there.
     """
     engine, model = array_of(theirs), array_of(ours)
     sound, asked = np.isin(engine, [STANDS, OVERTURNS]), engine != NOT_RUN
