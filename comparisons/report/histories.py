@@ -25,7 +25,7 @@ MOST_SHOWN, PARTS = 20_000, 1_500
 
 @dataclass(frozen=True)
 class ToFile:
-    """Measure: everything, the history as a file in `folder`, an array for each column of `History`."""
+    """Measure: everything, the history as a file in `folder`, an array for each of its columns."""
 
     folder: str
 
@@ -33,7 +33,7 @@ class ToFile:
         content = (response.scene, response.engine, response.variant)
         name = hashlib.sha256(repr(content).encode()).hexdigest()[:16] + ".npz"
         data = io.BytesIO()
-        np.savez(data, **{column: getattr(response.history, column) for column in History.COLUMNS})
+        np.savez(data, **{column: getattr(response.history, column) for column in response.history.columns})
         write(Path(self.folder) / name, data.getbuffer())
         return {**response.to_json(), "history": name}
 
@@ -52,7 +52,7 @@ def _history(path):
             f"{path.parent.name}/{path.name}: missing; remove the folder {path.parent.name} and make the report again"
         )
     with np.load(path) as table:
-        return History(*(table[column] for column in History.COLUMNS))
+        return History(**table)
 
 
 def differences(history: History, reference: History) -> dict[str, np.ndarray]:

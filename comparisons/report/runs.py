@@ -15,7 +15,7 @@ from scipy.integrate import trapezoid
 
 from analytic import Base, Block, Scene, Start, load_scene
 from analytic.caryatid import RADIUS
-from analytic.response import History, Response
+from analytic.response import Response
 from analytic.rocking import restitution
 from engines import available_engines, get_engine
 
@@ -272,7 +272,7 @@ def _scene_entry(scene, row, reference, horizon, folder):
         bearing_work=float(trapezoid(history.bearing_force, history.base_displacement)),
     )
     shown = thinned(history.tilt, history.base_displacement, history.bearing_force)
-    drawn = {column: getattr(history, column)[shown] for column in History.COLUMNS}
+    drawn = {column: getattr(history, column)[shown] for column in history.columns}
     if reference is not None:
         if row.case.solver != "analytic":
             own = solver_horizon(scene, response, reference)
