@@ -40,6 +40,7 @@ from typing import Any, Self, TextIO
 import numpy as np
 
 OUTCOMES = ("stands", "slides", "rocks", "overturns", "failed")
+LEVEL = OUTCOMES[:2]  # of a block that never lifted
 # Quantities of a `Difference`, in words. Restitution: at the matched impact with the largest error. Missing and extra
 # impacts: numbers of impacts that count, with and without a match. Loss: 1 - e^2. Times: of a block that overturns; a
 # fall begins at the last passage of the slenderness.

@@ -56,14 +56,15 @@ def _history(path):
 
 
 def differences(history: History, reference: History) -> dict[str, np.ndarray]:
-    """{"apart/time", "apart/tilt", "apart/base_displacement": array}: history minus reference, thinned.
+    """{"apart/time", "apart/tilt", "apart/base_displacement": array}: history minus reference, thinned; and the slip's.
 
     At the reference's samples up to the end of the shorter one.
     """
     time = reference.time[reference.time <= history.time[-1]]
+    slip = ("slip",) if history.slip is not None and reference.slip is not None else ()
     apart = {
         column: np.interp(time, history.time, getattr(history, column)) - getattr(reference, column)[: len(time)]
-        for column in ("tilt", "base_displacement")
+        for column in ("tilt", "base_displacement", *slip)
     }
     shown = thinned(*apart.values())
     return {f"apart/{column}": values[shown] for column, values in {"time": time, **apart}.items()}

@@ -6,6 +6,7 @@ Colours are those of Okabe and Ito, told apart by colour-blind readers.
 import io
 import warnings
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -126,7 +127,7 @@ def _draw_modes(axis, responses):
     """Shade the spans of the first response that tells its modes in which the block slides, or flies."""
     told = next((response for response in responses if response.sliding and response.sliding.modes), None)
     labelled = set()
-    for begin, end, mode in mode_spans(told) if told else ():
+    for begin, end, mode in mode_spans(told.sliding.modes, told.end.time) if told else ():
         words, look = SHADES.get(mode, (None, {}))
         if words:
             axis.axvspan(begin, end, zorder=-1, label=None if words in labelled else words, **look)
@@ -137,12 +138,10 @@ def _draw_modes(axis, responses):
         )
 
 
-def mode_spans(response: Response) -> Iterator[tuple[float, float, str]]:
-    """(begin [s], end [s], mode) of the modes of a block that slides."""
-    assert response.sliding is not None  # it tells its modes
-    modes = response.sliding.modes
-    for (begin, mode), (end, _) in zip(modes, (*modes[1:], (response.end.time, "")), strict=True):
-        yield begin, end, mode
+def mode_spans(modes: Sequence[tuple[float, str]], end: float) -> Iterator[tuple[float, float, str]]:
+    """(begin [s], end [s], mode) of the modes of a block that slides, in a run up to `end`."""
+    for (begin, mode), (until, _) in pairwise([*modes, (end, "")]):
+        yield begin, until, mode
 
 
 def _draw_ground(axis, motion, end):
