@@ -310,7 +310,15 @@ def earthquake(result: Result) -> Section:
             "the same for all: after it a change of the scene by 10⁻⁴ visibly changes the motion.",
         ),
         (_table(result), told) if warnings else (_table(result),),
-        (figure(charts, CAPTION, [row["engine"] for row in result.rows]),) if charts else (),
+        (
+            figure(
+                charts,
+                f"{CAPTION}{SHADED if figures.slides(result.rows) else ''}",
+                [row["engine"] for row in result.rows],
+            ),
+        )
+        if charts
+        else (),
         evidence=failures(result),
         measured=(
             "Distance of tilt graphs (Hausdorff): how far a point of one can lie from the other, time in units of "
@@ -342,6 +350,7 @@ def _table(result):
     )
 
 
+SHADED = " Shaded: the block slides in the analytic model."
 MOST_WARNINGS = 3  # of a scene, at the top of the page
 
 
