@@ -17,7 +17,7 @@ from engines.statue_range import RANGE, in_words
 from ..running.age import age
 from ..running.files import write_all
 from ..running.provenance import PACKAGES, RESULTS, read_result
-from ..showing import diagrams
+from ..showing import diagrams, modes
 from ..showing.parts import Section, Table
 from ..showing.wording import TRUSTED, USABLE
 from . import equations
@@ -108,6 +108,7 @@ def write_page(
             equations=equations.EQUATIONS,
             drawings=[diagrams.rocking(), diagrams.impact(), diagrams.isolated()],
             frames=equations.frames(),
+            modes=(modes.modes(), modes.CAPTION),
             glossary=equations.GLOSSARY,
             references=equations.REFERENCES,
             provenance=_provenance(scenes, block),

@@ -148,6 +148,6 @@ def test_with_a_friction_bearings_hold_only_where_the_block_does_not_slide_eithe
 
 
 def test_the_first_stroke_is_that_of_bearings_on_which_it_does_not_slide():
-    motions = [SCENE.motion.scaled(2.5)]
-    held, rubs = (first_stroke(SCENE.with_(friction=friction), motions) for friction in (None, 0.06))
-    assert held < rubs == first_stroke(SCENE.with_(block={"slenderness": math.atan(0.06)}), motions)
+    motions = [PulseMotion("one-sine", 6.0, 6.0)]
+    held, rubs = (first_stroke(SCENE.with_(friction=friction), motions) for friction in (None, 0.22))
+    assert held < rubs == first_stroke(SCENE.with_(block={"slenderness": math.atan(0.22)}), motions)
