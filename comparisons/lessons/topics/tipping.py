@@ -181,8 +181,8 @@ LESSON = Lesson(
             slip_of_a_push,
             "m",
             "$\\mu = 0.2$ is below $\\tan \\gamma = 0.3$: it only slides. Newmark’s closed form: it lags the more, "
-            "by $a_g - \\mu g$, for the time $T$, up to $v = (a_g - \\mu g) T$, and slides on by $v^2 / (2 \\mu g)$. In "
-            "a scene file: friction = 0.2.",
+            "by $a_g - \\mu g$, for the time $T$, up to $v = (a_g - \\mu g) T$, and slides on by $v^2 / (2 \\mu g)$. "
+            "In a scene file: friction = 0.2.",
         ),
     ),
     code=code,
