@@ -162,7 +162,7 @@ def model_warnings(
     scene: Scene, friction_demand: float, min_normal_ratio: float, slides: bool = False
 ) -> tuple[Caution, ...]:
     """Warnings where a run violates the model's assumptions: compressive contact, no sliding, and bearings that are
-    rigid under a vertical motion. slides : by a solver whose block slides and flies with a friction."""
+    rigid under a vertical motion. slides : by a solver whose block slides and flies with a friction, and is seen to."""
     found = []
     if scene.bearings is not None and scene.motion is not None and scene.motion.vertical is not None:
         found.append(Caution("model", RIGID_BEARINGS))
@@ -171,7 +171,7 @@ def model_warnings(
     if min_normal_ratio <= 0:
         words = (
             f"the least normal force at the contact is {min_normal_ratio:.3g} m g: the block would jump, and the "
-            "outcome is outside the model"
+            "outcome is outside the model" + ("" if scene.friction else "; with a friction in the scene it flies")
         )
         found.append(Caution("model", words, "min_normal_ratio", min_normal_ratio, 0.0))
     if scene.friction is not None and friction_demand > scene.friction:

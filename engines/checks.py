@@ -89,18 +89,24 @@ def pivoting_centre(scene: Scene, trace: Trace) -> np.ndarray:
     )
 
 
-def slip_of(scene: Scene, trace: Trace) -> Sliding | None:
-    """Slip of the lower corner along the base, where the scene gives a friction; its work and modes are not known.
+def slips(scene: Scene, trace: Trace) -> np.ndarray | None:
+    """Slip [m] of the lower corner along the base, shape (n,), where the scene gives a friction.
 
-    None if the block's position was not read from the engine, or a slip is none.
+    None, too, if the block's position was not read from the engine.
     """
     if scene.friction is None or trace.centre is None:
         return None
     slip = (trace.centre - pivoting_centre(scene, trace))[:, 0]
-    slip = slip - slip[0]
+    return slip - slip[0]
+
+
+def slip_of(scene: Scene, trace: Trace) -> Sliding | None:
+    """What `slips` comes to, all 0 where that is no slip; its work and modes are not known."""
+    if (slip := slips(scene, trace)) is None:
+        return None
     peak = float(np.abs(slip).max())
     if peak < LEAST_SLIP * scene.block.radius:
-        return None
+        return Sliding(peak=0.0, end=0.0, path=0.0, work=math.nan, modes=())
     return Sliding(peak=peak, end=float(slip[-1]), path=float(np.abs(np.diff(slip)).sum()), work=math.nan, modes=())
 
 

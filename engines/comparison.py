@@ -130,7 +130,8 @@ def _numbers(scene: Scene, known: Sequence[Response], run: Response) -> list[Dif
     if not alike:
         return found
     falls = run.outcome == FALLS
-    upright = ("peak_tilt", "peak_base_displacement", *(["peak_slip"] if _slides(run) else []))
+    slips = ["peak_slip"] if run.sliding and scene.friction is not None else []  # it is read
+    upright = ("peak_tilt", "peak_base_displacement", *slips)
     for name in ("peak_base_displacement", "fall_time") if falls else upright:
         values = [_value(one, name) for one in alike]
         low, high, here = min(values), max(values), _value(run, name)
@@ -140,10 +141,6 @@ def _numbers(scene: Scene, known: Sequence[Response], run: Response) -> list[Dif
     if falls:
         found += [*_before_fall(scene, known, alike, run), *_overturning(scene, known, alike, run, found)]
     return found
-
-
-def _slides(response: Response) -> bool:
-    return response.sliding is not None
 
 
 def _value(response: Response, name: str) -> float:
@@ -263,6 +260,12 @@ def _outcome(scene: Scene, response: Response) -> str:
     return "slides" if _value(response, "peak_slip") > LEAST_SLIP * scene.block.radius else "stands"
 
 
+def _with_friction(does: str) -> str:
+    return (
+        f"give the scene a friction of the block on its support (friction = 0.6), with which the model's block {does}"
+    )
+
+
 def _outside(scene: Scene, model: Response) -> str | None:
     """Why no run of the scene can be compared with the model's, or None."""
     if model.failure:
@@ -270,8 +273,8 @@ def _outside(scene: Scene, model: Response) -> str | None:
     if scene.friction is not None:
         return None
     if not model.min_normal_ratio > 0:
-        return "the normal force falls to 0 in the analytic model; give the scene a friction, and it flies"
+        return f"the normal force falls to 0 in the analytic model; {_with_friction('flies')}"
     if not model.friction_demand <= FRICTION:
         demand = f"the friction demand is {model.friction_demand:.3g} in the analytic model, above {FRICTION:g}"
-        return f"{demand}; give the scene a friction, and it slides"
+        return f"{demand}; {_with_friction('slides')} (at {model.friction_demand:.3g} or more it does not)"
     return None

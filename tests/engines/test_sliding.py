@@ -1,16 +1,15 @@
 """Engines with the friction that a scene gives: slip is a result, and as the model's."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from engine_cases import needs
-from sliding_scenes import random_slider, scene_of
+from sliding_scenes import LOST, SAVED, SLIDES, random_slider
 
-from analytic import PulseMotion, simulate
-from engines import get_engine
+from analytic import simulate
+from engines import comparison, get_engine
 
-SAVED = scene_of(0.4, 0.348, 1.86, motion=PulseMotion("half-sine", 9.38, 6.34), duration=4.0)
-LOST = scene_of(0.5, 0.449, 1.044, motion=PulseMotion("one-sine", 17.39, 10.13), duration=3.0)
-SLIDES = scene_of(0.2, 0.4, motion=PulseMotion("rectangular", 4.0, 6.0), duration=2.0)
 ENGINES = ("exudyn", "pybullet")
 
 
@@ -27,6 +26,24 @@ def test_a_block_that_slides_does_so_in_engines(engine, scene):
         assert run.overturning_time == pytest.approx(model.overturning_time, abs=2e-3)
     else:
         assert run.peak_tilt == pytest.approx(model.peak_tilt, abs=1e-4)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_slip_over_time_is_the_models(engine):
+    needs(engine)
+    model, run = simulate(SAVED).history, get_engine(engine).simulate(SAVED, compare=False).history
+    slip = np.interp(model.time, run.time, run.slip)
+    np.testing.assert_allclose(slip, model.slip, atol=1e-3 * np.abs(model.slip).max())
+
+
+def test_a_run_that_does_not_slip_where_the_model_does_differs():
+    model = simulate(SAVED, history=False)
+    still = replace(model.sliding, peak=0.0, end=0.0, path=0.0)
+    run = replace(model, engine="any", sliding=still)
+    (found,) = comparison.compare(SAVED, run).differences
+    assert (found.quantity, found.here, found.model) == ("peak_slip", 0.0, model.sliding.peak)
+    unread = comparison.compare(SAVED, replace(run, sliding=None))
+    assert unread.differences == ()
 
 
 @pytest.mark.slow
