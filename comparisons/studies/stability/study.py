@@ -82,7 +82,7 @@ TOLERANCES = {
         "impacts too few": (0, "a count"),
         "peak slip": (1e-6, "as the tilt"),
         "end slip": (1e-6, "as the tilt"),
-        "judge's doubt": (1e-3, "an eighth of it is left in the run that judges: 1e-4, which no outcome hangs on"),
+        "judge's doubt": (1e-3, "an eighth of it is left in the run that judges: 1e-4, a change that outcomes survive"),
         "tilt at rest": (0, "at rest the model's tilt is 0"),
         "energy imbalance": (1e-8, "quadrature beside steps good to 1e-10"),
     },
