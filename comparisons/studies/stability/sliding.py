@@ -60,7 +60,7 @@ def _level():
             mu,
             motion=PulseMotion("rectangular", a, hop.frequency, vertical=hop),
             duration=2.0,
-            expected={"peak slip": flies, "end slip": -flies},
+            expected=_slides(flies),
         ),
     ]
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from analytic import Response
 from engines import get_engine
+from engines.comparison import outcome_of
 
 from ...measuring.errors import energy_errors
 from ...running.cases import Case
@@ -44,7 +45,7 @@ LEAST_RATE, LEAST_SHARE, OWN = 0.05, 1e-3, 0.95
 
 # measure: unit, what it is
 MEASURES = {
-    "outcome": ("", "1 where the outcome is not the oracle's"),
+    "outcome": ("", "1 where the outcome is not the oracle's; a tilt too small to count in comparisons is none"),
     "tilt": ("of the slenderness", "largest difference of the tilt up to the horizon"),
     "displacement": ("of its peak", "largest difference of the base displacement up to the horizon"),
     "overturning time": ("s", "difference"),
@@ -230,7 +231,7 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
 def _errors(hard: HardCase, response: Response, truth: Oracle) -> dict[str, float]:
     errors: dict[str, float] = {}
     if truth.outcome is not None:
-        errors["outcome"] = float(response.outcome != truth.outcome)
+        errors["outcome"] = float(outcome_of(hard.scene, response) != truth.outcome)
     errors |= _trajectory_errors(hard, response, truth) | _event_errors(hard, response, truth)
     if truth.settled:
         history = response.history
