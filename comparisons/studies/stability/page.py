@@ -80,8 +80,8 @@ def page(result: Result) -> Page:
                 counts,
                 NAME,
                 *(Column(f"{name} [-]", name) for name in (RIGHT, DIFFERS, FAILED)),
-                *([Column(f"right {APART}", APART)] if apart else []),
                 Column("right at finer levels [-]", FINER),
+                *([Column(f"right {APART}", APART)] if apart else []),
             ),
         ),
         more=(
@@ -172,9 +172,9 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
         ]
         more = f" and {len(failed) - NOTED} more" if len(failed) > NOTED else ""
         note = f"failed: {', '.join(map(_readable, failed[:NOTED]))}{more}" if failed else "none failed"
-        note += f"; {APART} right: {row[APART]}" if row[APART] else ""
+        beyond = f" ({row[APART]} {APART})" if row[APART] else ""
         marks[row["engine"], row["variant"]] = Mark(
-            f"{row[RIGHT]} of {row['run']}", level, note, row[RIGHT] / row["run"]
+            f"{row[RIGHT]} of {row['run']}{beyond}", level, note, row[RIGHT] / row["run"]
         )
     return (Judgement("hard cases right", marks),)
 

@@ -227,8 +227,8 @@ def test_cases_outside_the_range_are_counted_apart(tmp_path):
     outside = {name: set(case["outside"]) for name, case in result.settings["cases"].items()}
     assert outside == {names[0]: set(), names[1]: set(), names[2]: set(), names[3]: {"inertia"}, names[4]: {"tilt"}}
     marks = judgements(result)[0].marks
-    assert marks["analytic", ""].words == "3 of 3" and marks["time-stepping", ""].words == "1 of 2"
-    assert f"{APART} right: 2 of 2" in marks["analytic", ""].note
+    assert marks["analytic", ""].words == f"3 of 3 (2 of 2 {APART})"
+    assert marks["time-stepping", ""].words.startswith("1 of 2 (") and marks["time-stepping", ""].value == 0.5
     section = STUDY.page(result).whole()
     assert re.fullmatch(rf"Hard cases: \d of 3 .*; {APART} \d of 2", section.title)
     counts = section.tables[0]
