@@ -155,18 +155,22 @@ def energy_gain(scene: Scene, trace: Trace) -> float:
     """Largest rise of `energy_balance` over its lowest earlier value; such a rise has no physical cause.
 
     Relative to the larger of m g R (1 - cos gamma), the energy from rest to the unstable point, and the largest kinetic
-    energy. NaN where the energy overflows. Steps within ``trace.settle`` after a crossing of tilt = 0 are left out.
+    energy. NaN where the energy overflows. Steps within ``trace.settle`` after a crossing of tilt = 0 are left out, but
+    not the work done in them: a short pulse may do all of its work there.
     """
     block = scene.block
     level = low = rise = 0.0
+    settled, begin = np.isin(np.arange(len(trace.time)), _settled(trace)), 0
     unit = block.mass * scene.gravity * block.radius * (1 - math.cos(block.slenderness))
     with np.errstate(over="ignore", invalid="ignore"):  # the balance of an unstable run is NaN
-        for piece in trace.pieces(_settled(trace)):
+        for piece in trace.pieces():
             balance, kinetic = energy_balance(scene, piece)
             balance = level + balance
-            lowest = np.minimum(low, np.minimum.accumulate(balance))
-            rise, unit = np.maximum(rise, (balance - lowest).max()), np.maximum(unit, kinetic.max())
-            level, low = balance[-1], lowest[-1]
+            kept = settled[begin : begin + len(balance)]
+            level, begin = balance[-1], begin + len(balance) - 1
+            lowest = np.minimum(low, np.minimum.accumulate(balance[kept]))
+            rise = np.maximum(rise, (balance[kept] - lowest).max(initial=0.0))
+            unit, low = np.maximum(unit, kinetic[kept].max(initial=0.0)), lowest.min(initial=low)
     return float(rise / unit)
 
 

@@ -124,7 +124,7 @@ def _numbers(scene: Scene, known: Sequence[Response], run: Response) -> list[Dif
     """Differences of outcome, peaks and times from all `known` runs, the first of which is the model's."""
     model, found = known[0], []
     decided = [one for one in known if one.decided]
-    if run.decided and model.decided and _outcome(scene, run) not in {_outcome(scene, one) for one in decided}:
+    if run.decided and model.decided and outcome_of(scene, run) not in {outcome_of(scene, one) for one in decided}:
         found.append(Difference("outcome", run.outcome, model.outcome, None))
     alike = [one for one in known if (one.outcome == FALLS) == (run.outcome == FALLS)]
     if not alike:
@@ -252,7 +252,7 @@ def _restitution_differences(here: np.ndarray, there: np.ndarray) -> list[Differ
     return []
 
 
-def _outcome(scene: Scene, response: Response) -> str:
+def outcome_of(scene: Scene, response: Response) -> str:
     """The outcome; "stands" where the peak tilt is too small to count."""
     still = response.peak_tilt < PEAK * LEAST_TILT * scene.block.slenderness
     if response.outcome not in ("rocks", "slides") or not still:
