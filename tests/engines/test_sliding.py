@@ -1,5 +1,7 @@
 """Engines with the friction that a scene gives: slip is a result, and as the model's."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from engine_cases import needs
@@ -7,6 +9,8 @@ from sliding_scenes import random_slider, scene_of
 
 from analytic import PulseMotion, simulate
 from engines import get_engine
+from engines.checks import energy_gain, pivoting_centre
+from engines.swings import Trace
 
 SAVED = scene_of(0.4, 0.348, 1.86, motion=PulseMotion("half-sine", 9.38, 6.34), duration=4.0)
 LOST = scene_of(0.5, 0.449, 1.044, motion=PulseMotion("one-sine", 17.39, 10.13), duration=3.0)
@@ -27,6 +31,27 @@ def test_a_block_that_slides_does_so_in_engines(engine, scene):
         assert run.overturning_time == pytest.approx(model.overturning_time, abs=2e-3)
     else:
         assert run.peak_tilt == pytest.approx(model.peak_tilt, abs=1e-4)
+
+
+@pytest.mark.parametrize("engine", ["pybullet", "mujoco", "dart"])
+def test_a_first_script_slides_too(engine):
+    """As much as its step and its contact allow; the block's place is read from the engine."""
+    needs(engine)
+    model, run = simulate(SLIDES, history=False), get_engine(engine).simulate(SLIDES, variant="first-script")
+    assert (run.failure, run.outcome) == (None, "slides")
+    assert run.sliding.peak == pytest.approx(model.sliding.peak, rel=0.1)
+
+
+def test_a_level_block_that_slides_gains_no_energy_while_its_tilt_changes_sign():
+    """The tilt of one in soft contact does; what the ground does meanwhile counts, until the contact is settled."""
+    scene = SLIDES.with_(motion=PulseMotion("half-sine", 8.0, 6.0), duration=0.52)
+    seen = simulate(scene, output_step=1e-3).history
+    still, speed = np.zeros_like(seen.time), np.gradient(seen.slip, seen.time)
+    tilt = 1e-9 * np.where((seen.time > 0.02) & (seen.time < 0.5), (-1.0) ** np.arange(len(still)), 1.0)
+    trace = Trace(seen.time, tilt, still, still, still, still, 1e-6, settle=5e-3)
+    centre = pivoting_centre(scene, trace)
+    centre[:, 0], centre[:, 2] = seen.slip, speed
+    assert np.abs(speed[-1]) > 0.5 and energy_gain(scene, replace(trace, centre=centre)) < 1e-2
 
 
 @pytest.mark.slow
