@@ -28,12 +28,13 @@ STARTS = 0.95  # most tilt of a released block over its slenderness
 
 
 def random_scene(seed: int, index: int) -> Scene:
-    """Scene number `index` of the ensemble `seed`: a statue released, or under a pulse, until its outcome is decided."""
+    """Scene number `index` of the ensemble `seed`: a statue released or under a pulse, until its outcome is decided."""
     rng = np.random.default_rng([seed, index])
     scene = random_statue(rng, f"random scene {seed}/{index}")
     side = float(rng.choice([-1.0, 1.0]))
     if rng.random() < 0.5:
-        return scene.with_(start=Start(tilt=side * scene.block.slenderness * log_uniform(rng, RANGE["tilt"][0], STARTS)))
+        tilt = side * scene.block.slenderness * log_uniform(rng, RANGE["tilt"][0], STARTS)
+        return scene.with_(start=Start(tilt=tilt))
     return scene.with_(motion=random_pulse(rng, scene, side))
 
 
