@@ -23,7 +23,8 @@ STIFFER = (2.0, 20.0)  # initial stiffness of a bearing over that after yielding
 YIELDS = (1e-2, 1.0)  # displacement at which it yields, over R gamma
 # of the pulses; by name, as one more in `pulses.PULSES` would change the scenes that are drawn
 SHAPES = ("one-sine", "one-cosine", "half-sine", "rectangular", "ricker")
-PULSE = (0.5, 6.0)  # amplitude over the uplift acceleration, and frequency over omega_r
+PEAKS = (0.5, 6.0)  # of a motion over the uplift acceleration
+FREQUENCIES = (0.5, 6.0)  # over omega_r
 STARTS = 0.95  # most tilt of a released block over its slenderness
 
 
@@ -58,14 +59,14 @@ def random_statue(rng: np.random.Generator, name: str) -> Scene:
 
 def random_peak(rng: np.random.Generator, scene: Scene) -> float:
     """A peak of the ground acceleration [m/s2]: of a pulse, or of any other motion."""
-    return scene.gravity * math.tan(scene.block.slenderness) * log_uniform(rng, *PULSE)
+    return scene.gravity * math.tan(scene.block.slenderness) * log_uniform(rng, *PEAKS)
 
 
 def random_pulse(rng: np.random.Generator, scene: Scene, side: float) -> PulseMotion:
     """A pulse to `side`; every second one begins some time after the run."""
     omega, amplitude = scene.rocking_frequency, side * random_peak(rng, scene)
     start = float(rng.choice([0.0, rng.uniform(0, 0.5) / omega]))
-    return PulseMotion(str(rng.choice(SHAPES)), amplitude, omega * log_uniform(rng, *PULSE), start)
+    return PulseMotion(str(rng.choice(SHAPES)), amplitude, omega * log_uniform(rng, *FREQUENCIES), start)
 
 
 def _block(rng: np.random.Generator) -> Block:

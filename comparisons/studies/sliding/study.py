@@ -27,7 +27,7 @@ from ...running.plan import Batch, Computed, Plan, Request
 from ...running.provenance import commit_seed
 from ...running.sources import version_of
 from ...running.sweep import Row
-from ..random_scenes.study import FEWER, random_peak, random_pulse, random_statue
+from ..random_scenes.study import FEWER, PEAKS, random_peak, random_pulse, random_statue
 from ..recorded.study import Folder
 from ..sensitivity.study import OTHERS, USUAL_RATIO, with_vertical
 
@@ -144,8 +144,14 @@ def plan(request: Request, *, seed: Seed = None, scenes: Number = None, records:
         "source": source,
         "vertical": VERTICAL,
         "ratio": USUAL_RATIO,
+        "peak": PEAKS,
         "fewer": FEWER,
         "variants": [variant_settings(engine, variant) for engine, variant, _ in _variants(request.engines)],
+        "faults": [
+            {"engine": engine, "variant": variant, "words": words}
+            for engine, variant, _ in _variants(request.engines)
+            if (words := get_engine(engine).variants[variant].faults)
+        ],
         "default_variants": {engine: get_engine(engine).default_variant for engine in request.engines},
     }
     return Computed(settings, rows, seed=seed)
