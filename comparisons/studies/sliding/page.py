@@ -295,7 +295,7 @@ def _how(result: Result) -> tuple[str, ...]:
         f"{settings['scenes']} scenes drawn at random (seed {result.provenance['seed']}, of the commit): "
         f"{settings['range']}; on rigid ground or on bearings, as no motion reaches a block whose base has none. Half "
         f"of the motions are pulses, a quarter synthetic, a quarter recorded ({recorded}), each times a factor: its "
-        f"peak is {low:g} to {high:g} times g tan γ. {raised} have a vertical component of {ratio} times the horizontal "
+        f"peak is {low:g} to {high:g} times g tan γ. {raised} have a vertical component, {ratio} times the horizontal "
         "peak. Friction is drawn evenly. What the shares say depends on how the scenes are drawn.",
         "Without sliding: the same scene without a friction, whose block turns about corners that never slip. It needs "
         "more than the friction where the demand |H|/N exceeds it before any last fall, or N falls to 0. Undecided: "
