@@ -5,16 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from engine_cases import needs
-from sliding_scenes import random_slider, scene_of
+from sliding_scenes import LOST, SAVED, SLIDES, random_slider
 
 from analytic import PulseMotion, simulate
 from engines import get_engine
 from engines.checks import energy_gain, pivoting_centre
 from engines.swings import Trace
 
-SAVED = scene_of(0.4, 0.348, 1.86, motion=PulseMotion("half-sine", 9.38, 6.34), duration=4.0)
-LOST = scene_of(0.5, 0.449, 1.044, motion=PulseMotion("one-sine", 17.39, 10.13), duration=3.0)
-SLIDES = scene_of(0.2, 0.4, motion=PulseMotion("rectangular", 4.0, 6.0), duration=2.0)
 ENGINES = ("exudyn", "pybullet")
 
 
