@@ -39,6 +39,7 @@ SHARES = {
     "overturned": ("overturned by sliding", "upright_without", "that stay upright without sliding"),
 }
 RESTITUTION = "error of restitution, rms [-]"
+WRONG = Column("runs that differ or fail", "wrong", percent=True, within="wrong_within")
 SLIP = Column("error of the largest slip [-]", "error")
 
 
@@ -76,6 +77,14 @@ def page(result: Result) -> Page:
             ),
         ),
         more=(
+            ranks(
+                counts,
+                NAME,
+                WRONG,
+                "Engines where the friction does not suffice: share of runs that differ or fail, with 95 % Wilson "
+                "intervals.",
+                Axis(WRONG.head, 0.0, 1.0, ticks=tuple((k / 4, f"{25 * k} %") for k in range(5))),
+            ),
             table("By the kind of motion", summed(cells, "motion"), *_outcomes("motion")),
             table("By friction", summed(cells, _interval), *_outcomes(_interval)),
             _slips(runs),
@@ -163,6 +172,7 @@ def tallies(result: Result) -> list[dict[str, Any]]:
     every, found = judged(result), []
     for (engine, variant), rows in grouped(where(result.rows, part="run"), "engine", "variant").items():
         runs = where(every, engine=engine, variant=variant)
+        wrong = sum(row["class"] != "right" for row in runs)
         sound = [row for row in runs if not row.get("failure")]
         slips = np.abs([row["slip_error"] for row in sound if row["slip_error"] is not None])
         slipping, sticking = (np.array([e for row in sound for e in row[key]]) for key in ("slipping", "sticking"))
@@ -174,6 +184,8 @@ def tallies(result: Result) -> list[dict[str, Any]]:
                 **{name: len(where(runs, **{"class": name})) for name in ("right", "differs", "failed")},
                 "judged": len(runs),
                 "left_out": len(rows) - len(runs),
+                "wrong": wrong / len(runs) if runs else None,
+                "wrong_within": wilson(wrong, len(runs)) if runs else None,
                 "alike": sum(row["outcome"] == row["model_outcome"] for row in runs),
                 "slip": float(np.median(slips)) if len(slips) else None,
                 "slip_worst": float(slips.max()) if len(slips) else None,

@@ -126,17 +126,20 @@ def plan(request: Request, *, seed: Seed = None, scenes: Number = None, records:
     motions, source = _recorded(records)
     cells, chosen = _ensemble(motions, seed, most, few)
     model = yield Batch([Case(*one) for one in chosen], of_model, "analytic model")
-    known = {row.case.tag["index"]: {**row.case.tag, **row.values} for row in model if not row.failed}
+    known = {row.case.tag["index"]: row for row in model if not row.failed}
     cases = [
         Case(row.case.scene, engine, variant, {"history": False}, {"index": row.case.tag["index"]})
         for engine, variant, all_of_them in _variants(request.engines)
-        for row in [row for row in model if not row.failed][:: 1 if all_of_them else FEWER]
+        for row in list(known.values())[:: 1 if all_of_them else FEWER]
     ]
     found = yield Batch(cases, of_engine, "engines")
     rows = [
         *cells,
-        *({"part": "scene", "engine": "analytic", "variant": "", **one} for one in known.values()),
-        *(_run_row(row, known[row.case.tag["index"]]["comparable"]) for row in found),
+        *(
+            {"part": "scene", "engine": "analytic", "variant": "", **row.case.tag, **row.values}
+            for row in known.values()
+        ),
+        *(_run_row(row, known[row.case.tag["index"]]) for row in found),
     ]
     settings = {
         "quick": request.quick,
@@ -261,8 +264,7 @@ def of_engine(case: Case, response: Response) -> dict[str, Any]:
         "slip_error": errors[0],
         "tilt_error": errors[1],
         **_restitutions(case.scene, model, response, reference.until),
-        "cpu_per_second": response.cpu_seconds / response.end.time,
-        "cpu_ratio": response.cpu_seconds / model.cpu_seconds,
+        "simulated": response.end.time,
     }
 
 
@@ -293,15 +295,21 @@ def slips_at(model: Response, time: float) -> bool:
     return "slide-rock" in (*before, *after)
 
 
-def _run_row(row: Row, comparable: str) -> dict[str, Any]:
-    """The row of a run; a failed one is left out where no run of its scene is judged, of all engines alike."""
-    return {
+def _run_row(row: Row, model: Row) -> dict[str, Any]:
+    """The row of a run, beside the model's; a failed one is left out where no run of its scene is judged, of all
+    engines alike."""
+    comparable, values = model.values["comparable"], dict(row.values)
+    found = {
         "part": "run",
         "engine": row.case.solver,
         "variant": row.case.variant,
         "tier": get_engine(row.case.solver).variants[row.case.variant or ""].kind,
         "index": row.case.tag["index"],
-        "class": class_of(comparable, row.values.get("quantities")),
+        "class": class_of(comparable, values.get("quantities")),
         "comparable": comparable,
-        **({"outcome": "failed", "failure": row.failure} if row.failed else row.values),
     }
+    if row.failed:
+        return {**found, "outcome": "failed", "failure": row.failure}
+    cpu = row.cost["cpu_seconds"]
+    took = {"cpu_per_second": cpu / values.pop("simulated"), "cpu_ratio": cpu / model.cost["cpu_seconds"]}
+    return {**found, **values, **took}
