@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from engine_cases import needs
-from sliding_scenes import LOST, SAVED, SLIDES, random_slider
+from sliding_scenes import LOST, SAVED, SLIDES, random_slider, scene_of
 
 from analytic import PulseMotion, simulate
 from engines import get_engine
@@ -49,6 +49,17 @@ def test_a_level_block_that_slides_gains_no_energy_while_its_tilt_changes_sign()
     centre = pivoting_centre(scene, trace)
     centre[:, 0], centre[:, 2] = seen.slip, speed
     assert np.abs(speed[-1]) > 0.5 and energy_gain(scene, replace(trace, centre=centre)) < 1e-2
+
+
+def test_what_mujoco_is_said_to_get_wrong_it_gets_wrong():
+    """A block with friction .2 and tan(gamma) .2027 can only slide; and the impact of `LOST`, into which it slides."""
+    needs("mujoco")
+    engine, low = get_engine("mujoco"), scene_of(0.2, 0.2, motion=PulseMotion("rectangular", 4.0, 6.0))
+    (model,), (seen,) = (run(LOST, history=False).impacts for run in (simulate, engine.simulate))
+    assert model.rate_after < 0.9 * model.rate_before and seen.rate_after > 0.99 * seen.rate_before
+    for variant in ("impact-aware", "fixed-step"):
+        assert engine.simulate(low, variant=variant).outcome == "overturns" != simulate(low, history=False).outcome
+        assert engine.variants[variant].faults
 
 
 @pytest.mark.slow
