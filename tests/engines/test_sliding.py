@@ -51,6 +51,14 @@ def test_a_level_block_that_slides_gains_no_energy_while_its_tilt_changes_sign()
     assert np.abs(speed[-1]) > 0.5 and energy_gain(scene, replace(trace, centre=centre)) < 1e-2
 
 
+def test_a_block_on_joints_is_said_not_to_slide_and_does_not():
+    needs("exudyn")
+    engine = get_engine("exudyn")
+    run = engine.simulate(SLIDES, variant="switched-joints")
+    assert run.sliding is None and run.outcome != "slides" and "outcome" in [one.quantity for one in run.differences]
+    assert "never slide" in engine.variants["switched-joints"].faults
+
+
 def test_what_mujoco_is_said_to_get_wrong_it_gets_wrong():
     """A block with friction .2 and tan(gamma) .2027 can only slide; and the impact of `LOST`, into which it slides."""
     needs("mujoco")

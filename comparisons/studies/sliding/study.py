@@ -41,6 +41,7 @@ SUPPORTS = ("rigid ground", "isolated")
 # scenes of the model, and of engines: those of the variants in question; others run one in FEWER
 FULL, QUICK = (20_000, 60), (400, 10)
 CHUNK = 500  # scenes held at once
+TIME_LIMIT = 120.0  # s, of an engine's run; those that end take up to 10 s of CPU time
 FALLS = "overturns"
 
 Seed = Annotated[int | None, typer.Option(min=0, max=2**63, help="Of the scenes, without it of the commit.")]
@@ -132,7 +133,7 @@ def plan(request: Request, *, seed: Seed = None, scenes: Number = None, records:
         for engine, variant, all_of_them in _variants(request.engines)
         for row in list(known.values())[:: 1 if all_of_them else FEWER]
     ]
-    found = yield Batch(cases, of_engine, "engines")
+    found = yield Batch(cases, of_engine, "engines", TIME_LIMIT)
     rows = [
         *cells,
         *(
@@ -243,29 +244,31 @@ def of_model(case: Case, response: Response) -> dict[str, Any]:
 def of_engine(case: Case, response: Response) -> dict[str, Any]:
     """Measure of an engine's run: in what it differs from the model, and its errors.
 
-    slip_error, tilt_error: of the peaks, of a block that stays upright in both; a peak that is too small to count is
-    compared as one that just does. slipping, sticking: errors of the restitution at impacts in which the model's
-    corner slides before or after, and at others; lost: slipping ones without a match.
+    slip_error, tilt_error: of the peaks, of a block that stays upright in both; None of a slip that is none, see
+    `engines.checks`. slipping, sticking: errors of the restitution at impacts in which the model's corner slides before
+    or after, and at others; lost: slipping ones without a match.
     """
     reference = Reference.of(case.scene)
-    model, block = reference.model, case.scene.block
+    model, radius = reference.model, case.scene.block.radius
     assert model is not None  # of_model had one
     differences = compare(case.scene, response, reference).differences
-    upright = FALLS not in (response.outcome, model.outcome)
-    least = LEAST_SLIP / PEAK * block.radius, LEAST_TILT
-    peaks = (_slip(response), _slip(model)), (response.peak_tilt_ratio, model.peak_tilt_ratio)
-    errors = [
-        (here - there) / max(there, low) if upright else None for (here, there), low in zip(peaks, least, strict=True)
-    ]
+    upright, slips = FALLS not in (response.outcome, model.outcome), (_slip(response), _slip(model))
     return {
         "outcome": response.outcome,
         "differences": [str(one) for one in differences],
         "quantities": [one.quantity for one in differences],
-        "slip_error": errors[0],
-        "tilt_error": errors[1],
+        "slip_error": _error(*slips, LEAST_SLIP / PEAK * radius)
+        if upright and max(slips) >= LEAST_SLIP * radius
+        else None,
+        "tilt_error": _error(response.peak_tilt_ratio, model.peak_tilt_ratio, LEAST_TILT) if upright else None,
         **_restitutions(case.scene, model, response, reference.until),
         "simulated": response.end.time,
     }
+
+
+def _error(here: float, there: float, least: float) -> float:
+    """Relative error of a peak; one that is too small to count is compared as one that just does."""
+    return (here - there) / max(there, least)
 
 
 def _slip(response: Response) -> float:
