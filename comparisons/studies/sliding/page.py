@@ -23,6 +23,7 @@ from ...showing.parts import (
     grouped,
     number,
     percent,
+    power_of_ten,
     table,
     typeset,
     where,
@@ -30,8 +31,9 @@ from ...showing.parts import (
 from ...showing.wording import NOT_COMPARED
 
 TRUSTED = 0.95  # share of right runs, of those not left out
+APART = 0.008  # of friction: marks at one place stand side by side
 LEAST_ERROR = 1e-6  # of a slip, at which the figure's axis begins
-ALL = "all"
+ALL, FALLS = "all", "overturns"
 # share: (in words, of which scenes it is one, those scenes in words)
 SHARES = {
     "slides": ("slides and never lifts", "moves", "that lift or slide"),
@@ -46,12 +48,13 @@ SLIP = Column("error of the largest slip [-]", "error")
 def page(result: Result) -> Page:
     cells, runs = where(result.rows, part="cell"), judged(result)
     every, counts = summed(cells, lambda cell: ALL), tallies(result)
+    failed = where(runs, **{"class": "failed"})
     differing = [row for row in where(runs, **{"class": "differs"}) if row["tier"] != "defaults"]
     return Page(
         _title(every[0]),
         (
-            "Each scene is run in the model with its friction and, as if it were glued at its corners, without: what "
-            "changes is what sliding does. Engines run scenes in which the friction does not suffice.",
+            "Each scene is run in the model with its friction, and again as if no corner could slide: what changes is "
+            "what sliding does. Engines run scenes in which the friction does not suffice.",
         ),
         first=(
             _shares(cells),
@@ -112,20 +115,21 @@ def page(result: Result) -> Page:
                 Column("in what", lambda row: typeset("; ".join(row["differences"]))),
             ),
             table(
-                "Runs that failed",
-                where(runs, **{"class": "failed"}),
+                "Runs that failed, by reason",
+                [
+                    {"engine": engine, "variant": variant, "why": why, "runs": len(rows), "scenes": _scenes(rows)}
+                    for (engine, variant, why), rows in grouped(failed, "engine", "variant", _why).items()
+                ],
                 NAME,
-                Column("scene", "index"),
-                Column("support, motion", "{support}, {motion}"),
-                Column("model", "model_outcome"),
-                Column("why", lambda row: row["failure"]["reason"]),
+                Column("why", "why"),
+                Column("runs", "runs"),
+                Column("scenes", "scenes"),
             ),
             *(f"{NAME.of(row)}: {row['words']}" for row in result.settings["faults"]),
         ),
         how=_how(result),
         evidence=tuple(
-            (f"{NAME.text(row)}, scene {row['index']}: {row['failure']['reason']}", row["failure"]["message"])
-            for row in where(runs, **{"class": "failed"})
+            (f"{NAME.text(row)}, scene {row['index']}: {_why(row)}", row["failure"]["message"] or "") for row in failed
         ),
     )
 
@@ -186,7 +190,7 @@ def tallies(result: Result) -> list[dict[str, Any]]:
                 "left_out": len(rows) - len(runs),
                 "wrong": wrong / len(runs) if runs else None,
                 "wrong_within": wilson(wrong, len(runs)) if runs else None,
-                "alike": sum(row["outcome"] == row["model_outcome"] for row in runs),
+                "alike": sum("outcome" not in row["quantities"] for row in sound),
                 "slip": float(np.median(slips)) if len(slips) else None,
                 "slip_worst": float(slips.max()) if len(slips) else None,
                 "impacts": len(slipping),
@@ -199,6 +203,14 @@ def tallies(result: Result) -> list[dict[str, Any]]:
             }
         )
     return found
+
+
+def _why(row):
+    return row["failure"]["reason"]
+
+
+def _scenes(rows):
+    return ", ".join(str(row["index"]) for row in rows)
 
 
 def _title(every):
@@ -245,12 +257,13 @@ def _shares(cells: Sequence[Mapping[str, Any]]) -> Figure | None:
             height=300,
         )
         rows = summed(members, lambda cell: tuple(cell["friction"]))
-        for share, (words, whole, of) in SHARES.items():
+        for rank, (share, (words, whole, of)) in enumerate(SHARES.items()):
             drawn = [row for row in rows if row[whole]]
-            xs, ys = [sum(row["name"]) / 2 for row in drawn], [row[f"{share}_share"] for row in drawn]
+            xs = [sum(row["name"]) / 2 + APART * (rank - 1) for row in drawn]
+            ys = [row[f"{share}_share"] for row in drawn]
             lows, highs = ([row[f"{share}_within"][end] for row in drawn] for end in (0, 1))
             told = [f"{words}, of those {of}: {_counted(row, share)}" for row in drawn]
-            chart.reach(xs, ys, lows, highs, words, tone=looks[words].tone)
+            chart.reach(xs, ys, lows, highs, words, look=looks[words])
             chart.line(xs, ys, words, look=looks[words])
             chart.dots(xs, ys, words, says=told, look=looks[words])
         charts.append(chart)
@@ -262,21 +275,20 @@ def _shares(cells: Sequence[Mapping[str, Any]]) -> Figure | None:
 
 
 def _slips(runs: Sequence[Mapping[str, Any]]) -> Figure | None:
-    """How many runs of blocks that stay upright have at most which error of the slip."""
+    """How many runs of blocks that stay upright have at most which error of the slip, where there is one."""
     rows = []
-    upright = [row for row in runs if row["model_outcome"] != "overturns"]
+    upright = [row for row in where(runs, tier={"tuned", "defaults"}) if row["model_outcome"] != FALLS]
     for (engine, variant, tier), members in grouped(upright, "engine", "variant", "tier").items():
         errors = sorted(abs(row["slip_error"]) for row in members if row.get("slip_error") is not None)
-        for place, error in enumerate(errors, 1):
-            share = place / len(members)
-            rows.append({"engine": engine, "variant": variant, "tier": tier, "error": max(error, LEAST_ERROR)})
-            rows[-1]["share"] = share
+        whole = len(errors) + sum(row["outcome"] in ("failed", FALLS) for row in members)
+        found = {"engine": engine, "variant": variant, "tier": tier}
+        rows += [{**found, "error": max(e, LEAST_ERROR), "share": k / whole} for k, e in enumerate(errors, 1)]
     return lines(
         rows,
         SLIP,
         Column("share of runs [-]", "share"),
-        "Share of the runs of blocks that stay upright whose error of the largest slip is at most so much; runs that "
-        "fail, or overturn, are missing from 1.",
+        "Share of the runs of blocks that stay upright whose error of the largest slip is at most so much; what is "
+        "missing from 1 failed or overturned.",
         panel="tier",
         log="x",
     )
@@ -286,13 +298,13 @@ def _restitutions(counts: Sequence[Mapping[str, Any]]) -> Figure | None:
     """Root mean square errors of restitution at slipping and other impacts, a panel each."""
     rows = [
         {**row, "kind": kind, "rms": row[key]}
-        for key, kind in (("slipping", "impacts in which the corner slides"), ("sticking", "other impacts"))
+        for key, kind in (("slipping", "slipping impacts"), ("sticking", "other impacts"))
         for row in counts
         if row["impacts"]
     ]
-    ticks = tuple((10.0**k, f"10{'⁻' + '⁰¹²³⁴⁵⁶'[-k] if k else '⁰'}") for k in range(-6, 1))
-    axis = Axis(RESTITUTION, 1e-6, 1.0, "log", ticks)
-    return ranks(rows, NAME, Column(RESTITUTION, "rms"), "Error of restitution.", axis, panel="kind")
+    axis = Axis(RESTITUTION, 1e-6, 1.0, "log", tuple((10.0**k, power_of_ten(10.0**k)) for k in range(-6, 1, 2)))
+    caption = "Errors of restitution, root mean square; slipping impacts: the model's corner slides before or after."
+    return ranks(rows, NAME, Column(RESTITUTION, "rms"), caption, axis, panel="kind")
 
 
 def _how(result: Result) -> tuple[str, ...]:
