@@ -115,9 +115,9 @@ def check_place(scene: Scene, trace: Trace, overturned: bool) -> Failure | None:
     it, else None.
 
     During the run it may fly and land again, if it lands where it stood. A block that overturns may do so anywhere.
-    None, too, if the block's position was not read from the engine.
+    None, too, if the block's position was not read from the engine, and in a first script, whose contact is soft.
     """
-    if trace.centre is None or overturned:
+    if trace.centre is None or overturned or trace.first_script:
         return None
     R = scene.block.radius
     slid, height = (trace.centre - pivoting_centre(scene, trace))[:, :2].T
@@ -160,17 +160,16 @@ def energy_gain(scene: Scene, trace: Trace) -> float:
     """
     block = scene.block
     level = low = rise = 0.0
-    settled, begin = np.isin(np.arange(len(trace.time)), _settled(trace)), 0
     unit = block.mass * scene.gravity * block.radius * (1 - math.cos(block.slenderness))
+    settled, begin = _settled(trace), 0
     with np.errstate(over="ignore", invalid="ignore"):  # the balance of an unstable run is NaN
         for piece in trace.pieces():
             balance, kinetic = energy_balance(scene, piece)
-            balance = level + balance
-            kept = settled[begin : begin + len(balance)]
-            level, begin = balance[-1], begin + len(balance) - 1
-            lowest = np.minimum(low, np.minimum.accumulate(balance[kept]))
-            rise = np.maximum(rise, (balance[kept] - lowest).max(initial=0.0))
-            unit, low = np.maximum(unit, kinetic[kept].max(initial=0.0)), lowest.min(initial=low)
+            balance, clean = level + balance, settled[begin : begin + len(balance)]
+            lowest = np.minimum(low, np.minimum.accumulate(np.where(clean, balance, np.inf)))
+            rise = np.maximum(rise, (balance - lowest).max(initial=0.0, where=clean))
+            unit = np.maximum(unit, kinetic.max(initial=0.0, where=clean))
+            level, low, begin = balance[-1], lowest[-1], begin + len(balance) - 1
     return float(rise / unit)
 
 
@@ -185,12 +184,11 @@ def check_energy(scene: Scene, trace: Trace) -> Failure | None:
 
 
 def _settled(trace: Trace) -> np.ndarray:
-    """Indices of the steps, without those in which a compliant contact relaxes after a crossing of tilt = 0.
+    """Whether each step lies outside those in which a compliant contact relaxes after a crossing of tilt = 0.
 
-    In those the block does not pivot about its corner, so that the energy of a pivoting block does not apply.
+    In those the contact holds energy, and the block does not pivot about its corner.
     """
     crossings = trace.time[1:][np.diff(np.sign(trace.tilt)) != 0]
     last = np.searchsorted(crossings, trace.time, side="right") - 1
-    since = trace.time - np.concatenate(([-math.inf], crossings))[last + 1]
-    steps = np.flatnonzero(since >= trace.settle)
-    return steps if len(steps) >= 2 else np.arange(len(trace.time))
+    settled = trace.time - np.concatenate(([-math.inf], crossings))[last + 1] >= trace.settle
+    return settled if settled.sum() >= 2 else np.ones(len(trace.time), dtype=bool)

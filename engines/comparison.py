@@ -14,7 +14,8 @@ A `Difference` is reported where a limit is exceeded:
   engine slides or flies, and this time differs by up to a sixth.
 - restitution: the ratio of the rates after and before an impact differs by more than `RESTITUTION` from that of the
   matching impact of the model. Where no impact exceeds this, the loss 1 - e^2 is compared, by `LOSS` of the model's,
-  which is more sensitive for slender blocks. A loss below `LEAST_LOSS` is compared as one of that size.
+  which is more sensitive for slender blocks. A loss below `LEAST_LOSS` is compared as one of that size. Of a block that
+  slides into the impact it may be below 0, and is compared by its size.
 - largest slip, of a block that stays upright in a scene with a friction: by more than `PEAK` of the model's, or
   `LEAST_SLIP` of R.
 - missing or extra impacts: impacts without a match (`engines.matching`), up to the first one that is `OUT_OF_PHASE`.
@@ -244,7 +245,7 @@ def _restitution_differences(here: np.ndarray, there: np.ndarray) -> list[Differ
     lost, meant = 1 - here**2, 1 - there**2
     for name, own, model, limit, room in (
         ("restitution", here, there, RESTITUTION, np.full(len(there), RESTITUTION)),
-        ("impact_loss", lost, meant, LOSS, LOSS * np.maximum(meant, LEAST_LOSS)),
+        ("impact_loss", lost, meant, LOSS, LOSS * np.maximum(np.abs(meant), LEAST_LOSS)),
     ):
         worst = int(np.argmax(np.abs(own - model) / room))
         if not abs(own[worst] - model[worst]) <= room[worst]:

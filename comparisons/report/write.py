@@ -54,6 +54,7 @@ SHORT = {
     "fragility": "Many earthquakes",
     "sensitivity": "What matters more",
     "speed-error": "Cost against error",
+    "sliding": "Sliding",
     "stability": "Hard cases",
     "mistakes": "What a mistake costs",
 }

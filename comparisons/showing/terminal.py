@@ -294,7 +294,7 @@ def engines_table(engines: Sequence[Engine]) -> Grid:
 
 def engine_text(engine: Engine) -> str:
     """Description of an `Engine`: versions, and for each variant kind, settings (the accuracy parameter first), levels,
-    what the engine computes, what the adapter imposes and the engine's calls."""
+    what the engine computes, what the adapter imposes, known faults and the engine's calls."""
     versions = ", ".join(f"{package} {version}" for package, version in engine.versions().items())
     lines, shown = [f"{engine.name} ({versions})"], set[str]()
     if engine.script:
@@ -309,6 +309,7 @@ def engine_text(engine: Engine) -> str:
             f"      levels, coarse to fine: {', '.join(f'{value:.4g}' for value in variant.levels)}",
             f"      the engine computes: {variant.computes}",
             f"      the adapter imposes: {variant.imposes}",
+            *([f"      known faults: {variant.faults}"] if variant.faults else ()),
             *_calls(variant, shown),
         ]
         shown.update(variant.calls)

@@ -5,10 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from engine_cases import needs
-from sliding_scenes import LOST, SAVED, SLIDES, random_slider
+from sliding_scenes import LOST, SAVED, SLIDES, random_slider, scene_of
 
-from analytic import simulate
+from analytic import PulseMotion, simulate
 from engines import comparison, get_engine
+from engines.checks import energy_gain, pivoting_centre
+from engines.swings import Trace
 
 ENGINES = ("exudyn", "pybullet")
 
@@ -44,6 +46,46 @@ def test_a_run_that_does_not_slip_where_the_model_does_differs():
     assert (found.quantity, found.here, found.model) == ("peak_slip", 0.0, model.sliding.peak)
     unread = comparison.compare(SAVED, replace(run, sliding=None))
     assert unread.differences == ()
+
+
+@pytest.mark.parametrize("engine", ["pybullet", "mujoco", "dart"])
+def test_a_first_script_slides_too(engine):
+    """As much as its step and its contact allow; the block's place is read from the engine."""
+    needs(engine)
+    model, run = simulate(SLIDES, history=False), get_engine(engine).simulate(SLIDES, variant="first-script")
+    assert (run.failure, run.outcome) == (None, "slides")
+    assert run.sliding.peak == pytest.approx(model.sliding.peak, rel=0.1)
+
+
+def test_a_level_block_that_slides_gains_no_energy_while_its_tilt_changes_sign():
+    """The tilt of one in soft contact does; what the ground does meanwhile counts, until the contact is settled."""
+    scene = SLIDES.with_(motion=PulseMotion("half-sine", 8.0, 6.0), duration=0.52)
+    seen = simulate(scene, output_step=1e-3).history
+    still, speed = np.zeros_like(seen.time), np.gradient(seen.slip, seen.time)
+    tilt = 1e-9 * np.where((seen.time > 0.02) & (seen.time < 0.5), (-1.0) ** np.arange(len(still)), 1.0)
+    trace = Trace(seen.time, tilt, still, still, still, still, 1e-6, settle=5e-3)
+    centre = pivoting_centre(scene, trace)
+    centre[:, 0], centre[:, 2] = seen.slip, speed
+    assert np.abs(speed[-1]) > 0.5 and energy_gain(scene, replace(trace, centre=centre)) < 1e-2
+
+
+def test_a_block_on_joints_is_said_not_to_slide_and_does_not():
+    needs("exudyn")
+    engine = get_engine("exudyn")
+    run = engine.simulate(SLIDES, variant="switched-joints")
+    assert run.sliding is None and run.outcome != "slides" and "outcome" in [one.quantity for one in run.differences]
+    assert "never slide" in engine.variants["switched-joints"].faults
+
+
+def test_what_mujoco_is_said_to_get_wrong_it_gets_wrong():
+    """A block with friction .2 and tan(gamma) .2027 can only slide; and the impact of `LOST`, into which it slides."""
+    needs("mujoco")
+    engine, low = get_engine("mujoco"), scene_of(0.2, 0.2, motion=PulseMotion("rectangular", 4.0, 6.0))
+    (model,), (seen,) = (run(LOST, history=False).impacts for run in (simulate, engine.simulate))
+    assert model.rate_after < 0.9 * model.rate_before and seen.rate_after > 0.99 * seen.rate_before
+    for variant in ("impact-aware", "fixed-step"):
+        assert engine.simulate(low, variant=variant).outcome == "overturns" != simulate(low, history=False).outcome
+        assert engine.variants[variant].faults
 
 
 @pytest.mark.slow
