@@ -191,7 +191,7 @@ def test_the_landing_corner_slips_from_the_friction_that_is_said():
 
 def test_impacts_of_a_released_block_slip_below_a_friction_that_the_case_exceeds_by_a_thousandth():
     scene = CASES["impacts nearly slip"].scene
-    limit = slipping_friction(parameters(scene), contact_of(scene))
+    limit = slipping_friction(parameters(scene))
     assert scene.friction == pytest.approx(1.001 * limit, rel=1e-12) and limit < math.tan(GAMMA)
     with pytest.raises(SceneError, match="depends on the law of friction"):
         simulate(scene.with_(friction=0.999 * limit))
