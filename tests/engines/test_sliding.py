@@ -73,7 +73,8 @@ def test_a_block_on_joints_is_said_not_to_slide_and_does_not():
     needs("exudyn")
     engine = get_engine("exudyn")
     run = engine.simulate(SLIDES, variant="switched-joints")
-    assert run.sliding is None and run.outcome != "slides" and "outcome" in [one.quantity for one in run.differences]
+    assert run.sliding.peak == 0 and run.outcome != "slides"
+    assert "outcome" in [one.quantity for one in run.differences]
     assert "never slide" in engine.variants["switched-joints"].faults
 
 
