@@ -21,7 +21,7 @@ def at_rest(resting, block, base, totals):
 @inner
 def remaining(par, contact, block, base):
     """Energy [J] that can still reach the block; see `decision`."""
-    angle = block.s * par.gamma - block.tilt
+    angle = block.s * par.gamma - block.tilt if block.s != 0 else par.gamma
     c, n = par.R * math.cos(angle), par.R * math.sin(angle)
     velocity = Velocity(block.rate, block.speed + c * block.rate, block.rise + n * block.rate)
     moving = kinetic(par, contact, velocity, base.v)

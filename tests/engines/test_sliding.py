@@ -46,6 +46,11 @@ def test_a_run_that_does_not_slip_where_the_model_does_differs():
     assert (found.quantity, found.here, found.model) == ("peak_slip", 0.0, model.sliding.peak)
     unread = comparison.compare(SAVED, replace(run, sliding=None))
     assert unread.differences == ()
+    model = simulate(SLIDES, history=False)
+    stands = replace(model, engine="any", outcome="stands", sliding=None)  # as a first script, which reads no place
+    assert comparison.compare(SLIDES, stands).differences == ()
+    (found, _) = comparison.compare(SLIDES, replace(stands, sliding=still)).differences
+    assert (found.quantity, found.here, found.model) == ("outcome", "stands", "slides")
 
 
 @pytest.mark.parametrize("engine", ["pybullet", "mujoco", "dart"])

@@ -12,13 +12,12 @@ from analytic.errors import SceneError
 from analytic.response import COMPARED, EDGE, OUTCOMES
 from comparisons.commands.report import form
 from comparisons.report import statue
-from comparisons.report.detail import environment
+from comparisons.report.detail import assets, environment
 from comparisons.report.runs import RESTITUTION, SCENES, load_scenes
 from comparisons.report.statue import _engines, _worst, statue_of
 from comparisons.report.study import make_own_results
 from comparisons.report.write import PAGE, write_page
 from comparisons.running.provenance import read_result
-from comparisons.showing.charts import STYLE
 from comparisons.showing.parts import number
 
 BEARINGS = """[bearings]
@@ -282,4 +281,4 @@ def test_every_outcome_has_a_colour_in_the_bar_of_a_margin():
     for outcome in OUTCOMES:
         shown = draw({"quantity": "motion", "bands": [(-0.2, 0.2, outcome)]})
         kind = re.search('<rect class="(.*?)" x="20.0" y="18"', shown)[1]
-        assert f"rect.{kind} {{" in STYLE.read_text()
+        assert f"rect.{kind} {{" in assets()["style"]
