@@ -55,7 +55,7 @@ def test_a_level_block_that_slides_gains_no_energy_while_its_tilt_changes_sign()
 def test_an_impact_may_turn_the_energy_of_the_slip_into_rotation(engine, room):
     """The tilt rate rises by a third at it; which is no failure of an engine that does the same.
 
-    exudyn's contact lasts: with five times its stiffness the rate errs by half.
+    The contact of exudyn lasts: with five times its stiffness the error is .6 of that.
     """
     needs(engine)
     pulse = PulseMotion("ricker", -12.025, 15.53, vertical=PulseMotion("ricker", 8.017, 15.53))
