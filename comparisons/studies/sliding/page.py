@@ -325,7 +325,7 @@ def _how(result: Result) -> tuple[str, ...]:
         "more than the friction where the demand |H|/N exceeds it before any last fall, or N falls to 0. Undecided: "
         "the base goes on swinging, so that the end is not certain.",
         f"Engines run {len(scenes)} scenes in which that is so, the first ones drawn; variants other than the main "
-        f"ones and “defaults” of the engines in question, one in {settings['fewer']}. Left out, of all engines alike: "
+        f"ones of the engines in question one in {settings['fewer']}. Left out, of all engines alike: "
         f"{reasons}. Near an outcome boundary: a change by 10⁻⁴, of the friction too, makes such a difference in the "
         "model. Errors of the slip are relative, of blocks that stay upright; a slip too small to count is compared as "
         "one of 0.005 R. CPU time is that of the stepping over that of the model’s march, median over scenes.",
