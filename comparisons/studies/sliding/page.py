@@ -240,7 +240,7 @@ def _outcomes(key):
 
 def _counted(row, share):
     within, words = row[f"{share}_within"], f"{row[share]} of {row[SHARES[share][1]]}"
-    return words if within is None else f"{words}, {' to '.join(map(percent, within))}"
+    return words if within is None else f"{words}, {number(100 * within[0], 2)} to {percent(within[1])}"
 
 
 def _shares(cells: Sequence[Mapping[str, Any]]) -> Figure | None:

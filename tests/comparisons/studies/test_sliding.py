@@ -176,8 +176,10 @@ def test_failed_runs_are_shown_apart_and_counted_as_wrong(tmp_path):
     failed = [row for row in judged(result) if row["class"] == "failed"]
     whole = page.whole()
     assert len(whole.evidence) == len(failed) > 0 and all("fell over" in head for head, _ in whole.evidence)
-    told = next(table for table in whole.tables if table.caption == "Runs that failed")
-    assert len(told.rows) == len(failed)
+    told = next(table for table in whole.tables if table.caption == "Runs that failed, by reason")
+    assert {why for _, why, *_ in told.rows} == {"fell over"}
+    assert sum(int(count) for *_, count, _ in told.rows) == len(failed)
+    assert sum(len(scenes.split(", ")) for *_, scenes in told.rows) == len(failed)
     (judgement,) = STUDY.judgements(result)
     mark = judgement.marks[second, get_engine(second).default_variant]
     assert (mark.words, mark.level) == (f"0 of {row['judged']}", "bad") and "failed" in mark.note
