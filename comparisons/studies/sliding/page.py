@@ -64,20 +64,7 @@ def page(result: Result) -> Page:
                 [*summed(cells, "support"), *every],
                 *_outcomes("support"),
             ),
-            table(
-                "Engines where the friction does not suffice: right in the outcome, peaks within 2 %, the slip too, "
-                "restitution within 0.01, and impacts",
-                counts,
-                NAME,
-                Column("kind", "tier"),
-                Column("right", "{right} of {judged}"),
-                Column("right in the outcome", "{alike} of {judged}"),
-                Column("failed", "failed"),
-                Column("error of the slip, median", "slip", percent=True),
-                Column("worst", "slip_worst", percent=True),
-                Column("error of restitution at slipping impacts, rms [-]", "slipping"),
-                Column("CPU time over the model's [-]", lambda row: row["cpu"] and f"{number(row['cpu'], 2)} ×"),
-            ),
+            _engines(counts),
         ),
         more=(
             ranks(
@@ -92,45 +79,74 @@ def page(result: Result) -> Page:
             table("By friction", summed(cells, _interval), *_outcomes(_interval)),
             _slips(runs),
             _restitutions(counts),
-            table(
-                "Errors of restitution at impacts in which the model's corner slides before or after, and at others",
-                [row for row in counts if row["impacts"]],
-                NAME,
-                Column("slipping impacts [-]", "impacts"),
-                Column("that are missed [-]", "lost"),
-                Column(RESTITUTION, "slipping"),
-                Column("worst [-]", "slipping_worst"),
-                Column("other impacts [-]", "others"),
-                Column(RESTITUTION, "sticking"),
-            ),
-            table(
-                "Runs that end otherwise than the model's, or differ; without the variants “defaults”",
-                differing,
-                NAME,
-                Column("scene", "index"),
-                Column("support, motion", "{support}, {motion}"),
-                Column("friction [-]", "friction", digits=3),
-                Column("tan γ [-]", lambda row: float(np.tan(row["slenderness"])), digits=3),
-                Column("model", "model_outcome"),
-                Column("in what", lambda row: typeset("; ".join(row["differences"]))),
-            ),
-            table(
-                "Runs that failed, by reason",
-                [
-                    {"engine": engine, "variant": variant, "why": why, "runs": len(rows), "scenes": _scenes(rows)}
-                    for (engine, variant, why), rows in grouped(failed, "engine", "variant", _why).items()
-                ],
-                NAME,
-                Column("why", "why"),
-                Column("runs", "runs"),
-                Column("scenes", "scenes"),
-            ),
+            _impacts(counts),
+            _differences(differing),
+            _failures(failed),
             *(f"{NAME.of(row)}: {row['words']}" for row in result.settings["faults"]),
         ),
         how=_how(result),
         evidence=tuple(
             (f"{NAME.text(row)}, scene {row['index']}: {_why(row)}", row["failure"]["message"] or "") for row in failed
         ),
+    )
+
+
+def _engines(counts):
+    return table(
+        "Engines where the friction does not suffice: right in the outcome, peaks within 2 %, the slip too, "
+        "restitution within 0.01, and impacts",
+        counts,
+        NAME,
+        Column("kind", "tier"),
+        Column("right", "{right} of {judged}"),
+        Column("right in the outcome", "{alike} of {judged}"),
+        Column("failed", "failed"),
+        Column("error of the slip, median", "slip", percent=True),
+        Column("worst", "slip_worst", percent=True),
+        Column("error of restitution at slipping impacts, rms [-]", "slipping"),
+        Column("CPU time over the model's [-]", lambda row: row["cpu"] and f"{number(row['cpu'], 2)} ×"),
+    )
+
+
+def _impacts(counts):
+    return table(
+        "Errors of restitution at impacts in which the model's corner slides before or after, and at others",
+        [row for row in counts if row["impacts"]],
+        NAME,
+        Column("slipping impacts [-]", "impacts"),
+        Column("that are missed [-]", "lost"),
+        Column(RESTITUTION, "slipping"),
+        Column("worst [-]", "slipping_worst"),
+        Column("other impacts [-]", "others"),
+        Column(RESTITUTION, "sticking"),
+    )
+
+
+def _differences(differing):
+    return table(
+        "Runs that end otherwise than the model's, or differ; without the variants “defaults”",
+        differing,
+        NAME,
+        Column("scene", "index"),
+        Column("support, motion", "{support}, {motion}"),
+        Column("friction [-]", "friction", digits=3),
+        Column("tan γ [-]", lambda row: float(np.tan(row["slenderness"])), digits=3),
+        Column("model", "model_outcome"),
+        Column("in what", lambda row: typeset("; ".join(row["differences"]))),
+    )
+
+
+def _failures(failed):
+    return table(
+        "Runs that failed, by reason",
+        [
+            {"engine": engine, "variant": variant, "why": why, "runs": len(rows), "scenes": _scenes(rows)}
+            for (engine, variant, why), rows in grouped(failed, "engine", "variant", _why).items()
+        ],
+        NAME,
+        Column("why", "why"),
+        Column("runs", "runs"),
+        Column("scenes", "scenes"),
     )
 
 
