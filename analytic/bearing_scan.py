@@ -1,8 +1,10 @@
 """Scan of period and damping of the bearings of a scene under all its motions.
 
-Bearings are suitable if the block does not lift (or its tilt stays below a limit) and the base stays within the stroke.
-Their demand is 1 at the limit. It is the larger of two ratios: friction demand/tan(gamma), that is, base acceleration
-over uplift acceleration (or peak tilt over its limit), and peak base displacement over the stroke.
+Bearings are suitable if the block does not lift (or its tilt stays below a limit), if it does not slide where the scene
+gives a friction, and if the base stays within the stroke. Their demand is 1 at the limit. It is the largest of these
+ratios: friction demand/tan(gamma), that is, base acceleration over uplift acceleration (or peak tilt over its limit);
+friction demand over the friction; and peak base displacement over the stroke. The friction demand is that of a block
+that does not slide.
 """
 
 from __future__ import annotations
@@ -87,11 +89,13 @@ class BearingScan:
 def first_stroke(scene: Scene, motions: Sequence[Motion]) -> float | None:
     """First stroke [m] of a search, to two digits; None if suitable bearings are unlikely at any stroke.
 
-    It is `ROOM` times the least displacement of linear bearings on which the block does not lift under any motion.
+    It is `ROOM` times the least displacement of linear bearings on which the block neither lifts nor, with a friction,
+    slides under any motion.
     """
     periods = np.geomspace(*PERIODS, round(math.log(PERIODS[1] / PERIODS[0]) / PERIOD_STEP / COARSE))
     moved = np.max([displacement_spectrum(motion, periods, [LINEAR_DAMPING])[0] for motion in motions], axis=0)
-    held = moved[(2 * np.pi / periods) ** 2 * moved <= scene.gravity * math.tan(scene.block.slenderness)]
+    limit = min(math.tan(scene.block.slenderness), scene.friction or math.inf)
+    held = moved[(2 * np.pi / periods) ** 2 * moved <= scene.gravity * limit]
     return float(f"{ROOM * held.min():.2g}") if len(held) else None
 
 
@@ -163,19 +167,27 @@ def _worst(scenes, motions, tilt, workers, progress):
         for part in np.array_split(np.arange(len(scenes)), 1 + len(scenes) // CHUNK):
             found = simulate_many([scenes[j].with_(motion=motion) for j in part], contact=True, workers=workers)
             moved[part] = np.maximum(moved[part], found.peak_base_displacement)
-            demand[part] = np.maximum(demand[part], _lift(found, scenes[0].block.slenderness, tilt))
+            demand[part] = np.maximum(demand[part], _lift(found, scenes[0], tilt))
             done += len(part)
             if progress:
                 progress(done, len(scenes) * len(motions))
     return demand, moved
 
 
-def _lift(found: Outcomes, slenderness: float, tilt: float) -> np.ndarray:
-    """Base acceleration over uplift acceleration, above 1 where the block lifts; or peak tilt over its limit."""
+def _lift(found: Outcomes, scene: Scene, tilt: float) -> np.ndarray:
+    """Base acceleration over uplift acceleration, above 1 where the block lifts, or peak tilt over its limit; with a
+    friction, at least the demand over it, above 1 where the block slides."""
+    beyond = np.nextafter(1.0, 2.0)
+    sliding = np.where(found.slid, beyond, 0.0)
+    if scene.friction is not None:
+        sliding = np.maximum(sliding, found.friction_demand / scene.friction)
     if tilt == 0:
-        lifting = np.where(found.lifted, np.nextafter(1.0, 2.0), 0.0)
-        return np.where(found.failed, math.inf, np.maximum(found.friction_demand / math.tan(slenderness), lifting))
-    return np.where(found.failed | found.overturns, math.inf, found.peak_tilt / slenderness / tilt)
+        lifting = np.maximum(
+            found.friction_demand / math.tan(scene.block.slenderness), np.where(found.lifted, beyond, 0)
+        )
+        return np.where(found.failed, math.inf, np.maximum(lifting, sliding))
+    tilting = found.peak_tilt / scene.block.slenderness / tilt
+    return np.where(found.failed | found.overturns, math.inf, np.maximum(tilting, sliding))
 
 
 def _crossed(coarse: np.ndarray, shape: tuple[int, int]) -> np.ndarray:

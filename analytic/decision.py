@@ -27,7 +27,8 @@ from typing import TYPE_CHECKING
 from .bearing import BearingLaw
 from .compiled import entry, inner
 from .laws import Constants, law_function
-from .response import Caution
+from .limits import limit_warnings
+from .response import Caution, about_record
 
 if TYPE_CHECKING:
     from .layout import Base, Body, Parameters
@@ -162,7 +163,7 @@ def model_warnings(
     scene: Scene, friction_demand: float, min_normal_ratio: float, slides: bool = False
 ) -> tuple[Caution, ...]:
     """Warnings where a run violates the model's assumptions: compressive contact, no sliding, and bearings that are
-    rigid under a vertical motion. slides : by a solver whose block slides and flies with a friction."""
+    rigid under a vertical motion. slides : by a solver whose block slides and flies with a friction, and is seen to."""
     found = []
     if scene.bearings is not None and scene.motion is not None and scene.motion.vertical is not None:
         found.append(Caution("model", RIGID_BEARINGS))
@@ -171,7 +172,7 @@ def model_warnings(
     if min_normal_ratio <= 0:
         words = (
             f"the least normal force at the contact is {min_normal_ratio:.3g} m g: the block would jump, and the "
-            "outcome is outside the model"
+            "outcome is outside the model" + ("" if scene.friction else "; with a friction in the scene it flies")
         )
         found.append(Caution("model", words, "min_normal_ratio", min_normal_ratio, 0.0))
     if scene.friction is not None and friction_demand > scene.friction:
@@ -180,4 +181,28 @@ def model_warnings(
             "would slide, and the outcome is outside the model"
         )
         found.append(Caution("model", words, "friction_demand", friction_demand, scene.friction))
+    return tuple(found)
+
+
+def run_warnings(
+    scene: Scene,
+    friction_demand: float,
+    min_normal_ratio: float,
+    peak_base_displacement: float,
+    base_velocity: float,
+    slides: bool = False,
+) -> tuple[Caution, ...]:
+    """All warnings of a run of the analytic model: of the record, `model_warnings`, x_max, a base that slides on.
+
+    base_velocity : at the end [m/s]. slides : as in `model_warnings`.
+    """
+    found = [*about_record(scene.motion), *model_warnings(scene, friction_demand, min_normal_ratio, slides)]
+    found += limit_warnings(scene, peak_base_displacement)
+    drift = abs(base_velocity) * CAP_PERIODS * period(scene)  # rounding errors are no motion
+    if scene.base is not None and scene.bearings is None and drift > PEAK_TOLERANCE * peak_base_displacement:
+        words = (
+            f"the base slides on at {base_velocity:.3g} m/s with no bearing to stop it: its displacement has no peak, "
+            "the one given is that at the end of the run"
+        )
+        found.append(Caution("model", words, "base_velocity", base_velocity, 0.0))
     return tuple(found)

@@ -118,13 +118,15 @@ def scene_text(
     tilt : float or None
         Of the start [rad].
     friction : float or None
-        Coefficient between block and base.
+        Coefficient between the block and its support; None: it does not slide.
     about : sequence of str
         Comment lines at the top.
     """
     lines = [*(f"# {line}" for line in about), f"name = {_toml(name)}"]
     if friction is not None:
-        lines.append(f"friction = {_toml(friction)}  # of the block on its support")
+        lines.append(f"friction = {_toml(friction)}  # of the block on its support: it slides where this is used up")
+    else:
+        lines.append("# friction = 0.6  # of the block on its support; without it the block does not slide")
     lines += ["", "[block]"]
     lines += _rows({"mass": (block.mass, "kg"), "radius": (block.radius, "m; base corner to centre of mass")})
     degrees = math.degrees(block.slenderness)

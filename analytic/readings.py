@@ -55,7 +55,7 @@ def gravity_at(par, vertical, P, highest, d):
 
 
 @inner
-def _top(a, b, c):
+def top(a, b, c):
     """Maximum, between its points, of the parabola through three values at equal intervals."""
     turn, bend = 0.5 * (a - c), a - 2 * b + c
     if abs(turn) < -bend:  # its vertex is inside
@@ -92,8 +92,8 @@ def read_contact(par, vertical, body, step, arrays):
             upward += n * second - c * rate * rate
         here, low = abs(horizontal) / upward if upward > 0 else math.inf, -upward / par.g
         if probe > 1:
-            totals[L.FRICTION] = max(totals[L.FRICTION], _top(demand_before, demand, here))
-            totals[L.NORMAL] = min(totals[L.NORMAL], -_top(lift_before, lift, low))
+            totals[L.FRICTION] = max(totals[L.FRICTION], top(demand_before, demand, here))
+            totals[L.NORMAL] = min(totals[L.NORMAL], -top(lift_before, lift, low))
         demand_before, demand, lift_before, lift = demand, here, lift, low
 
 

@@ -14,19 +14,19 @@ An engine's run is compared with the analytic model of the same scene. ``differe
 the run and in the model, and the limit:
 
 - the outcome;
-- a peak tilt or peak base displacement that is off by more than 2 %;
+- a peak tilt, peak base displacement or largest slip that is off by more than 2 %;
 - for a block that overturns: the time of its last passage of the slenderness, off by more than 2 % of a rocking period,
   the time of overturning, and the number of impacts before;
 - the restitution of an impact, off by more than 0.01, or its loss 1 - e^2, by more than 10 %;
 - missing or extra impacts.
 
-``comparable`` is "yes", or says why not: the normal force reaches 0, no contact provides the friction demanded, or the
-model does not reach an end. Near an outcome boundary it is "on an edge": a change of the scene by 1e-4 makes such a
-difference in the model itself, and values between those of the changed scenes are no difference. In Python,
-``simulate(scene, compare=False)`` skips the comparison.
+``comparable`` is "yes", or says why not: without a friction in the scene, the normal force reaches 0, or no contact
+provides the friction demanded; or the model does not reach an end. Near an outcome boundary it is "on an edge": a
+change of the scene by 1e-4 makes such a difference in the model itself, and values between those of the changed scenes
+are no difference. In Python, ``simulate(scene, compare=False)`` skips the comparison.
 
-``warnings`` (kind, quantity, value, limit, text) say that a result is outside the model (the block would jump, or slide
-at the scene's ``friction``; the base exceeds ``x_max``), or that the record is unusual. Do not rely on an outcome with
+``warnings`` (kind, quantity, value, limit, text) say that a result is outside the model (the block would jump, and the
+scene gives no ``friction``; the base exceeds ``x_max``), or that the record is unusual. Do not rely on an outcome with
 such a warning.
 """
 
@@ -40,6 +40,7 @@ from typing import Any, Self, TextIO
 import numpy as np
 
 OUTCOMES = ("stands", "slides", "rocks", "overturns", "failed")
+LEVEL = OUTCOMES[:2]  # of a block that never lifted
 # Quantities of a `Difference`, in words. Restitution: at the matched impact with the largest error. Missing and extra
 # impacts: numbers of impacts that count, with and without a match. Loss: 1 - e^2. Times: of a block that overturns; a
 # fall begins at the last passage of the slenderness.
@@ -103,11 +104,15 @@ class History:
 
     COLUMNS = (*(column.name for column in dataclasses.fields(State)), "ground_acceleration")
 
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """The columns that it has: `COLUMNS`, and the slip where the block slides."""
+        return self.COLUMNS if self.slip is None else (*self.COLUMNS, "slip")
+
     def to_csv(self, path: str | PathLike[str] | TextIO) -> None:
         """Write the columns with a header line; `path` is a file name or an open text file."""
-        names = self.COLUMNS if self.slip is None else (*self.COLUMNS, "slip")
-        table = np.column_stack([getattr(self, name) for name in names])
-        np.savetxt(path, table, delimiter=",", header=",".join(names), comments="", fmt="%.17g")
+        table = np.column_stack([getattr(self, name) for name in self.columns])
+        np.savetxt(path, table, delimiter=",", header=",".join(self.columns), comments="", fmt="%.17g")
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 SI units. Only ``[block]`` is needed; a part that is left out is not modelled::
 
-    # friction = 0.7          # optional: coefficient between the block and its support; before the first table
+    # friction = 0.7          # of the block on its support, which it then may slide on; before the first table
 
     [block]
     mass = 3172.05            # kg
@@ -42,14 +42,17 @@ SI units. Only ``[block]`` is needed; a part that is left out is not modelled::
 
 Under a vertical motion a_v, gravity is g + a_v(t) for the block. The bearings are vertically rigid in the model, while
 real ones vibrate vertically at some 10 to 20 Hz; a warning says so. Components with different steps or lengths are
-resampled and padded, and ``warnings`` say how. Where the normal force reaches zero, the outcome is outside the model.
+resampled and padded, and ``warnings`` say how. Where the normal force reaches zero and no friction is given, the
+outcome is outside the model.
 
-With ``friction``, Coulomb's coefficient between the block and its support, the block slides where it is used up, in the
-analytic model and, in place of its own setting, in an engine. Without it the block does not slide, and the friction
-demand says what that takes.
+With ``friction``, Coulomb's coefficient between the block and its support, the block slides where it is used up, and
+flies where the normal force vanishes, in the analytic model and, in place of its own setting, in an engine
+(`analytic.sliding.equations`). Without it the block does not slide, and the friction demand says what that takes. Two
+bounds, which an error names: a block released by hand needs a friction at which its impacts do not slip, and none may
+be so large that a block that slides has no motion (4/3 for a rectangle).
 
-``rocking run`` also runs the analytic model with start, motion and restitution changed by a millionth. It warns if the
-outcome changes: so near an outcome boundary no solver can be trusted.
+``rocking run`` also runs the analytic model with start, motion and restitution (or friction) changed by a millionth. It
+warns if the outcome changes: so near an outcome boundary no solver can be trusted.
 """
 
 import tomllib

@@ -14,22 +14,12 @@ from . import kernel, layout
 from .bearing import BearingLaw
 from .budget import EVENTS, MOST_ROWS, MOST_STEPS, ROWS, most_steps, too_long
 from .compiled import compiling
-from .decision import (
-    CAP_PERIODS,
-    PEAK_TOLERANCE,
-    longest_duration,
-    model_warnings,
-    peaks_are_final,
-    period,
-    shortest_duration,
-    will_not_overturn,
-)
+from .decision import longest_duration, peaks_are_final, run_warnings, shortest_duration, will_not_overturn
 from .errors import SettingError
 from .layout import Base, Body, Ground, Options, Parameters, Shaking
-from .limits import limit_warnings
 from .motion import SampledMotion
 from .pulses import SERIES
-from .response import Caution, Energy, Failure, History, Impact, Response, State, about_record
+from .response import Energy, Failure, History, Impact, Response, State
 from .rocking import RockingModel
 from .sliding.bounds import contact_of
 from .taylor import LINEAR_GROUND, PULSE, QUIET, SHORT_ORDER
@@ -300,25 +290,12 @@ def _response(
         versions=dict(versions()),
         failure=failure,
         decided=failure is None and bool(totals[layout.CERTAIN]),
-        warnings=_warnings(scene, totals, v),
+        warnings=run_warnings(
+            scene, float(totals[layout.FRICTION]), float(totals[layout.NORMAL]), float(totals[layout.PEAK_X]), v
+        ),
         energy=_energy(scene, par, totals, end),
         history=_history(scene, table, end) if history else None,
     )
-
-
-def _warnings(scene: Scene, totals: np.ndarray, velocity: float) -> tuple[Caution, ...]:
-    found = [*about_record(scene.motion)]
-    found += model_warnings(scene, float(totals[layout.FRICTION]), float(totals[layout.NORMAL]))
-    peak = float(totals[layout.PEAK_X])
-    found += limit_warnings(scene, peak)
-    drift = abs(velocity) * CAP_PERIODS * period(scene)  # rounding errors are no motion
-    if scene.base is not None and scene.bearings is None and drift > PEAK_TOLERANCE * peak:
-        words = (
-            f"the base slides on at {velocity:.3g} m/s with no bearing to stop it: its displacement has no peak, the "
-            "one given is that at the end of the run"
-        )
-        found.append(Caution("model", words, "base_velocity", velocity, 0.0))
-    return tuple(found)
 
 
 def _energy(scene: Scene, par: Parameters, totals: np.ndarray, end: State) -> Energy:

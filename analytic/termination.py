@@ -48,6 +48,8 @@ def _at_end(scene: Scene, response: Response, contact_tilt: float) -> tuple[bool
     if response.outcome in ("overturns", "failed"):
         return response.outcome == "overturns", None
     par, end = parameters(scene), response.end
+    if scene.friction is not None:  # at rest the block slides where it does not lift
+        par = par._replace(slope=min(par.slope, scene.friction))
     if end.time < motion_end(scene) * (1 - 1e-9):
         return False, None
     x, v, z = end.base_displacement, end.base_velocity, 0.0

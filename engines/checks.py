@@ -89,18 +89,24 @@ def pivoting_centre(scene: Scene, trace: Trace) -> np.ndarray:
     )
 
 
-def slip_of(scene: Scene, trace: Trace) -> Sliding | None:
-    """Slip of the lower corner along the base, where the scene gives a friction; its work and modes are not known.
+def slips(scene: Scene, trace: Trace) -> np.ndarray | None:
+    """Slip [m] of the lower corner along the base, shape (n,), where the scene gives a friction.
 
-    None if the block's position was not read from the engine, or a slip is none.
+    None, too, if the block's position was not read from the engine.
     """
     if scene.friction is None or trace.centre is None:
         return None
     slip = (trace.centre - pivoting_centre(scene, trace))[:, 0]
-    slip = slip - slip[0]
+    return slip - slip[0]
+
+
+def slip_of(scene: Scene, trace: Trace) -> Sliding | None:
+    """What `slips` comes to, all 0 where that is no slip; its work and modes are not known."""
+    if (slip := slips(scene, trace)) is None:
+        return None
     peak = float(np.abs(slip).max())
     if peak < LEAST_SLIP * scene.block.radius:
-        return None
+        return Sliding(peak=0.0, end=0.0, path=0.0, work=math.nan, modes=())
     return Sliding(peak=peak, end=float(slip[-1]), path=float(np.abs(np.diff(slip)).sum()), work=math.nan, modes=())
 
 
@@ -109,9 +115,9 @@ def check_place(scene: Scene, trace: Trace, overturned: bool) -> Failure | None:
     it, else None.
 
     During the run it may fly and land again, if it lands where it stood. A block that overturns may do so anywhere.
-    None, too, if the block's position was not read from the engine.
+    None, too, if the block's position was not read from the engine, and in a first script, whose contact is soft.
     """
-    if trace.centre is None or overturned:
+    if trace.centre is None or overturned or trace.first_script:
         return None
     R = scene.block.radius
     slid, height = (trace.centre - pivoting_centre(scene, trace))[:, :2].T
@@ -149,18 +155,21 @@ def energy_gain(scene: Scene, trace: Trace) -> float:
     """Largest rise of `energy_balance` over its lowest earlier value; such a rise has no physical cause.
 
     Relative to the larger of m g R (1 - cos gamma), the energy from rest to the unstable point, and the largest kinetic
-    energy. NaN where the energy overflows. Steps within ``trace.settle`` after a crossing of tilt = 0 are left out.
+    energy. NaN where the energy overflows. Steps within ``trace.settle`` after a crossing of tilt = 0 are left out, but
+    not the work done in them: a short pulse may do all of its work there.
     """
     block = scene.block
     level = low = rise = 0.0
     unit = block.mass * scene.gravity * block.radius * (1 - math.cos(block.slenderness))
+    settled, begin = _settled(trace), 0
     with np.errstate(over="ignore", invalid="ignore"):  # the balance of an unstable run is NaN
-        for piece in trace.pieces(_settled(trace)):
+        for piece in trace.pieces():
             balance, kinetic = energy_balance(scene, piece)
-            balance = level + balance
-            lowest = np.minimum(low, np.minimum.accumulate(balance))
-            rise, unit = np.maximum(rise, (balance - lowest).max()), np.maximum(unit, kinetic.max())
-            level, low = balance[-1], lowest[-1]
+            balance, clean = level + balance, settled[begin : begin + len(balance)]
+            lowest = np.minimum(low, np.minimum.accumulate(np.where(clean, balance, np.inf)))
+            rise = np.maximum(rise, (balance - lowest).max(initial=0.0, where=clean))
+            unit = np.maximum(unit, kinetic.max(initial=0.0, where=clean))
+            level, low, begin = balance[-1], lowest[-1], begin + len(balance) - 1
     return float(rise / unit)
 
 
@@ -175,12 +184,11 @@ def check_energy(scene: Scene, trace: Trace) -> Failure | None:
 
 
 def _settled(trace: Trace) -> np.ndarray:
-    """Indices of the steps, without those in which a compliant contact relaxes after a crossing of tilt = 0.
+    """Whether each step lies outside those in which a compliant contact relaxes after a crossing of tilt = 0.
 
-    In those the block does not pivot about its corner, so that the energy of a pivoting block does not apply.
+    In those the contact holds energy, and the block does not pivot about its corner.
     """
     crossings = trace.time[1:][np.diff(np.sign(trace.tilt)) != 0]
     last = np.searchsorted(crossings, trace.time, side="right") - 1
-    since = trace.time - np.concatenate(([-math.inf], crossings))[last + 1]
-    steps = np.flatnonzero(since >= trace.settle)
-    return steps if len(steps) >= 2 else np.arange(len(trace.time))
+    settled = trace.time - np.concatenate(([-math.inf], crossings))[last + 1] >= trace.settle
+    return settled if settled.sum() >= 2 else np.ones(len(trace.time), dtype=bool)

@@ -73,6 +73,8 @@ class Variant:
         Coefficient of friction of the contact where the scene gives none, if it is low enough for a block to slide.
     flight_damping : float or None
         Coefficient d [1/s] of a built-in damping in flight: force d m v (1 + |v|), moment d I w (1 + |w|), SI units.
+    faults : str
+        What the engine is known to get wrong in scenes of the studies, in words; shown where such scenes are run.
     free_block : str or None
         ``module:function``, called as a solver with ``step`` [s]: the variant with a free block of six degrees of
         freedom.
@@ -95,6 +97,7 @@ class Variant:
     constants: dict[str, str] = field(default_factory=dict)
     friction: float | None = None
     flight_damping: float | None = None
+    faults: str = ""
     free_block: str | None = None
 
     def __post_init__(self) -> None:

@@ -27,7 +27,9 @@ SURE = 0.1
 # reaches contact_tilt. Coarse steps skip smaller ones at the end of a chatter.
 STRONG, CLEAR = 0.2, 3.0
 # Ratio of the rates after and before an impact above which a run counts as failed, as no impact adds energy. Tuned
-# variants and exact motions sampled at random steps stay below 1; first scripts reach 1.1 by their step errors.
+# variants and exact motions sampled at random steps stay below 1; first scripts reach 1.1 by their step errors. It says
+# nothing where the block may slide: an impact turns the energy of the slip into rotation, and the model's ratio reaches
+# 1.4. Energy that a run gains is seen by `checks.check_energy`.
 MOST_RESTITUTION = 1.2
 
 
@@ -158,10 +160,11 @@ def _straddling(scene: Scene, model: ArrayModel, trace: Trace, least: float) -> 
 
 def check_impacts(scene: Scene, trace: Trace, impacts: Sequence[Impact], missed: Sequence[float]) -> Failure | None:
     """A `Failure` where an impact added energy or was not resolved, else None; `missed` as in `find_events`."""
+    slides = scene.friction is not None and trace.centre is not None
     least = _least_speed(ArrayModel.of(scene), trace, max((abs(each.rate_before) for each in impacts), default=0.0))
     for impact in impacts:
         before, after = abs(impact.rate_before), abs(impact.rate_after)
-        if before >= least and not after <= MOST_RESTITUTION * before:  # not: NaN
+        if before >= least and not after <= MOST_RESTITUTION * before and not slides:  # not: NaN
             return Failure(
                 "an impact added energy",
                 f"at {impact.time:.9g} s the tilt rate goes from {impact.rate_before:.6g} to "

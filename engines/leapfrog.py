@@ -90,7 +90,9 @@ def _synchronised(value: np.ndarray, h: np.ndarray, from_before: np.ndarray, fro
 
 
 def raw_trace_of(rows: Sequence[Sequence[float]] | np.ndarray, scene: Scene, contact_tilt: float) -> Trace:
-    """The `Trace` of uncorrected rows, as in a first script; the block's position is not read."""
-    t, _, tilt, rate, x, v, _, force = np.array(rows).T[:8]
+    """The `Trace` of uncorrected rows, as in a first script; the block's position is read only where it may slide."""
+    t, _, tilt, rate, x, v, _, force, *centre = np.array(rows).T
     law = RockingModel.of(scene).bearing
-    return Trace(t, tilt, rate, x, v, force + law.count * law.damping * v, contact_tilt, first_script=True)
+    place = np.column_stack(centre) if centre and scene.friction is not None else None
+    total = force + law.count * law.damping * v
+    return Trace(t, tilt, rate, x, v, total, contact_tilt, centre=place, first_script=True)

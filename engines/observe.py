@@ -20,7 +20,7 @@ from analytic.motion import SampledMotion
 from analytic.response import Caution, Failure, History, Response, about_record
 from analytic.termination import is_decided
 
-from .checks import check_energy, check_place, slip_of
+from .checks import check_energy, check_place, slip_of, slips
 from .events import check_impacts, contact_measures, find_events
 from .momentum import check_impulse
 from .swings import Trace, find_swings
@@ -85,8 +85,8 @@ def observe(
     seen, missed, lifted = _measured(scene, trace, beyond or trace, overturning_time)
     failure, warnings = _judged(scene, trace, seen, missed, failure, warnings)
     sliding = slip_of(scene, trace)
-    upright = "rocks" if lifted else "slides" if sliding else "stands"
-    if sliding and scene.friction:  # what no-slip formulas ask for is no demand
+    upright = "rocks" if lifted else "slides" if sliding and sliding.peak else "stands"
+    if sliding and sliding.peak and scene.friction:  # what no-slip formulas ask for is no demand
         seen["friction_demand"] = min(seen["friction_demand"], scene.friction)
     response = Response(
         outcome="failed" if failure else upright if overturning_time is None else "overturns",
@@ -161,7 +161,8 @@ def _judged(
     if failure:
         warnings = (*warnings, Caution("engine", f"{failure.reason}: {failure.message}"))
     beyond = limit_warnings(scene, seen["peak_base_displacement"])
-    return None, (*warnings, *model_warnings(scene, seen["friction_demand"], seen["min_normal_ratio"], True), *beyond)
+    outside = model_warnings(scene, seen["friction_demand"], seen["min_normal_ratio"], slides=trace.centre is not None)
+    return None, (*warnings, *outside, *beyond)
 
 
 def failed_response(
@@ -218,7 +219,9 @@ def _history(scene: Scene, trace: Trace) -> History:
     for value, rate in (("tilt", "tilt_rate"), ("base_displacement", "base_velocity")):
         linear[value] = _cubic(trace, value, rate, time)
     ground = scene.motion.acceleration(time) if scene.motion else np.zeros(len(time))
-    return History(time=time, ground_acceleration=ground, **linear)
+    slip = slips(scene, trace)
+    slip = None if slip is None else np.interp(time, trace.time, slip)
+    return History(time=time, ground_acceleration=ground, slip=slip, **linear)
 
 
 def _cubic(trace: Trace, value: str, rate: str, time: np.ndarray) -> np.ndarray:

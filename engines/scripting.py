@@ -90,6 +90,8 @@ def _check(scene: Scene) -> None:
             "motion.pulse", motion.shape, "is not written out in scripts", f"choose one of {', '.join(PULSES)}"
         )
     share_of(scene)
+    if scene.friction is not None:
+        analytic.simulate(scene, history=False)  # raises where the block's slip is not determined
 
 
 def _context(engine: Engine, scene: Scene, name: str, record: str | None) -> dict[str, Any]:

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from analytic.bearing import BearingLaw
-from analytic.response import Caution
+from analytic.response import LEVEL, Caution
 
 if TYPE_CHECKING:
     from analytic import Response, Scene
@@ -51,7 +51,7 @@ def _words(name: str) -> str:
 
 
 def _values(scene: Scene, response: Response) -> dict[str, float]:
-    """{quantity of `RANGE`: its value}, of those that the scene has; a block that stands has no tilt.
+    """{quantity of `RANGE`: its value}, of those that the scene has; a block that never lifts has no tilt.
 
     Period and viscous damping are those of block and base on the stiffness after yielding.
     """
@@ -65,6 +65,6 @@ def _values(scene: Scene, response: Response) -> dict[str, float]:
         omega = math.sqrt(law.count * law.kb / scene.total_mass)
         found["period"] = 2 * math.pi / omega if omega else math.inf
         found["damping"] = law.count * law.damping / (2 * omega * scene.total_mass) if omega else 0.0
-    if response.outcome != "stands":  # an engine that stands has a tilt of rounding
+    if response.outcome not in LEVEL:  # an engine that stands has a tilt of rounding
         found["tilt"] = response.peak_tilt_ratio
     return found

@@ -40,6 +40,7 @@ class Ran:
     trace: Trace
     seen: Response
     model: Response
+    slip: np.ndarray  # m, none of a scene without a friction
     errors: np.ndarray  # of the restitution at each impact that is not faint
     jumps: np.ndarray  # of the base velocity's jump against (8) with the run's own rates, relative
 
@@ -69,8 +70,10 @@ def ran(engine, scene: Scene, folder) -> Ran:
 def measured(scene: Scene, script, said) -> Ran:
     """The reading of what a script wrote; `scene` is the one that it should have run."""
     file = script.parent / "history.csv"
-    assert file.read_text().partition("\n")[0] == ",".join(Trace.COLUMNS)
-    rows = np.loadtxt(file, delimiter=",", skiprows=1)
+    names = file.read_text().partition("\n")[0].split(",")
+    rows, count = np.loadtxt(file, delimiter=",", skiprows=1), len(Trace.COLUMNS)
+    assert names == [*Trace.COLUMNS, *["slip"] * (rows.shape[1] - count)]
+    rows, slip = rows[:, :count], rows[:, count:].ravel()
     numbers = runpy.run_path(str(script))
     contact, block = numbers["contact"], scene.block
     if "lead" in numbers:  # what the couple turns is no flight
@@ -88,7 +91,7 @@ def measured(scene: Scene, script, said) -> Ran:
         np.array([(i.rate_before, i.rate_after, i.base_velocity_jump) for i in impacts]).reshape(-1, 3).T
     )
     jumps = jump / (model.jump_arm * (before - after)) - 1 if scene.base else np.empty(0)
-    return Ran(said, trace, seen, analytic.simulate(scene), after / before - model.restitution, jumps)
+    return Ran(said, trace, seen, analytic.simulate(scene), slip, after / before - model.restitution, jumps)
 
 
 def code_lines(text):

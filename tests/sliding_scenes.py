@@ -17,6 +17,12 @@ def scene_of(friction, slenderness=0.2, radius=1.0884, base=None, **parts):
     return Scene(block=block, base=base and Base(mass=base), bearings=bearings, friction=friction, **parts)
 
 
+# Reference cases 19, saved by sliding, and 21, overturned by it; and one that slides only.
+SAVED = scene_of(0.4, 0.348, 1.86, motion=PulseMotion("half-sine", 9.38, 6.34), duration=4.0)
+LOST = scene_of(0.5, 0.449, 1.044, motion=PulseMotion("one-sine", 17.39, 10.13), duration=3.0)
+SLIDES = scene_of(0.2, 0.4, motion=PulseMotion("rectangular", 4.0, 6.0), duration=2.0)
+
+
 def random_slider(rng, number):
     """A statue at rest under a pulse above uplift, with friction; every second one on bearings, some with a_v."""
     radius, slenderness = float(10 ** rng.uniform(-0.5, 0.7)), float(rng.uniform(0.12, 0.45))

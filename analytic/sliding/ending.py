@@ -21,7 +21,7 @@ def at_rest(resting, block, base, totals):
 @inner
 def remaining(par, contact, block, base):
     """Energy [J] that can still reach the block; see `decision`."""
-    angle = block.s * par.gamma - block.tilt
+    angle = block.s * par.gamma - block.tilt if block.s != 0 else par.gamma
     c, n = par.R * math.cos(angle), par.R * math.sin(angle)
     velocity = Velocity(block.rate, block.speed + c * block.rate, block.rise + n * block.rate)
     moving = kinetic(par, contact, velocity, base.v)
@@ -40,6 +40,8 @@ def conclude(par, resting, contact, end_of_motion, block, base, totals):
         upright = mode != FLIGHT and abs(block.tilt) < par.gamma
         if totals[S.LIFTED] > 0:
             certain = upright and energy < par.m * par.g * par.R * (1 - math.cos(par.gamma))  # (a)
+        elif totals[S.PATH] > 0 and contact.mu < par.slope:
+            certain = True  # a level block cannot lift, as |H| <= mu N < N tan(gamma)
         elif mode == SLIDE:
             certain = not par.on_base or largest_force(par, energy) < par.M * par.g * par.slope  # (b)
         else:

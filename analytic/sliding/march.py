@@ -213,7 +213,7 @@ def march(par, resting, contact, ground, upright, options, into):
                 status = L.STUCK
                 break
             step = L.Step(t, h, order, highest, start.gravity, factors, corner)
-            written = read(par, upright, block, step, options, into, written)
+            written = read(par, contact, upright, block, step, options, into, written)
             block = end_of_step(par, block, found, step, P, totals, work)
             if par.on_base:
                 base = end_of_base(par, found, base, branch, step, P)

@@ -2,8 +2,8 @@
 
 from .. import layout as L
 from ..compiled import inner
-from ..polynomial import value
-from ..readings import integral_of_product
+from ..polynomial import bound, largest, value
+from ..readings import integral_of_product, top
 from . import layout as S
 from .layout import CLIMB, DRIFT, FLIGHT, SPEED, H, N
 
@@ -11,7 +11,7 @@ PROBES = 4
 
 
 @inner
-def read(par, upright, block, step, options, into, written):
+def read(par, contact, upright, block, step, options, into, written):
     """Write the step to history, diagnostics and ledger; returns the rows of the history written."""
     P, history, totals, h, order = into[0], into[4], into[5], step.h, step.order
     while written < history.shape[0] and written * options.output_step <= step.t + h:
@@ -22,16 +22,32 @@ def read(par, upright, block, step, options, into, written):
         written += 1
     if not (options.record and h > 0):
         return written
-    for probe in range(PROBES + 1):
-        d = h * probe / PROBES
-        across, normal = value(P[H], order, d), value(P[N], order, d)
-        if normal > 0 and block.sigma == 0 and block.mode != FLIGHT:
-            totals[S.FRICTION] = max(totals[S.FRICTION], abs(across) / normal)
-        totals[S.NORMAL] = min(totals[S.NORMAL], normal / (par.m * par.g))
-        if par.on_base:
-            totals[S.PEAK_ACCELERATION] = max(totals[S.PEAK_ACCELERATION], abs(value(P[L.ABSOLUTE], order, d)))
+    forces(par, contact, block, step, P, totals, into[1])
     ledger(par, upright, block, step, P, totals)
     return written
+
+
+@inner
+def forces(par, contact, block, step, P, totals, work):
+    """Peak absolute base acceleration, friction demand |H|/N and least N/(m g) within the step."""
+    h, order = step.h, step.order
+    row, last = (L.ABSOLUTE, order) if par.on_base else (L.GROUND, step.highest)
+    known = totals[S.PEAK_ACCELERATION]
+    if last >= 0 and bound(P[row], last, h) > known:
+        known = largest(P[row], 1.0, last, h, known, P[L.EVENT], work)
+        totals[S.PEAK_ACCELERATION] = largest(P[row], -1.0, last, h, known, P[L.EVENT], work)
+    if block.sigma != 0:
+        totals[S.FRICTION] = contact.mu
+    demand, demand_before, lift, lift_before = 0.0, 0.0, 0.0, 0.0
+    for probe in range(PROBES + 1):
+        across, normal = value(P[H], order, h * probe / PROBES), value(P[N], order, h * probe / PROBES)
+        held = normal > 0 and block.sigma == 0 and block.mode != FLIGHT
+        here, low = abs(across) / normal if held else 0.0, -normal / (par.m * par.g)
+        if probe > 1:
+            reached = min(top(demand_before, demand, here), contact.mu)  # where it is more, an event ends the step
+            totals[S.FRICTION] = max(totals[S.FRICTION], reached)
+            totals[S.NORMAL] = min(totals[S.NORMAL], -top(lift_before, lift, low))
+        demand_before, demand, lift_before, lift = demand, here, lift, low
 
 
 @inner

@@ -11,10 +11,9 @@ import numpy as np
 from .. import layout as L
 from ..bearing import BearingLaw
 from ..compiled import compiling
-from ..decision import longest_duration
+from ..decision import longest_duration, run_warnings
 from ..errors import SceneError
-from ..limits import limit_warnings
-from ..response import Energy, Failure, Impact, Response, Sliding, State, about_record
+from ..response import Energy, Failure, Impact, Response, Sliding, State
 from . import layout as S
 from .bounds import paradoxical_friction, slipping_friction
 from .march import arrays, march
@@ -124,32 +123,22 @@ def response(
         value = scene.friction if key == "friction" else scene.block.restitution
         raise SceneError(key, value, words, remedy, scene.name or None)
     fallen = totals[S.END_MODE] == S.FALLEN
-    if not fallen and abs(totals[S.END_TILT]) > par.gamma and totals[S.TIME] >= ground.shaking.end:  # while it falls?
+    if not fallen and abs(totals[S.END_TILT]) > par.gamma and totals[S.TIME] >= ground.shaking.end:
         later = par._replace(duration=par.duration + longest_duration(scene))
-        further, *_ = marched(later, contact, ground, options._replace(record=False, output_step=0.0))
-        if further[S.END_MODE] == S.FALLEN:
-            totals[S.CERTAIN], fallen = 1.0, True
-            totals[S.FALL_TIME], totals[S.OVER_TIME] = further[S.FALL_TIME], further[S.TIME]
+        fallen = _falls_later(later, contact, ground, options, totals)
     cpu = time.process_time() - begin
-    tilt, rate, slip, _, x, v, z = totals[S.END_TILT : S.END_Z + 1].tolist()
+    tilt, rate, _, _, x, v, z = totals[S.END_TILT : S.END_Z + 1].tolist()
     law, gamma = BearingLaw.of(scene.bearings), scene.block.slenderness
     end = State(float(totals[S.TIME]), tilt, rate, x, v, law.force(x, z, v))
     failure = None
     if totals[S.STATUS] not in (L.COMPLETE, L.DECIDED):
         failure = Failure(_REASONS[int(totals[S.STATUS])], last_state=end)
     uplifts, rests, unstable = *_turns(changes), float(totals[S.UNSTABLE_TIME])
-    if failure:
-        outcome = "failed"
-    elif fallen:
-        outcome = "overturns"
-    elif totals[S.LIFTED]:
-        outcome = "rocks"
-    else:
-        outcome = "slides" if totals[S.PATH] > 0 else "stands"
+    upright = "rocks" if totals[S.LIFTED] else "slides" if totals[S.PATH] > 0 else "stands"
     response = Response(
         engine="analytic",
         variant="kernel",
-        outcome=outcome,
+        outcome="failed" if failure else "overturns" if fallen else upright,
         overturning_time=float(totals[S.OVER_TIME] or end.time) if fallen else None,
         unstable_time=unstable if unstable >= 0 else None,
         fall_time=float(totals[S.FALL_TIME]) if fallen else None,
@@ -167,15 +156,11 @@ def response(
         steps=int(totals[S.STEPS]),
         failure=failure,
         decided=failure is None and bool(totals[S.CERTAIN]),
-        warnings=(*about_record(scene.motion), *limit_warnings(scene, float(totals[S.PEAK_X]))),
-        energy=_energy(scene, par, totals, end),
-        sliding=Sliding(
-            peak=float(totals[S.PEAK_SLIP]),
-            end=slip,
-            path=float(totals[S.PATH]),
-            work=float(totals[S.FRICTION_WORK]),
-            modes=tuple((t, S.MODES[int(mode)]) for t, mode in changes.tolist()),
+        warnings=run_warnings(
+            scene, float(totals[S.FRICTION]), float(totals[S.NORMAL]), float(totals[S.PEAK_X]), v, slides=True
         ),
+        energy=_energy(scene, par, totals, end),
+        sliding=_sliding(totals, changes),
         **known,
     )
     return response, table
@@ -187,6 +172,25 @@ _REASONS = {
     L.SPENT: "too many steps",
     S.NO_MODE: "not exactly one mode of contact is admissible",
 }
+
+
+def _falls_later(par: Parameters, contact: S.Contact, ground: Ground, options: Options, totals: np.ndarray) -> bool:
+    """Whether a block past its balance falls when it is followed on; writes its times over those of `totals`."""
+    further, *_ = marched(par, contact, ground, options._replace(record=False, output_step=0.0))
+    falls = bool(further[S.END_MODE] == S.FALLEN)
+    if falls:
+        totals[S.CERTAIN], totals[S.FALL_TIME], totals[S.OVER_TIME] = 1.0, further[S.FALL_TIME], further[S.TIME]
+    return falls
+
+
+def _sliding(totals: np.ndarray, changes: np.ndarray) -> Sliding:
+    return Sliding(
+        peak=float(totals[S.PEAK_SLIP]),
+        end=float(totals[S.END_SLIP]),
+        path=float(totals[S.PATH]),
+        work=float(totals[S.FRICTION_WORK]),
+        modes=tuple((t, S.MODES[int(mode)]) for t, mode in changes.tolist()),
+    )
 
 
 def _turns(changes: np.ndarray) -> tuple[tuple[float, ...], tuple[float, ...]]:

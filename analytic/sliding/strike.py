@@ -76,14 +76,14 @@ def settled(par, contact, block, rest_rate, start):
             back, _, _, _, _ = accelerations(par, contact, after, start)
             short = LONGEST_LAST_HOP / math.sqrt(par.p2)
             if after.s * back < 0 and 2 * abs(block.rate) <= -after.s * back * short:
-                speed, h = 0.0, par.R * math.cos(par.gamma)
-                if after.sigma == 0:
-                    left = par.arm * block.rate if par.on_base else 0.0
-                else:
+                h = par.R * math.cos(par.gamma)
+                speed, share = block.speed + h * block.rate, par.m / par.M if par.on_base else 0.0
+                if after.sigma != 0:
                     across = after.sigma * contact.mu * par.m * par.R * math.sin(par.gamma) * abs(block.rate)
                     left = -across / contact.mb if par.on_base else 0.0
-                    speed = block.speed + h * block.rate + across / par.m - left
-                    speed = after.sigma * max(after.sigma * speed, 0.0)
+                    speed = after.sigma * max(after.sigma * (speed + across / par.m - left), 0.0)
+                if abs(speed) < h * rest_rate:  # with a friction above tan(gamma) it could tip, and impacts go on
+                    speed, left = 0.0, left + share * speed
                 block = Block(STICK, 0.0, 0.0, 0.0, 0.0, block.slip, speed, 0.0, 0.0)
     if block.s == 0:
         after, count = choose(par, contact, block, start)

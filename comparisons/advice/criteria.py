@@ -11,6 +11,7 @@ import numpy as np
 from pydantic import Field
 
 from analytic import Response, Scene, SettingError, simulate
+from analytic.response import LEVEL
 from analytic.rocking import restitution
 from engines import get_engine
 
@@ -93,7 +94,8 @@ class Choice(Form):
     missing: dict[str, str]
 
 
-CRITERIA = ("restitution", "tilt", "displacement", "outcome")
+CRITERIA = ("restitution", "tilt", "displacement", "slip", "outcome")
+COLUMNS = {"tilt": "tilt", "displacement": "base_displacement", "slip": "slip"}  # of a history
 IMPACTS = 8  # strong impacts of the model up to which a scene is run for its restitution
 AFTER = 0.25  # of a rocking period, by which a run is longer
 PERIODS = 1.0  # rocking periods after its peak up to which tilt or displacement is compared
@@ -131,11 +133,19 @@ def neighbours(scene: Scene, criterion: str) -> dict[float, Scene]:
 
 
 def fitting(scene: Scene) -> str:
-    """The default: restitution if there are impacts, tilt if it is given; else displacement if there is a base, else
-    outcome."""
-    if strong_impacts(simulate(scene, history=False)):
-        return "restitution" if scene.block.restitution is None else "tilt"
+    """The default: restitution if there are impacts, tilt if it is given or the block slides; else slip if it slides,
+    displacement if there is a base, else outcome."""
+    reference = simulate(scene, history=False)
+    if strong_impacts(reference):
+        return "restitution" if scene.block.restitution is None and not slides(reference) else "tilt"
+    if slides(reference):
+        return "slip" if reference.outcome in LEVEL else "tilt"
     return "displacement" if scene.base else "outcome"
+
+
+def slides(response: Response) -> bool:
+    """Whether the block slides."""
+    return response.sliding is not None and response.sliding.peak > 0
 
 
 def until(scene: Scene, criterion: str) -> float:
@@ -152,20 +162,25 @@ def until(scene: Scene, criterion: str) -> float:
     if criterion == "restitution":
         if scene.block.restitution is not None:
             raise SettingError(f"--for restitution: {scene.name} gives it; choose tilt, displacement or outcome")
+        if slides(reference):
+            words = f"the block of {scene.name} slides, and then eq. (7) does not hold"
+            raise SettingError(f"--for restitution: {words}; choose tilt, slip or outcome")
         strong = strong_impacts(reference)[:IMPACTS]
         if not strong:
             raise SettingError(
                 f"--for restitution: the block of {scene.name} never hits its base; choose displacement or outcome"
             )
         return float(min(reference.end.time, strong[-1].time + AFTER * 2 * np.pi / scene.rocking_frequency))
-    if criterion == "tilt" and reference.outcome == "stands":
+    if criterion == "slip" and not slides(reference):
+        raise SettingError(f"--for slip: the block of {scene.name} does not slide; choose tilt or outcome")
+    if criterion == "tilt" and reference.outcome in LEVEL:
         raise SettingError(f"--for tilt: the block of {scene.name} never lifts; choose displacement or outcome")
     if criterion == "outcome":
         return reference.end.time
     cut = scene.with_(duration=reference.end.time)
     history = simulate(cut).history
     assert history is not None
-    column = history.tilt if criterion == "tilt" else history.base_displacement
+    column = getattr(history, COLUMNS[criterion])
     after = PERIODS * 2 * np.pi / scene.rocking_frequency
     return min(sensitivity_horizon(cut).horizon, float(history.time[np.abs(column).argmax()]) + after)
 
@@ -194,9 +209,15 @@ def error(criterion: str, scene: Scene, response: Response, reference: Response)
     ours, theirs = response.history, reference.history
     if ours is None or theirs is None:
         return None
-    column, unit = "tilt", scene.block.slenderness
+    column, unit = COLUMNS[criterion], scene.block.slenderness
     if criterion == "displacement":
-        column, unit = "base_displacement", reference.peak_base_displacement
+        unit = reference.peak_base_displacement
+    if criterion == "slip":
+        if ours.slip is None:
+            return None
+        if theirs.slip is None or not reference.sliding:
+            return 0.0  # a neighbour that does not slide
+        unit = reference.sliding.peak
     time = theirs.time[theirs.time <= ours.time[-1]]  # one that overturns ends there
     apart = np.interp(time, ours.time, getattr(ours, column)) - getattr(theirs, column)[: len(time)]
     return float(np.abs(apart).max() / unit)
@@ -234,6 +255,7 @@ def model_parts(
     engine = None if found is None or found.cpu_per_second is None else found.cpu_per_second * runs[0].end.time / own
     parts = {
         "rocking": _rocking(runs, engine),
+        **({} if scene.friction is None else {"sliding": _sliding(scene, runs)}),
         "base": _base(scene, own),
         "vertical motion": _vertical(scene, runs[0], own, error),
         "third dimension": _space(scene, engines),
@@ -245,11 +267,21 @@ def model_parts(
 
 
 def _rocking(runs, engine):
-    lifted = sum(run.outcome != "stands" for run in runs)
+    lifted = sum(run.outcome not in LEVEL for run in runs)
     if lifted:
         return True, f"the block lifts in {lifted} of {len(runs)} scenes", None
+    if any(map(slides, runs)):
+        return True, "the block slides and does not lift: an engine's contact model is needed", None
     why = "the block lifts neither here nor in any neighbour: block and base are one mass on the bearings"
     return False, f"{why}; an engine's contact model is not needed", engine
+
+
+def _sliding(scene, runs):
+    slid = sum(map(slides, runs))
+    if slid:
+        return True, f"the block slides in {slid} of {len(runs)} scenes: give the engine's contact this friction", None
+    demand = max(run.friction_demand for run in runs)
+    return False, f"the friction demand is at most {demand:.3g}, the friction {scene.friction:g}", None
 
 
 def _base(scene, own):

@@ -17,8 +17,8 @@ def command(
         str | None,
         typer.Option(
             "--for",
-            help="restitution, tilt, displacement or outcome. Default: restitution; where the block never hits, "
-            "displacement of its base.",
+            help="restitution, tilt, displacement, slip or outcome. Default: restitution; tilt or slip of a block that "
+            "slides; where the block never hits, displacement of its base.",
         ),
     ] = None,
     engine: Annotated[
@@ -59,7 +59,11 @@ def command(
     compile_kernels()
     if criterion is None and engine and (shown := fitting(what)) != "restitution":
         given = what.block.restitution is not None and shown == "tilt"
-        why = "its restitution is given" if given else "it never has an impact: there is no restitution"
+        why = (
+            "it slides"
+            if what.friction is not None and shown in ("tilt", "slip")
+            else ("its restitution is given" if given else "it never has an impact: there is no restitution")
+        )
         say(f"the block of {what.name}: {why}; the criterion is {shown}")
     with stdout_to_stderr():  # engines print on import
         choice = choose(

@@ -67,6 +67,8 @@ def command(
 ) -> None:
     """Design bearings: those with which a scene's block does not lift within a stroke, or constants from targets.
 
+    Where the scene gives a friction, the block must not slide on its base, either.
+
     For a block on the ground, give the mass of a base, which --write adds to the file, too.
     Example: rocking design bust.toml --stroke 0.25 --plot bearings.svg --write least-stroke
     Example: rocking design --period 2 --damping 0.30 --definition paper --xmax 0.30 --mass 3384.05
@@ -140,7 +142,7 @@ def _for_scene(place, base_mass, stroke, tilt, made, many, write, plot, json_fil
     points = {LEAST: scan.least_stroke, SOFTEST: scan.softest}  # (period, damping), None without any
     chosen = {name: _chosen(scene, scan, point, motions) for name, point in points.items() if point is not None}
     if write and write not in chosen:
-        raise SettingError(f"--write: {nothing_holds(scan, stroke)}")
+        raise SettingError(f"--write: {nothing_holds(scene, scan, stroke)}")
     results = {json_file: _form(scene, stroke, tilt, motions, scan, chosen)}
     if write:
         results[place] = _written(place, chosen[write]["bearings"], None if base_mass is None else scene.base)
@@ -184,6 +186,8 @@ def _chosen(scene, scan, point, motions):
         "bearings": bearings,
         "stroke": float(found.peak_base_displacement.max()),
         "lifts": int(found.lifted.sum()),
+        "slides": int(found.slid.sum()),
+        "friction": None if scene.friction is None else float(found.friction_demand.max()) / scene.friction,
         "uplift": float(uplift.max()),
         "tilt": float(found.peak_tilt.max()) / scene.block.slenderness,
         "worst": motions[int(found.peak_base_displacement.argmax())].label,

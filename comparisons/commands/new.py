@@ -52,7 +52,12 @@ def command(
     column: Column = None,
     channel: Channel = None,
     tilt: Annotated[float | None, typer.Option(help="Released from this tilt [rad], without a motion.")] = None,
-    friction: Annotated[float | None, typer.Option(help="Coefficient between the block and its support.")] = None,
+    friction: Annotated[
+        float | None,
+        typer.Option(
+            help="Coulomb's coefficient between the block and its support; without it the block does not slide."
+        ),
+    ] = None,
     anyway: Annotated[
         bool, typer.Option("--anyway", help="Write the file even if its numbers are implausible.")
     ] = False,

@@ -36,7 +36,7 @@ def command(
     if output is not None and Path(output).suffix != SUFFIX:
         raise SettingError(f"--output {output}: end the name in {SUFFIX}")
     what = load_scene(scene)
-    if what.duration is None:  # the script ends where the model's run does
+    if what.duration is None or what.friction is not None:  # the model is run
         compile_kernels()
     files = write_script(ENGINES[engine], what, Path(output).stem if output else None)
     folder = Path(output).parent if output else Path()

@@ -116,6 +116,7 @@ SYMBOLS = {
     "s": "$+1$ for a tilt to the right, $-1$ for one to the left",
     "g": "gravity, 9.81 m/s²",
     "a_g": "acceleration of the ground [m/s²]",
+    r"\mu": "friction between the block and what it stands on, Coulomb’s coefficient",
     r"e_{\phi}": "restitution: tilt rate after an impact over that before it",
     "e_x": "jump of the base’s velocity over the tilt rate before the impact, negated [m]",
     "m_b": "mass of the base [kg]",

@@ -231,17 +231,17 @@ def _directed(ta, ya, tb, yb):
 
 
 def energy_errors(
-    scene: Scene, response: Response, *, until: float = math.inf, step: float = 0.0
+    scene: Scene, response: Response, *, until: float = math.inf, step: float = 0.0, settle: float = SETTLE
 ) -> tuple[float, float]:
     """(drift between events, gain without a source) up to `until` [s] and the unstable point, from the history.
 
     Drift: largest change of the balance (mechanical energy + loss in the bearings - input work) within one swing or
     rest, over m g R (1 - cos gamma); 0 if exact. A sample or `step` [s] beside an event belongs to neither side.
-    Gain: as `engines.checks.energy_gain`.
+    Gain: as `engines.checks.energy_gain`, with `settle` [s] after an uplift or impact left out.
     """
     history = _history(response)
     last = min(until, math.inf if response.unstable_time is None else response.unstable_time)
-    trace = Trace(*(getattr(history, name) for name in Trace.COLUMNS), contact_tilt=1e-12, settle=SETTLE)  # type: ignore[misc]  # the columns come before these
+    trace = Trace(*(getattr(history, name) for name in Trace.COLUMNS), contact_tilt=1e-12, settle=settle)  # type: ignore[misc]  # the columns come before these
     trace = trace.upto(max(2, int(np.searchsorted(history.time, last, side="right"))))
     balance, _ = energy_balance(scene, trace)
     events = sorted([impact.time for impact in response.impacts] + list(response.rests) + list(response.uplifts))

@@ -12,6 +12,7 @@ import numpy as np
 from analytic import Caution, Response, Scene, simulate
 from analytic.rocking import RockingModel
 from engines.copies import changed_copies
+from engines.matching import impacts_of, matched
 
 from .errors import state_restitution
 
@@ -111,7 +112,13 @@ def perturbation_of(scene: Scene, response: Response, reference: Response) -> fl
     time = model.time[model.time <= own.time[-1]]
     apart = np.abs(np.interp(time, own.time, own.tilt) - model.tilt[: len(time)]) / scene.block.slenderness
     off = np.flatnonzero(apart > EARLY * SPREAD)
-    size = max(LEAST, restitution_error(scene, response, until=time[off[0]] if len(off) else np.inf))
+    until = time[off[0]] if len(off) else np.inf
+    error = (
+        _slipping_error(scene, response, reference, until)
+        if reference.sliding
+        else restitution_error(scene, response, until=until)
+    )
+    size = max(LEAST, error)
     if len(off) and off[0] > 0:
         short = scene.with_(duration=float(time[off[0]]))
         while size < MOST and sensitivity_horizon(short, perturbation=size).spread[-1] < apart[off[0]]:
@@ -127,6 +134,17 @@ def restitution_error(scene: Scene, response: Response, *, until: float = np.inf
         return 0.0
     errors = state_restitution(response)[: len(rates)] / e - 1
     return float(np.sqrt(np.sum((rates * errors) ** 2) / np.sum(rates**2)))
+
+
+def _slipping_error(scene: Scene, response: Response, reference: Response, until: float) -> float:
+    """As `restitution_error`, of a block that slides: against its matching impacts in the model, as it is not (7)."""
+    here, there = impacts_of(response), impacts_of(reference)
+    meant, partner = matched(scene, there, here, until)
+    (_, before, after), (_, model, left) = here[partner[partner >= 0]].T, meant[partner >= 0].T
+    if not len(before):
+        return 0.0
+    errors = after / before / (left / model) - 1
+    return float(np.sqrt(np.sum((before * errors) ** 2) / np.sum(before**2)))
 
 
 def solver_horizon(scene: Scene, response: Response, reference: Response) -> Horizon:

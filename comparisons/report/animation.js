@@ -1,5 +1,5 @@
 "use strict";
-// The scene in all solvers on one clock: blocks turn about the corner they rest on, bases move on their bearings.
+// The scene in all solvers on one clock: blocks turn about the corner they rest on and slide on their bases, which move on bearings.
 (() => {
   const stage = document.getElementById("stage");
   if (!stage) return;
@@ -16,9 +16,10 @@
       const svg = stage.querySelector(`svg[data-scene="${k}"]`);
       scene.tracks.forEach((track, which) => {
         const tilt = at(track.tilt, frame), x = track.x ? at(track.x, frame) : 0, b = scene.size[0];
-        svg.querySelector(`[data-track="${which}"]`).setAttribute("transform", `translate(${x.toFixed(4)} 0) rotate(${((tilt * 180) / Math.PI).toFixed(3)} ${tilt < 0 ? -b : b} 0)`);
+        const slip = track.slip ? at(track.slip, frame) : 0;
+        svg.querySelector(`[data-track="${which}"]`).setAttribute("transform", `translate(${(x + slip).toFixed(4)} 0) rotate(${((tilt * 180) / Math.PI).toFixed(3)} ${tilt < 0 ? -b : b} 0)`);
         if (which === 0 && scene.base) {
-          svg.querySelector(".moves").setAttribute("transform", `translate(${x.toFixed(4)} 0)`);
+          svg.querySelectorAll(".moves").forEach((one) => one.setAttribute("transform", `translate(${x.toFixed(4)} 0)`));
           svg.querySelectorAll(".shears").forEach((one) => one.setAttribute("transform", `translate(${one.dataset.at} .36) skewX(${((-Math.atan2(x, 0.2) * 180) / Math.PI).toFixed(3)})`));
         }
       });

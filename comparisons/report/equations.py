@@ -15,11 +15,13 @@ from ..showing.parts import number
 
 @dataclass(frozen=True)
 class Equation:
-    """number: as in the paper. tex: see `comparisons.showing.mathml`. words: what it says."""
+    """number: as in the paper, with a letter ours. tex: see `comparisons.showing.mathml`. words: what it says. modes:
+    it leads to the drawing of the modes."""
 
     number: str
     tex: str
     words: str
+    modes: bool = False
 
 
 EQUATIONS = (
@@ -59,6 +61,40 @@ EQUATIONS = (
         r"1 - x + x_j^- + 2 x_0",
         "The bracket while unloading, corrected. As the paper prints it the force jumps by 2 f₀ at every reversal.",
     ),
+    Equation(
+        "S1",
+        r"J_G \ddot{\phi} = -c H - n N",
+        "A block that may slide, by Newton and Euler: J_G about its centre of mass; H, N the force of its support. Its "
+        "mode closes (S1) to (S4): stick φ = u = 0; slide φ = 0 and |H| = μ N, against the slip; rock u and η at rest, "
+        "which gives (3) to (6); slide-rock η at rest and |H| = μ N; flight H = N = 0.",
+        modes=True,
+    ),
+    Equation(
+        "S2",
+        r"m (a_g + \ddot{x} + \ddot{u} + c \ddot{\phi} + n \dot{\phi}^2) = H",
+        "Horizontal: u is the slip of the corner along its support.",
+    ),
+    Equation(
+        "S3",
+        r"m (g + a_v + \ddot{\eta} + n \ddot{\phi} - c \dot{\phi}^2) = N",
+        "Vertical: η is the gap under the corner, a_v the ground's vertical acceleration.",
+    ),
+    Equation("S4", r"m_b (a_g + \ddot{x}) = -n_d f - H", "The base under it; on rigid ground x = 0."),
+    Equation(
+        "I1",
+        r"J_G (\dot{\phi}^+ - \dot{\phi}^-) = -c P - n Q",
+        "An impact, plastic, by the impulses P and Q of the support, horizontal and upward, with |P| ≤ μ Q. The first "
+        "of these that is admissible: the new corner sticks, which is (7) and (8) if it did not slip before; it slips; "
+        "both corners stay and stick; both stay and slip.",
+        modes=True,
+    ),
+    Equation(
+        "I2",
+        r"D^+ - D^- = P \left( \frac{1}{m} + \frac{1}{m_b} \right)",
+        "D: horizontal velocity of the centre of mass from the base; on rigid ground without 1/m_b.",
+    ),
+    Equation("I3", r"m (Y^+ - Y^-) = Q", "Y: its vertical velocity."),
+    Equation("I4", r"m_b (\dot{x}^+ - \dot{x}^-) = -P", "The base."),
 )
 
 GLOSSARY = {
@@ -71,6 +107,7 @@ GLOSSARY = {
     "isolation period": "2π times the root of mass over the bearings' stiffness",
     "lead-rubber bearing": "rubber with a lead core: stiff k_a at first and after each reversal, then k_b",
     "friction demand": "horizontal over normal force under the block: the friction needed not to slide",
+    "slip u": "displacement of the block along its support, where the scene gives a friction μ that is used up",
     "sensitivity horizon": "time after which a change of the scene by 10⁻⁴ visibly changes the motion; a solver’s "
     "own: a change as large as its errors",
     "analytic model": "the rocking equations solved directly from event to event; its compiled part is the kernel",
@@ -91,6 +128,8 @@ REFERENCES = (
     "whose equation numbers, table and figures are used here; what it prints is compared on a page of its own.",
     "G. W. Housner (1963), The behavior of inverted pendulum structures during earthquakes, Bulletin of the "
     "Seismological Society of America 53(2), 403–417.",
+    "H. W. Shenton (1996), Criteria for initiation of slide, rock, and slide-rock rigid-body modes, Journal of "
+    "Engineering Mechanics 122(7), 690–693.",
     "N. Makris, J. Zhang (2001), Rocking response of anchored blocks under pulse-type motions, Journal of Engineering "
     "Mechanics 127.",
 )

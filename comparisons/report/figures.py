@@ -9,10 +9,12 @@ from typing import Any
 import numpy as np
 
 from analytic.records import G
+from analytic.response import LEVEL
 
 from ..running.provenance import Result
 from ..showing.charts import Axis, Chart, figure
 from ..showing.parts import Figure, Row, number
+from ..showing.plots import mode_spans
 from .detail import environment
 from .histories import thinned
 
@@ -23,13 +25,18 @@ LEAST = 1e-9  # of a difference drawn
 
 
 def pairs(result: Result, name: str) -> Iterator[list[Chart]]:
-    """Of a scene tilt where the block moves, and base displacement where there is a base: all solvers over each other,
-    and how far the engines are from the analytic model.
+    """Of a scene tilt where the block lifts, slip where it slides, and base displacement where there is a base: all
+    solvers over each other, and how far the engines are from the analytic model.
     """
     scene = result.settings["scenes"][name]
     rows = drawn(result, name)
-    if any(row["outcome"] != "stands" for row in rows):
+    if any(row["outcome"] not in LEVEL for row in rows):
         yield _pair(result, name, rows, "tilt", "tilt φ/γ [-]", scene["block"]["slenderness"])
+    if slides(rows):
+        whole, *beside = _pair(result, name, rows, "slip", "slip on the support [m]", 1.0)
+        for row in rows:
+            _shade(whole, row)
+        yield [whole, *beside]
     if scene["base"] and rows:
         yield _pair(result, name, rows, "base_displacement", "base displacement x [m]", 1.0)
 
@@ -40,13 +47,34 @@ def drawn(result: Result, name: str) -> list[Row]:
     return [row for row in rows if f"{name}/{row['engine']}/time" in result.arrays]
 
 
+def slides(rows: Sequence[Row]) -> bool:
+    """Whether the block slides in one of these runs."""
+    return any((row.get("sliding") or {}).get("peak") for row in rows)
+
+
+def _shade(chart, row):
+    """Shade when the block of a run slides, if it tells."""
+    spans = [
+        (begin, end)
+        for begin, end, mode in mode_spans((row.get("sliding") or {}).get("modes") or (), row["end"]["time"])
+        if mode in ("slide", "slide-rock")
+    ]
+    low, high = chart.y.low, chart.y.high
+    for begin, end in spans:
+        chart.area([begin, end, end, begin], [low, low, high, high], "falls")
+    if spans:
+        chart.says += f" Shaded: the block slides in {row['engine']}."
+
+
 def _pair(result, name, rows, column, label, scale):
     scene = result.settings["scenes"][name]
     lines, apart = {}, {}
     for row in rows:
         key = f"{name}/{row['engine']}"
+        if f"{key}/{column}" not in result.arrays:
+            continue
         lines[row["engine"]] = _line(result, key, column, scale)
-        if f"{key}/apart/time" in result.arrays and row["engine"] != ANALYTIC:
+        if f"{key}/apart/{column}" in result.arrays and row["engine"] != ANALYTIC:
             apart[row["engine"]] = _line(result, f"{key}/apart", column, scale)
     end = max(float(time[-1]) for time, _ in lines.values())
     limit = 1.08 * (max(float(np.abs(values).max()) for _, values in lines.values()) or 1.0)
@@ -145,14 +173,15 @@ def ground_motion(result: Result) -> Figure:
 FRAMES = 25.0  # 1/s
 LONGEST = 2000  # frames; a longer run is shown in longer steps
 LYING = math.pi / 2
+PLATE = 0.4  # m, by which a base is drawn wider than the block and its slip
 
 
 def animation(result: Result) -> dict[str, Any] | None:
     """What is moved, JSON-ready; None where no run has a history.
 
     step [s], count of frames, still [s] (the frame to begin with), ground: acceleration [m/s2] at the frames; scenes:
-    name, size (half width and height [m]), base, limit of what is drawn [m], and tracks: who, tilt [rad] and, with a
-    base, x [m] at the frames, up to where the run ended.
+    name, size (half width and height [m]), base, its half width [m], limit of what is drawn [m], and tracks: who, tilt
+    [rad] and, with a base, x [m], and of a block that slides slip [m] at the frames, up to where the run ended.
     """
     names = [name for name in result.settings["scenes"] if f"{name}/{ANALYTIC}/time" in result.arrays]
     if not names:
@@ -177,32 +206,33 @@ def animation(result: Result) -> dict[str, Any] | None:
 
 def _scene(result, name, times):
     scene = result.settings["scenes"][name]
-    tracks = [
-        _track(result, f"{name}/{row['engine']}", times, row["engine"], scene["base"] is not None)
-        for row in result.rows
-        if row["scene"] == name and not row["failure"] and f"{name}/{row['engine']}/time" in result.arrays
-    ]
-    reach = max((abs(x) for track in tracks for x in track.get("x", ())), default=0.0)
+    rows = drawn(result, name)
+    moved = {"x": "base_displacement"} if scene["base"] else {}
+    moved |= {"slip": "slip"} if slides(rows) else {}
+    tracks = [_track(result, f"{name}/{row['engine']}", times, row["engine"], moved) for row in rows]
+    reach, slip = (max((abs(x) for track in tracks for x in track.get(way, ())), default=0.0) for way in ("x", "slip"))
     return {
         "name": scene["name"],
         "size": [round(scene["half_width"], 5), round(scene["half_height"], 5)],
         "base": scene["base"] is not None,
         "bearings": scene["bearings"] is not None,
-        "reach": round(reach, 3),
+        "slides": slip > 0,
+        "plate": round(scene["half_width"] + PLATE + slip, 3),
+        "reach": round(reach + slip, 3),
         "tracks": tracks,
     }
 
 
-def _track(result, key, times, who, base):
+def _track(result, key, times, who, moved):
     """A run at the frames up to its end; a block that overturned lies down from there on."""
     own = result.arrays[f"{key}/time"]
     kept = times[times <= own[-1] + 1e-9]
     tilt = np.clip(np.interp(kept, own, result.arrays[f"{key}/tilt"]), -LYING, LYING)
     track = {"who": who, "tilt": [round(float(value), 4) for value in tilt]}
-    if base:
-        track["x"] = [
-            round(float(value), 4) for value in np.interp(kept, own, result.arrays[f"{key}/base_displacement"])
-        ]
+    for name, column in moved.items():
+        if f"{key}/{column}" in result.arrays:
+            values = np.interp(kept, own, result.arrays[f"{key}/{column}"])
+            track[name] = [round(float(value), 4) for value in values]
     return track
 
 
@@ -213,4 +243,6 @@ def _still(scenes, step):
         if tilt.max(initial=0.0) > 1.0:
             return round(float(np.argmax(tilt > 0.5)) * step, 4)
     found = [np.abs(scene["tracks"][0].get("x", scene["tracks"][0]["tilt"])) for scene in scenes]
+    if not found[-1].any():
+        found = [np.abs(scene["tracks"][0].get("slip", scene["tracks"][0]["tilt"])) for scene in scenes]
     return round(float(np.argmax(found[-1])) * step, 4)

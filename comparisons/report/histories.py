@@ -25,7 +25,7 @@ MOST_SHOWN, PARTS = 20_000, 1_500
 
 @dataclass(frozen=True)
 class ToFile:
-    """Measure: everything, the history as a file in `folder`, an array for each column of `History`."""
+    """Measure: everything, the history as a file in `folder`, an array for each of its columns."""
 
     folder: str
 
@@ -33,7 +33,7 @@ class ToFile:
         content = (response.scene, response.engine, response.variant)
         name = hashlib.sha256(repr(content).encode()).hexdigest()[:16] + ".npz"
         data = io.BytesIO()
-        np.savez(data, **{column: getattr(response.history, column) for column in History.COLUMNS})
+        np.savez(data, **{column: getattr(response.history, column) for column in response.history.columns})
         write(Path(self.folder) / name, data.getbuffer())
         return {**response.to_json(), "history": name}
 
@@ -52,18 +52,19 @@ def _history(path):
             f"{path.parent.name}/{path.name}: missing; remove the folder {path.parent.name} and make the report again"
         )
     with np.load(path) as table:
-        return History(*(table[column] for column in History.COLUMNS))
+        return History(**table)
 
 
 def differences(history: History, reference: History) -> dict[str, np.ndarray]:
-    """{"apart/time", "apart/tilt", "apart/base_displacement": array}: history minus reference, thinned.
+    """{"apart/time", "apart/tilt", "apart/base_displacement": array}: history minus reference, thinned; and the slip's.
 
     At the reference's samples up to the end of the shorter one.
     """
     time = reference.time[reference.time <= history.time[-1]]
+    slip = ("slip",) if history.slip is not None and reference.slip is not None else ()
     apart = {
         column: np.interp(time, history.time, getattr(history, column)) - getattr(reference, column)[: len(time)]
-        for column in ("tilt", "base_displacement")
+        for column in ("tilt", "base_displacement", *slip)
     }
     shown = thinned(*apart.values())
     return {f"apart/{column}": values[shown] for column, values in {"time": time, **apart}.items()}

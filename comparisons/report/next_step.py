@@ -22,17 +22,20 @@ def needed_by(scene: Scene, motions: Sequence[Motion]) -> dict[str, float | None
 
     stroke : first one to try in a search for bearings [m]: their x_max, or `first_stroke`. stands, upright : width of
     a plate fixed to the block [m] with which it does not lift, or, where it overturns on a narrower one, does not.
+    friction : what it needs not to slide on a plate so wide, where the scene's is less.
     """
     if scene.start.tilt or scene.start.tilt_rate or not motions:  # it lifts however it stands
-        return {"stroke": None, "stands": None, "upright": None}
+        return {"stroke": None, "stands": None, "upright": None, "friction": None}
     stroke, height = first_stroke(scene, motions), 2 * scene.block.half_height
-    broad = scene.with_(block=on_plate(scene.block, BROAD * height))
+    broad = scene.with_(block=on_plate(scene.block, BROAD * height), friction=None)
     demand = max(found.friction_demand[0] for found in _runs([broad], motions))  # tan(gamma) at which it just lifts
-    stands = _up(height * demand) if math.tan(scene.block.slenderness) < demand < BROAD else None
+    lifts = min(demand, scene.friction or math.inf)  # with tan(gamma) above its friction a block at rest slides
+    stands = _up(height * lifts) if math.tan(scene.block.slenderness) < lifts < BROAD else None
     return {
         "stroke": stroke and ((scene.bearings and scene.bearings.x_max) or stroke),
         "stands": stands,
         "upright": stands and _upright(scene, motions, stands),
+        "friction": _up(demand) if scene.friction is not None and demand > scene.friction else None,
     }
 
 
@@ -85,10 +88,10 @@ def next_step(scene: Mapping[str, Any], needed: Mapping[str, float | None] | Non
         held = scene["base"] is None or scene["bearings"]
         ends = "It does not lift: there is nothing to do." if held else "On a base that nothing holds it does not lift."
         return margin, f"says how much it has to spare. {ends}"
-    sizes = _sizes(scene, needed)
+    sizes, rubs = _sizes(scene, needed), scene.get("friction")
     if needed["stroke"] is None:
-        cure = sizes or "widen, fix or lower it"
-        return margin, f"says what changes the outcome. No bearings are likely to keep it from lifting; {cure}."
+        does, cure = ("lifting", "widen, fix or lower it") if rubs is None else ("lifting or sliding", "fix it")
+        return margin, f"says what changes the outcome. No bearings are likely to keep it from {does}; {sizes or cure}."
     base, given = "", "The stroke [m] is an example: give the room that the base has."
     if scene["base"] is None:
         mass = float(f"{scene['block']['mass']:.3g}")
@@ -96,17 +99,22 @@ def next_step(scene: Mapping[str, Any], needed: Mapping[str, float | None] | Non
         given = "Both numbers are examples: give the mass of the base it would stand on [kg], and its room to move [m]."
     elif scene["bearings"] and scene["bearings"]["x_max"]:
         given = "The stroke is the x_max of its bearings."
-    words = f"looks for bearings on which it does not lift. {given}{f' Or {sizes}.' if sizes else ''}"
+    aim = "does not lift" if rubs is None else "neither lifts nor slides"
+    words = f"looks for bearings on which it {aim}. {given}{f' Or {sizes}.' if sizes else ''}"
     return f"rocking design {call}{base} --stroke {needed['stroke']:g}", words
 
 
 def _sizes(scene, needed):
-    """On how wide a plate it does not overturn, and does not lift."""
+    """On how wide a plate it does not overturn, and does not lift; and with what friction it does not slide."""
+    held = ""
+    if needed.get("friction"):
+        limit, mu = number(needed["friction"], 3), number(scene["friction"], 3)
+        held = f"; it needs a friction of {limit} (now {mu}) not to slide"
     if needed["stands"] is None:
-        return ""
+        return held.removeprefix("; ")
     now, stands = number(2 * scene["half_width"], 3), number(needed["stands"], 3)
     words = "widen, fix or lower it: fixed to a plate"
     if needed["upright"] is None:
-        return f"{words} {stands} m wide (now {now} m) it does not lift"
+        return f"{words} {stands} m wide (now {now} m) it does not lift{held}"
     upright = number(needed["upright"], 3)
-    return f"{words} {upright} m wide (now {now} m) it does not overturn, to one of {stands} m it does not lift"
+    return f"{words} {upright} m wide (now {now} m) it does not overturn, to one of {stands} m it does not lift{held}"

@@ -15,7 +15,7 @@ from scipy.integrate import trapezoid
 
 from analytic import Base, Block, Scene, Start, load_scene
 from analytic.caryatid import RADIUS
-from analytic.response import History, Response
+from analytic.response import LEVEL, Response
 from analytic.rocking import restitution
 from engines import available_engines, get_engine
 
@@ -95,7 +95,7 @@ def plan(
             with spinner(f"{scene.name}: the analytic model") as tell:
                 more["statues"][name] = statue_of(scene, motions.get(name, {}), partial(_tell, tell, scene.name))
     found = scenes_computed(Path(histories), rows, scenes, **more)
-    rocking = [row.case.scene for row in rows if row.case.solver == "analytic" and row.values["outcome"] != "stands"]
+    rocking = [row.case.scene for row in rows if row.case.solver == "analytic" and row.values["outcome"] not in LEVEL]
     if not (own and rocking):
         return found
     yield found
@@ -222,6 +222,7 @@ def scenes_computed(folder: Path, rows: Sequence[Row], scenes: Mapping[str, Scen
             "block": scene.block.model_dump(),
             "base": scene.base and scene.base.model_dump(),
             "bearings": scene.bearings and scene.bearings.model_dump(),
+            "friction": scene.friction,
             "half_width": scene.block.half_width,
             "half_height": scene.block.half_height,
             "rocking_frequency": scene.rocking_frequency,
@@ -271,8 +272,9 @@ def _scene_entry(scene, row, reference, horizon, folder):
         cpu_per_second=row.cost["cpu_seconds"] / response.end.time,
         bearing_work=float(trapezoid(history.bearing_force, history.base_displacement)),
     )
-    shown = thinned(history.tilt, history.base_displacement, history.bearing_force)
-    drawn = {column: getattr(history, column)[shown] for column in History.COLUMNS}
+    slip = () if history.slip is None else (history.slip,)
+    shown = thinned(history.tilt, history.base_displacement, history.bearing_force, *slip)
+    drawn = {column: getattr(history, column)[shown] for column in history.columns}
     if reference is not None:
         if row.case.solver != "analytic":
             own = solver_horizon(scene, response, reference)

@@ -71,11 +71,11 @@ def outcome_section(result: Result) -> Section:
     return Section(
         "Outcomes",
         (
-            f"Each solver on the same scenes under {motion}. A block that never lifts “stands”, one that lifts "
-            "and stays upright “rocks”; it “overturns” at |φ| = 90°. |H|/N, horizontal over normal force under "
-            "the block, is the friction coefficient needed not to slide; where the normal force N falls to 0 the "
-            "block would jump. The model allows neither. Both are taken over the run, but for the fall of a "
-            "block that overturns.",
+            f"Each solver on the same scenes under {motion}. A block that never lifts “stands”, or “slides” on its "
+            "support; one that lifts and stays upright “rocks”; it “overturns” at |φ| = 90°. |H|/N, horizontal over "
+            "normal force under the block, is the friction coefficient needed not to slide; where the normal force N "
+            "falls to 0 the block jumps. In the model it does both only where the scene gives a friction. Both are "
+            "taken over the run, but for the fall of a block that overturns.",
             "A run goes on until its outcome is decided: until nothing that may still come can make the block "
             "overturn or keep it from it. One that ended earlier is “undecided”, with what it was so far. A "
             "warning names what lies outside what the model describes, or is odd about the record; do not rely on "
@@ -110,6 +110,7 @@ PARAMETERS: tuple[tuple[str, Callable[[Mapping[str, Any]], Any]], ...] = (
     ("k_a of each [N/m]", lambda scene: (scene["bearings"] or {}).get("ka")),
     ("k_b of each [N/m]", lambda scene: (scene["bearings"] or {}).get("kb")),
     ("α [-]", lambda scene: (scene["bearings"] or {}).get("alpha")),
+    ("friction of the block on its support [-]", lambda scene: scene.get("friction")),
     ("duration [s]", lambda scene: scene["duration"] or "until decided"),
     ("ground motion", lambda scene: scene.get("motion")),
 )
@@ -156,12 +157,25 @@ def _demand(row):
     return "∞ (N ≤ 0)" if demand is None and row.get("min_normal_ratio", 1) <= 0 else demand
 
 
+def _slip(head: str, key: str) -> Column:
+    """A number of a block that slides."""
+    return Column(head, lambda row: (row.get("sliding") or {}).get(key), 4)
+
+
+SLIP = (
+    _slip("largest slip [m]", "peak"),
+    _slip("slip at the end [m]", "end"),
+    _slip("way slid, to and fro [m]", "path"),
+    _slip("work of friction [J]", "work"),
+)
+
+
 def _outcomes(result, name):
     """A row for each quantity, a column for each solver."""
     rows = [row for row in result.rows if row["scene"] == name]
     scene = result.settings["scenes"][name]
     span = "until decided" if scene["duration"] is None else f"{scene['duration']:g} s at most"
-    quantities = [*OUTCOMES, *(BASE_OUTCOMES if scene["base"] else ())]
+    quantities = [*OUTCOMES, *(BASE_OUTCOMES if scene["base"] else ()), *(SLIP if figures.slides(rows) else ())]
     return across(f"{scene['name']}, {span}", rows, Column("quantity", "engine"), *quantities)
 
 
@@ -214,16 +228,23 @@ AGREEMENT = (
 )
 
 
+def _peak_slip(row):
+    return (row.get("sliding") or {}).get("peak")
+
+
 def _agreement(result, name):
     """What each engine's run differs by from the analytic model: a row for each measure, a column for each engine."""
     rows = [row for row in result.rows if row["scene"] == name and row["engine"] != "analytic" and "agreement" in row]
     if not rows:
         return ()
     scene, measures = result.settings["scenes"][name], [*AGREEMENT]
+    model = next(row for row in result.rows if row["scene"] == name and row["engine"] == "analytic")
+    if slip := (model.get("sliding") or {}).get("peak"):
+        measures.append(Column("largest slip", lambda row: _peak_slip(row) and _peak_slip(row) / slip - 1, 2, True))
     if scene["base"]:
         measures.append(_apart("peak base displacement", "peak_displacement_error", percent=True))
     if scene["bearings"]:
-        work = next(row["bearing_work"] for row in result.rows if row["scene"] == name and row["engine"] == "analytic")
+        work = model["bearing_work"]
         error = Column("work of the bearings", lambda row: row["bearing_work"] / work - 1 if work else None, 2, True)
         measures.append(error)
     return (across(f"{scene['name']}: engine minus analytic model", rows, Column("difference", "engine"), *measures),)
@@ -289,7 +310,15 @@ def earthquake(result: Result) -> Section:
             "the same for all: after it a change of the scene by 10⁻⁴ visibly changes the motion.",
         ),
         (_table(result), told) if warnings else (_table(result),),
-        (figure(charts, CAPTION, [row["engine"] for row in result.rows]),) if charts else (),
+        (
+            figure(
+                charts,
+                f"{CAPTION}{SHADED if figures.slides(result.rows) else ''}",
+                [row["engine"] for row in result.rows],
+            ),
+        )
+        if charts
+        else (),
         evidence=failures(result),
         measured=(
             "Distance of tilt graphs (Hausdorff): how far a point of one can lie from the other, time in units of "
@@ -313,6 +342,7 @@ def _table(result):
         Column("overturns at [s]", lambda row: row.get("overturning_time"), 5),
         Column("peak |φ|/γ [-]", lambda row: row.get("peak_tilt_ratio"), 3),
         Column("peak x [m]", lambda row: row.get("peak_base_displacement"), 4),
+        *([_slip("largest slip [m]", "peak")] if figures.slides(result.rows) else ()),
         Column("its error", agreement("peak_displacement_error"), percent=True),
         Column("distance of tilt graphs [-]", agreement("graph_distance")),
         Column("horizon [s]", agreement("until"), 3),
@@ -320,6 +350,7 @@ def _table(result):
     )
 
 
+SHADED = " Shaded: the block slides in the analytic model."
 MOST_WARNINGS = 3  # of a scene, at the top of the page
 
 

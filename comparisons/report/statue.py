@@ -28,7 +28,7 @@ WORDS = {
     "overturns": "overturns",
     "failed": "leaves the model",
 }
-STATES = {"tilt": f"Tilt above {TILT:g} γ", "stroke": "Base beyond x_max"}  # beside the outcome
+STATES = {"slides": "Sliding", "tilt": f"Tilt above {TILT:g} γ", "stroke": "Base beyond x_max"}  # beside the outcome
 
 
 @dataclass(frozen=True)
@@ -105,6 +105,7 @@ def _lifts_or_goes_too_far(scene, found, rows):
 def _figures(scene):
     response = simulate(scene, history=False)
     warnings = (*about_record(scene.motion), *response.warnings)
+    slid = response.sliding if response.sliding and response.sliding.peak else None
     return {
         "outcome": response.outcome,
         "decided": response.decided,
@@ -117,6 +118,8 @@ def _figures(scene):
         "demand": response.friction_demand,
         "friction": scene.friction,
         "normal": response.min_normal_ratio,
+        "slip": slid and slid.peak,
+        "slip_end": slid and slid.end,
         "warnings": list(dict.fromkeys(str(warning) for warning in warnings)),
     }
 
@@ -129,6 +132,7 @@ def _near(scene, changes, found):
             "outcome": str(found.names[at]),
             "tilt": float(found.peak_tilt[at]) / scene.block.slenderness,
             "stroke": float(found.peak_base_displacement[at]),
+            "slip": float(found.peak_slip[at]),
         }
         for at in (0, len(changes) // 2, len(changes) - 1)
     ]
@@ -137,6 +141,7 @@ def _near(scene, changes, found):
         "outcome": ", ".join(dict.fromkeys(found.names.tolist())),
         "tilt": float(found.peak_tilt.max()) / scene.block.slenderness,
         "stroke": float(found.peak_base_displacement.max()),
+        "slip": float(found.peak_slip.max()),
     }
     return [*rows, worst]
 
@@ -152,6 +157,7 @@ def _under(scene, record, motions):
         "overturns": int(found.overturns.sum()),
         "tilt": float(found.peak_tilt.max()) / scene.block.slenderness,
         "stroke": float(found.peak_base_displacement.max()),
+        "slip": float(found.peak_slip.max()),
     }
 
 
@@ -193,7 +199,7 @@ def _worst(found, scene):
 
 def _sentences(found):
     """(heading, sentence) of what the model says beyond the scene's own run."""
-    sentences = []
+    sentences = _slid(found["own"])
     if "free" in found:
         sentences.append(("Without isolation", f"Free-standing, the block {WORDS[found['free']['outcome']]}."))
     sentences += _nearest(found["margins"])
@@ -205,6 +211,21 @@ def _sentences(found):
         words = f"The block {odds(rows, LIFTED, 'lifts')}, and {odds(rows, LIFTED[1:], 'overturns')}."
         sentences.append(("Records", words))
     return sentences
+
+
+def _slid(own):
+    """How far the block slides on its support, if it does."""
+    if not own.get("slip"):
+        return []
+    far, end = number(own["slip"], 3), number(abs(own["slip_end"]), 3)
+    if own["outcome"] == "overturns":
+        return [("Slip", f"It slides by up to {far} m before it lies, the last of it as it falls.")]
+    return [("Slip", f"It slides by up to {far} m, and ends {end} m from where it stood.")]
+
+
+def _slip(rows, head):
+    """The column of the slip [m], none where no block of these rows slides."""
+    return [Column(head, "slip", 3)] if any(row.get("slip") for row in rows) else []
 
 
 def _nearest(found):
@@ -259,6 +280,7 @@ def _main(found):
         Column("peak ground acceleration [g]", lambda one: one["pga"] and one["pga"] / one["gravity"], 3),
         Column("uplift acceleration g tan γ [g]", lambda one: one["uplift"] / one["gravity"], 3),
         *([sway] if found["own"]["stroke"] is not None else []),
+        *_slip(columns, "largest slip on the support [m]"),
         Column("friction demand, of the coefficient [-]", lambda one: share(one["demand"], one["friction"])),
         Column("least normal force N/(m g) [-]", "normal", 3),
     )
@@ -278,6 +300,7 @@ def _near_table(near, scene):
         Column("outcome", "outcome"),
         Column("peak tilt over slenderness [-]", lambda one: _tilt(one["outcome"], one["tilt"])),
         *([Column("base displacement [m]", "stroke", 3)] if scene["base"] else []),
+        *_slip(near, "slip [m]"),
     )
 
 
@@ -292,4 +315,5 @@ def _motion_table(motions, scene):
         Column("overturns", "overturns"),
         Column("largest tilt over slenderness [-]", lambda one: _tilt(one["outcome"], one["tilt"])),
         *([Column("largest base displacement [m]", "stroke", 3)] if scene["base"] else []),
+        *_slip(motions, "largest slip [m]"),
     )

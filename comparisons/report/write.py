@@ -17,7 +17,7 @@ from engines.statue_range import RANGE, in_words
 from ..running.age import age
 from ..running.files import write_all
 from ..running.provenance import PACKAGES, RESULTS, read_result
-from ..showing import diagrams
+from ..showing import diagrams, modes
 from ..showing.parts import Section, Table
 from ..showing.wording import TRUSTED, USABLE
 from . import equations
@@ -55,6 +55,7 @@ SHORT = {
     "fragility": "Many earthquakes",
     "sensitivity": "What matters more",
     "speed-error": "Cost against error",
+    "sliding": "Sliding",
     "stability": "Hard cases",
     "mistakes": "What a mistake costs",
 }
@@ -109,6 +110,7 @@ def write_page(
             equations=equations.EQUATIONS,
             drawings=[diagrams.rocking(), diagrams.impact(), diagrams.isolated()],
             frames=equations.frames(),
+            modes=(modes.modes(), modes.CAPTION),
             glossary=equations.GLOSSARY,
             references=equations.REFERENCES,
             provenance=_provenance(scenes, block),
@@ -184,7 +186,8 @@ def _stage(scenes: Result) -> Mapping[str, Any] | None:
         falls = any(abs(tilt) > 1.0 for track in scene["tracks"] for tilt in track["tilt"])
         scene["width"] = 2 * (max(b + 2 * h if falls else 0.0, b + 0.5) + scene["reach"] + 0.15)
         scene["poses"] = [_pose(track, frame, b) for track in scene["tracks"]]
-        scene["skew"] = round(-math.degrees(math.atan2(scene["poses"][0][0], 0.2)), 3)  # of a bearing .2 m high
+        scene["moved"] = round(_at(scene["tracks"][0], "x", frame), 4)
+        scene["skew"] = round(-math.degrees(math.atan2(scene["moved"], 0.2)), 3)  # of a bearing .2 m high
     peak = max((abs(value) for value in stage["ground"]), default=0.0) or 1.0
     path = "M" + "L".join(f"{k} {-value / peak:.3f}" for k, value in enumerate(stage["ground"]))
     return {**stage, "data": Markup(data), "path": path, "at": frame}
@@ -192,9 +195,13 @@ def _stage(scenes: Result) -> Mapping[str, Any] | None:
 
 def _pose(track, frame, b):
     """(displacement [m], angle [degrees], corner [m]) of a block at a frame."""
-    tilt = track["tilt"][min(frame, len(track["tilt"]) - 1)]
-    x = track["x"][min(frame, len(track["x"]) - 1)] if "x" in track else 0.0
+    tilt, x = _at(track, "tilt", frame), _at(track, "x", frame) + _at(track, "slip", frame)
     return round(x, 4), round(math.degrees(tilt), 3), -b if tilt < 0 else b
+
+
+def _at(track, name, frame):
+    """A number of a run at a frame, or at its end; 0 where it has none of that name."""
+    return track[name][min(frame, len(track[name]) - 1)] if name in track else 0.0
 
 
 def _contents(scenes: Result, stored: list[Stored]) -> list[Part]:
@@ -202,8 +209,9 @@ def _contents(scenes: Result, stored: list[Stored]) -> list[Part]:
     setting = Section(
         "The scene and its equations: a block that tips about its corners, and a base that gives",
         (
-            "The block is rigid, planar and does not slide; each impact is over at once. Its base slides on bearings "
-            "whose force depends on their last reversal. The numbers are those of the paper’s equations.",
+            "The block is rigid and planar; each impact is over at once. It slides where a scene gives a friction that "
+            "is used up, equations (S) and (I), else not. Its base moves on bearings whose force depends on their last "
+            "reversal. Plain numbers are those of the paper’s equations.",
         ),
     )
     parts = [Part("equations", "Scene and equations", setting)]

@@ -136,11 +136,16 @@ class BearingProposal(Part):
     lifts: int = Field(description="motions under which the block lifts")
     uplift: float = Field(description="acceleration at the block's foot over that of uplift; at least 1 where it lifts")
     tilt: float = Field(description="peak tilt over the slenderness")
+    slides: int = Field(default=0, description="motions under which the block slides")
+    friction: float | None = Field(
+        default=None, description="friction demand over the scene's friction, if it gives one"
+    )
     worst: str = Field(description="motion of the largest displacement")
 
 
 class BearingSearch(Form):
-    """Which bearings keep a scene's block from lifting (or its tilt within a limit) and its base within a stroke.
+    """Which bearings keep a scene's block from lifting (or its tilt within a limit) and, where the scene gives a
+    friction, from sliding, and its base within a stroke.
 
     holds: a row for each damping, a column for each period [s]. chosen: "least-stroke" and "softest", none where
     nothing holds."""

@@ -133,7 +133,10 @@ class _Values(Form):
     comparable: str = Field(description=COMPARABLE)
     failure: Failure | None
     energy: Energy | None
-    sliding: Sliding | None = Field(default=None, description="where a friction is given and used up")
+    sliding: Sliding | None = Field(
+        default=None,
+        description="where the scene gives a friction that is used up; all 0 of an engine that does not slip",
+    )
 
 
 class Run(_Values):

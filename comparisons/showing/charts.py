@@ -180,11 +180,12 @@ class Chart:
         self.over.append(f"{_group(who, grey, tone, look)}{''.join(marks)}</g>")
 
     def reach(self, xs: Sequence[float], ys: Sequence[float], lows: Sequence[float], highs: Sequence[float],
-              who: str = "", *, along: str = "y", grey: bool = False, tone: str = "") -> None:  # fmt: skip
-        """Intervals from `lows` to `highs` along an axis."""
+              who: str = "", *, along: str = "y", grey: bool = False, tone: str = "", look: Look | None = None
+              ) -> None:  # fmt: skip
+        """Intervals from `lows` to `highs` along an axis; look: of one curve of several."""
         begins, ends = (self.at(xs, one) if along == "y" else self.at(one, ys) for one in (lows, highs))
         path = "".join(f"M{a[0]:.1f} {a[1]:.1f}L{b[0]:.1f} {b[1]:.1f}" for a, b in zip(begins, ends, strict=True))
-        self.parts.append(f'{_group(who, grey, tone)}<path class="reach" d="{path}"/></g>')
+        self.parts.append(f'{_group(who, grey, tone, look)}<path class="reach" d="{path}"/></g>')
 
     def _free(self, x, y):
         """The x near it where a mark covers no other one."""

@@ -16,6 +16,7 @@ AXES = {
     "restitution": "error of restitution, rms, worst scene [-]",
     "tilt": "error of tilt / slenderness, worst [-]",
     "displacement": "error of displacement / its peak, worst [-]",
+    "slip": "error of slip / its peak, worst [-]",
     "outcome": "share of neighbours with another outcome [-]",
 }
 ZERO = 1e-12  # an error of 0 is drawn here

@@ -232,10 +232,10 @@ def print_bearings(
 ) -> None:
     """Print the bearings named, a column each, or how near the best ones come where none hold."""
     assert scene.base is not None  # the search asks for one
-    name, wanted = readable(scene.name, TITLE_CHARACTERS), _wanted(stroke, tilt)
+    name, wanted = readable(scene.name, TITLE_CHARACTERS), _wanted(scene, stroke, tilt)
     echo(f"{name}: {wanted}; base: {scene.base.mass:g} kg; motions: {motions}", wrap=True)
     if not chosen:
-        return echo(nothing_holds(scan, stroke), wrap=True)
+        return echo(nothing_holds(scene, scan, stroke), wrap=True)
     if len({(one["period"], one["damping"]) for one in chosen.values()}) == 1:
         chosen = {" and ".join(chosen): next(iter(chosen.values()))}
     rows = {
@@ -246,6 +246,7 @@ def print_bearings(
         "alpha": "{bearings.alpha:.6g}",
         "base displacement, worst motion [m]": "{stroke:.4g}",
         "acceleration over that of uplift": "{uplift:.3g}",
+        **({} if scene.friction is None else {"friction demand over the friction": "{friction:.3g}"}),
         "peak tilt / slenderness": "{tilt:.3g}",
     }
     cells = [[label, *(form.format(**one) for one in chosen.values())] for label, form in rows.items()]
@@ -256,15 +257,22 @@ def print_bearings(
     )
 
 
-def nothing_holds(scan: BearingScan, stroke: float) -> str:
-    """That no bearings hold, and which come nearest."""
+def nothing_holds(scene: Scene, scan: BearingScan, stroke: float) -> str:
+    """That no bearings hold, and which come nearest; and what to change."""
     period, damping = scan.nearest
     row, column = np.abs(scan.dampings - damping).argmin(), np.abs(scan.periods - period).argmin()
     return (
         f"no bearings {_scanned(scan)} hold. Nearest: {period:.3g} s with {damping:.3g}, at "
         f"{scan.demand[row, column]:.3g} times a limit, the base moving {scan.stroke[row, column]:.3g} m of {stroke:g}."
-        " Allow more stroke, or --tilt; or widen, fix or lower the block."
+        f" Allow more stroke{_or_tilt(scene)}; or widen, fix or lower the block."
     )
+
+
+def _or_tilt(scene):
+    """What else may be allowed: no tilt helps a block that slides before it lifts."""
+    if scene.friction is None or scene.friction >= math.tan(scene.block.slenderness):
+        return ", or --tilt"
+    return f", or hold the block against sliding (its friction {scene.friction:g} is below tan γ, at which it lifts)"
 
 
 def _scanned(scan):
@@ -290,13 +298,16 @@ def draw_bearings(scene: Scene, scan: BearingScan, stroke: float, tilt: float) -
     axis.set_xticks(ticks, [f"{tick:g}" for tick in ticks], minor=False)
     axis.minorticks_off()
     axis.set(xlabel=f"secant period at {stroke:g} m [s]", ylabel=f"equivalent damping at {stroke:g} m [%]")
-    axis.set_title(f"{readable(scene.name, TITLE_CHARACTERS)}: {_wanted(stroke, tilt)}", loc="left", fontsize="medium")
+    axis.set_title(
+        f"{readable(scene.name, TITLE_CHARACTERS)}: {_wanted(scene, stroke, tilt)}", loc="left", fontsize="medium"
+    )
     handles = [Patch(facecolor=HELD, alpha=0.35, label="hold"), *axis.get_legend_handles_labels()[0]]
     lines_label = Patch(facecolor="none", edgecolor="0.5", label="times the nearer limit")
     figure.legend(handles=[*handles, lines_label], loc="outside lower center", ncols=4, frameon=False, fontsize="small")
     return figure
 
 
-def _wanted(stroke, tilt):
+def _wanted(scene, stroke, tilt):
     limit = "no uplift" if tilt == 0 else f"tilt up to {tilt:g} of the slenderness"
+    limit += "" if scene.friction is None else f" and no slip at friction {scene.friction:g}"
     return f"bearings for {limit} within {stroke:g} m"

@@ -5,7 +5,7 @@ from html import escape
 
 SYMBOLS = {
     "alpha": "α", "gamma": "γ", "delta": "δ", "Delta": "Δ", "xi": "ξ", "pi": "π", "phi": "φ", "omega": "ω",
-    "varphi": "φ", "lambda": "λ",
+    "varphi": "φ", "lambda": "λ", "mu": "μ", "eta": "η", "sigma": "σ",
 }  # fmt: skip
 OPERATORS = {
     "cdot": "·", "times": "×", "le": "≤", "ge": "≥", "ne": "≠", "approx": "≈", "pm": "±", "to": "→", "int": "∫",

@@ -5,7 +5,8 @@ Colours are those of Okabe and Ito, told apart by colour-blind readers.
 
 import io
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -26,6 +27,12 @@ REFERENCE: tuple[str, str | tuple[float, tuple[float, ...]], float] = ("#000000"
 DOTS, LINES = 1.8, 1.4
 TITLE_CHARACTERS = 100
 TILT_RANGE = (0.05, 2.0)  # least and greatest limit of a tilt axis, over slenderness
+SLIDES: tuple[str, dict[str, Any]] = ("slides", {"color": "#E69F00", "alpha": 0.25, "linewidth": 0})
+SHADES = {  # of modes
+    "slide": SLIDES,
+    "slide-rock": SLIDES,
+    "flight": ("flies", {"facecolor": "none", "edgecolor": "0.5", "hatch": "///", "linewidth": 0}),
+}
 SPARE: tuple[str, str | tuple[float, tuple[float, ...]], float] = ("#777777", (0, (5, 1)), 1.3)
 OTHERS = {"scipy": ("--", "D"), "time-stepping": (":", "v")}  # solvers that are no engine: dashes and marker in charts
 
@@ -45,9 +52,10 @@ def style(solver: str) -> dict[str, Any]:
 
 
 def draw_histories(scene: Scene, responses: Sequence[Response], horizon: float | None = None) -> Figure:
-    """Ground motion, tilt, base displacement and hysteresis loop of one or more responses, as far as they exist.
+    """Ground motion, tilt, slip, base displacement and hysteresis loop of one or more responses, as far as they exist.
 
-    Each response needs its history. horizon [s], if any, is where point-wise comparison ends.
+    Where the block slides, and where it flies, is shaded if a response tells its modes. Each response needs its
+    history. horizon [s], if any, is where point-wise comparison ends.
     Returns a matplotlib Figure.
 
     Examples
@@ -58,7 +66,9 @@ def draw_histories(scene: Scene, responses: Sequence[Response], horizon: float |
     >>> len(figure.axes)  # ground motion and tilt
     2
     """
-    rows = ["ground"] * (scene.motion is not None) + ["tilt"] + ["displacement"] * (scene.base is not None)
+    slides = any(response.sliding and response.sliding.peak for response in responses)
+    rows = ["ground"] * (scene.motion is not None) + ["tilt"] + ["slip"] * slides
+    rows += ["displacement"] * (scene.base is not None)
     loop = scene.bearings is not None
     figure = Figure(figsize=(11 if loop else 8, 0.6 + 2.1 * len(rows)), layout="constrained")
     mosaic = [[row, "loop"] if loop else [row] for row in rows]
@@ -75,35 +85,63 @@ def draw_histories(scene: Scene, responses: Sequence[Response], horizon: float |
             line["linewidth"] = 1.2  # nothing to lie underneath
         label = f"{response.engine}, {response.variant}: {response.outcome_text}"
         axes["tilt"].plot(history.time, history.tilt / scene.block.slenderness, label=label, **line)
+        if slides and history.slip is not None:
+            axes["slip"].plot(history.time, history.slip, label=label, **line)
         if "displacement" in axes:
             axes["displacement"].plot(history.time, history.base_displacement, label=label, **line)
         if loop:
             axes["loop"].plot(history.base_displacement, history.bearing_force / 1e3, label=label, **line)
     tilt = axes["tilt"]
-    tilt.set_ylabel("tilt / slenderness [-]")
-    if max(response.peak_tilt_ratio for response in responses) > 0.8:
-        for level in (-1, 1):
-            tilt.axhline(
-                level,
-                color="0.6",
-                linewidth=0.8,
-                linestyle=(0, (4, 4)),
-                zorder=0,
-                label="unstable point" if level > 0 else None,
-            )
+    _draw_unstable(tilt, responses)
     if horizon is not None:
         for row in set(rows) - {"ground"}:
             axes[row].axvspan(horizon, end, color="0.93", zorder=-1, label="beyond the sensitivity horizon")
     low, high = tilt.get_ylim()  # neither a tilt of 1e-6 nor an overturned block sets the scale
     tilt.set_ylim(min(max(low, -TILT_RANGE[1]), -TILT_RANGE[0]), max(min(high, TILT_RANGE[1]), TILT_RANGE[0]))
     tilt.legend(fontsize="small", loc="best")
-    if "displacement" in axes:
-        axes["displacement"].set_ylabel("base displacement [m]")
+    if slides:
+        _draw_modes(axes["slip"], responses)
+    labels = {
+        "tilt": "tilt / slenderness [-]",
+        "slip": "slip of the block\non its support [m]",
+        "displacement": "base displacement [m]",
+    }
+    for row in labels.keys() & axes.keys():
+        axes[row].set_ylabel(labels[row])
     if loop:
         axes["loop"].set(xlabel="base displacement [m]", ylabel="force of all bearings [kN]")
     axes[rows[-1]].set_xlabel("time [s]")
     figure.suptitle(readable(scene.name, TITLE_CHARACTERS), parse_math=False)
     return figure
+
+
+def _draw_unstable(axis, responses):
+    """The unstable point on either side, where a block comes near it."""
+    dashed = {"color": "0.6", "linewidth": 0.8, "linestyle": (0, (4, 4)), "zorder": 0}
+    if max(response.peak_tilt_ratio for response in responses) > 0.8:
+        axis.axhline(-1, **dashed)
+        axis.axhline(1, label="unstable point", **dashed)
+
+
+def _draw_modes(axis, responses):
+    """Shade the spans of the first response that tells its modes in which the block slides, or flies."""
+    told = next((response for response in responses if response.sliding and response.sliding.modes), None)
+    labelled = set()
+    for begin, end, mode in mode_spans(told.sliding.modes, told.end.time) if told else ():
+        words, look = SHADES.get(mode, (None, {}))
+        if words:
+            axis.axvspan(begin, end, zorder=-1, label=None if words in labelled else words, **look)
+            labelled.add(words)
+    if labelled:
+        axis.legend(
+            *(part[-len(labelled) :] for part in axis.get_legend_handles_labels()), fontsize="small", loc="best"
+        )
+
+
+def mode_spans(modes: Sequence[tuple[float, str]], end: float) -> Iterator[tuple[float, float, str]]:
+    """(begin [s], end [s], mode) of the modes of a block that slides, in a run up to `end`."""
+    for (begin, mode), (until, _) in pairwise([*modes, (end, "")]):
+        yield begin, until, mode
 
 
 def _draw_ground(axis, motion, end):

@@ -116,6 +116,7 @@ def digits(value: float | None, form: str = ".4g") -> str:
 
 
 TITLE_CHARACTERS = 100
+MOST_MODES = 8  # changes of the contact that are told
 MOTION = "motion"  # the kind of warning that is of the scene, not of a solver
 
 
@@ -146,7 +147,23 @@ def summary(scene: Scene, response: Response) -> Grid:
 def _slip(response):
     """Rows of a block that slides on its support."""
     slid = response.sliding
-    return {"largest slip [m]": digits(slid.peak), "slip at the end [m]": digits(slid.end)} if slid else {}
+    if not (slid and slid.peak):
+        return {}
+    return {
+        "largest slip [m]": digits(slid.peak),
+        "slip at the end [m]": digits(slid.end),
+        "way slid, to and fro [m]": digits(slid.path),
+        **({} if math.isnan(slid.work) else {"work of friction [J]": digits(slid.work)}),
+        **({"contact": mode_words(slid.modes)} if slid.modes else {}),
+    }
+
+
+def mode_words(modes: Sequence[tuple[float, str]], most: int = MOST_MODES) -> str:
+    """Modes of contact and from when on, up to so many; impacts do not end one: "stick, from 0.0614 s rock"."""
+    changes = [one for k, one in enumerate(modes) if k == 0 or one[1] != modes[k - 1][1]]
+    words = [f"from {time:.4g} s {mode}" if time else mode for time, mode in changes[:most]]
+    left = len(changes) - most
+    return ", ".join([*words, f"{left} more changes (--json)"] if left > 0 else words)
 
 
 def named_values(rows: Mapping[str, str], title: str) -> Grid:
@@ -158,11 +175,14 @@ def named_values(rows: Mapping[str, str], title: str) -> Grid:
 def comparison(scene: Scene, responses: Sequence[Response], horizons: Mapping[str, Horizon]) -> Grid:
     """Responses of several solvers side by side, the first being the reference; horizons: {solver: its `Horizon`}."""
     limit = _limit(horizons) if horizons else "No sensitivity horizon known."
+    slides = any(response.sliding and response.sliding.peak for response in responses)
+    slip = "; slip: largest slip of the block" if slides else ""
     caption = (
         "over: time of overturning; tilt: peak tilt over slenderness;\n"
-        "base: peak base displacement; d: difference from the first row.\n" + limit
+        f"base: peak base displacement{slip}; d: difference from the first row.\n" + limit
     )
-    heads = "solver", "outcome", "over\n[s]", "tilt\n[-]", "d\n[-]", "base\n[m]", "d\n[%]", "im-\npacts", "CPU\n[ms]"
+    heads = ["solver", "outcome", "over\n[s]", "tilt\n[-]", "d\n[-]", "base\n[m]", "d\n[%]", "im-\npacts", "CPU\n[ms]"]
+    heads[5:5] = ["slip\n[m]", "d\n[%]"] * slides
     reference, rows = responses[0], []
     for response in responses:
         tilt, displacement = "", ""
@@ -178,6 +198,7 @@ def comparison(scene: Scene, responses: Sequence[Response], horizons: Mapping[st
                 digits(response.overturning_time, ".4f"),
                 digits(response.peak_tilt_ratio, ".4f"),
                 tilt,
+                *(_slipped(response, reference) if slides else ()),
                 digits(response.peak_base_displacement, ".4f"),
                 displacement,
                 str(response.impact_count),
@@ -185,6 +206,17 @@ def comparison(scene: Scene, responses: Sequence[Response], horizons: Mapping[st
             ]
         )
     return grid(heads, rows, left=["outcome"], title=Text(_name(scene)), show_edge=False, caption=caption)
+
+
+def _slipped(response, reference):
+    """Largest slip, and by how many per cent it differs from the reference's where both stay upright."""
+    if response.failure or response.sliding is None and response is not reference:
+        return "-", ""
+    here, there = (one.sliding.peak if one.sliding else 0.0 for one in (response, reference))
+    apart = response is not reference and not reference.failure and there > 0
+    if not apart or "overturns" in (response.outcome, reference.outcome):
+        return digits(here), ""
+    return digits(here), f"{100 * (here / there - 1):+.0e}"
 
 
 def _limit(horizons):
@@ -262,7 +294,7 @@ def engines_table(engines: Sequence[Engine]) -> Grid:
 
 def engine_text(engine: Engine) -> str:
     """Description of an `Engine`: versions, and for each variant kind, settings (the accuracy parameter first), levels,
-    what the engine computes, what the adapter imposes and the engine's calls."""
+    what the engine computes, what the adapter imposes, known faults and the engine's calls."""
     versions = ", ".join(f"{package} {version}" for package, version in engine.versions().items())
     lines, shown = [f"{engine.name} ({versions})"], set[str]()
     if engine.script:
@@ -277,6 +309,7 @@ def engine_text(engine: Engine) -> str:
             f"      levels, coarse to fine: {', '.join(f'{value:.4g}' for value in variant.levels)}",
             f"      the engine computes: {variant.computes}",
             f"      the adapter imposes: {variant.imposes}",
+            *([f"      known faults: {variant.faults}"] if variant.faults else ()),
             *_calls(variant, shown),
         ]
         shown.update(variant.calls)

@@ -64,6 +64,9 @@ QUESTIONS = {
     "random-scenes": (
         "Random scenes in the range of a statue: how often is an engine right, and is every wrong run reported?"
     ),
+    "sliding": (
+        "Random statues that may slide: how often does sliding save them, or overturn them, and do engines slide alike?"
+    ),
     "stability": (
         "Named hard cases in every solver and variant: right, differs or failed, with measures, evidence, finer levels."
     ),

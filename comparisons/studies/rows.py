@@ -97,6 +97,13 @@ ROWS = {
         "vertical": f"scene faster ratio lifts_off sliding {CHANGED}",
     },
     "random-scenes": {"": "engine variant tier index class comparable | differences quantities"},
+    "sliding": {
+        "cell": """engine variant support motion friction runs failed undecided moves lacking slides falls_without saved
+            overturned""",
+        "scene": "engine variant index support motion friction slenderness raised outcome comparable slip tilt",
+        "run": """engine variant tier index class comparable outcome | differences quantities slip_error? tilt_error?
+            slipping sticking lost cpu_per_second cpu_ratio""",
+    },
     "stability": {"default settings": CASE, "finer settings": CASE},
     "speed-error": {
         "work-precision": """scene engine variant model law? parameter? level? outcome? failure? timings errors lost?

@@ -66,6 +66,7 @@ VARIANTS = {
         takes_restitution=True,
         computes="motion between events",
         imposes=f"uplift, impact by eqs (7) and (8), rest; a plane; {LOADS}; {CHORD}",
+        faults="its corners are joints and never slide, whatever the friction of the scene",
     ),
     "native-contact": Variant(
         NATIVE,

@@ -128,3 +128,26 @@ def test_progress_ends_at_the_number_of_runs():
 def test_what_is_out_of_range_is_refused(scene, motions, options, words):
     with pytest.raises((SceneError, SettingError), match=words):
         scan_bearings(scene, [SCENE.motion] * motions, **{"stroke": 0.25, **options})
+
+
+@pytest.mark.parametrize("friction, tilt", [(0.1, 0.0), (0.1, 0.5), (0.6, 0.0)])
+def test_with_a_friction_bearings_hold_only_where_the_block_does_not_slide_either(friction, tilt):
+    scene, motions = SCENE.with_(friction=friction), [synthetic_motion().scaled(1.2)]
+    scan = scan_bearings(scene, motions, 0.3, tilt=tilt)
+    plain = scan_bearings(SCENE, motions, 0.3, tilt=tilt)
+    assert ((scan.demand <= 1) <= (plain.demand <= 1)).all()
+    assert ((scan.demand <= 1).sum() < (plain.demand <= 1).sum()) == (friction == 0.1)
+    for row, column in np.argwhere(~np.isnan(scan.stroke))[::97]:
+        bearings = scan.bearings(scan.periods[column], scan.dampings[row])
+        found = simulate(scene.with_(bearings=bearings, motion=motions[0], duration=None), history=False)
+        slides = found.sliding is not None and found.sliding.path > 0
+        assert not (slides and scan.demand[row, column] <= 1 - 1e-3)
+        assert (
+            slides or found.outcome != "stands" or found.peak_base_displacement > 0.3 or scan.demand[row, column] <= 1
+        )
+
+
+def test_the_first_stroke_is_that_of_bearings_on_which_it_does_not_slide():
+    motions = [PulseMotion("one-sine", 6.0, 6.0)]
+    held, rubs = (first_stroke(SCENE.with_(friction=friction), motions) for friction in (None, 0.22))
+    assert held < rubs == first_stroke(SCENE.with_(block={"slenderness": math.atan(0.22)}), motions)

@@ -37,6 +37,7 @@ from analytic.decision import (
 from analytic.layout import Base as State
 from analytic.layout import Body
 from analytic.solver import parameters
+from analytic.termination import is_decided
 from analytic.time_stepping import simulate_time_stepping
 from analytic.twin import simulate_twin
 
@@ -202,3 +203,11 @@ def test_the_model_warns_where_its_contact_would_have_to_pull():
     assert any(warning.quantity == "min_normal_ratio" for warning in response.warnings)
     assert Response.from_json(response.to_json()).warnings == response.warnings
     assert model_warnings(scene, 0.3, 0.1) == ()
+
+
+def test_a_base_that_could_still_make_its_block_slide_is_not_decided():
+    """On the base of a standing block, whose motion would not lift it but slides it at a friction of .01."""
+    scene = load_scene("caryatid-isolated").with_(motion=None, start=Start(base_displacement=0.02))
+    run = simulate_time_stepping(scene.with_(duration=0.5), step=1e-3)
+    assert is_decided(scene, run) and is_decided(scene.with_(friction=0.5), run)
+    assert not is_decided(scene.with_(friction=0.01), run)

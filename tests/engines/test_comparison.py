@@ -195,13 +195,18 @@ def test_impacts_out_of_phase_and_beside_the_end_have_no_match_to_miss():
         assert [one.quantity for one in run.differences] == found
 
 
-def test_what_cannot_be_compared():
+def test_what_cannot_be_compared_and_the_friction_with_which_it_can():
     jumps = Scene(block=Block(mass=1.0, radius=1.0, slenderness=1.2), start=Start(tilt_rate=3.4), duration=0.5)
-    assert "normal force" in compare(jumps, simulate(jumps, history=False)).comparable
-    slides = FREE.with_(friction=0.5 * simulate(FREE, history=False).friction_demand)
-    run = compare(slides, replace(simulate(slides, history=False), peak_tilt=1.0))
-    assert "friction demand" in run.comparable and run.differences == ()
-    failed = replace(run, outcome="failed", failure=Failure("it broke"))
+    slides = Scene(
+        block=Block(mass=1.0, radius=1.0, slenderness=1.45), motion=PulseMotion("half-sine", 60.0, 30.0), duration=0.5
+    )
+    for scene, words, does in ((jumps, "normal force", "flies"), (slides, "friction demand", "slides")):
+        run = compare(scene, replace(simulate(scene, history=False), peak_tilt=1.0))
+        assert words in run.comparable and "friction = 0.6" in run.comparable and does in run.comparable
+        assert run.differences == ()
+    run = slides.with_(friction=0.6)
+    assert compare(run, simulate(run, history=False)).comparable == COMPARED
+    failed = replace(simulate(FREE, history=False), outcome="failed", failure=Failure("it broke"))
     assert compare(FREE, failed) is failed
 
 

@@ -24,6 +24,13 @@ def test_velocities_are_brought_to_the_displacements():
     assert np.abs(raw.tilt_rate - trace.tilt_rate)[1:].min() > 4e-4 and raw.first_script
 
 
+def test_the_place_of_the_block_in_a_first_script_is_read_where_it_may_slide():
+    place = np.random.default_rng(1).normal(size=(401, 4))
+    table = np.column_stack([rows(), place])
+    assert raw_trace_of(table, SCENE, 1e-9).centre is None
+    np.testing.assert_array_equal(raw_trace_of(table, SCENE.with_(friction=0.3), 1e-9).centre, place)
+
+
 def test_an_impact_is_not_smeared_over_the_steps_beside_it():
     table = rows()
     after = table[:, 2] < 0

@@ -8,6 +8,7 @@ import pytest
 from sampled_traces import BASE, BEARINGS, EDGE, SCENES, block, observed, sampled, seen, shaking
 
 from analytic import Base, Bearings, Caution, Failure, PulseMotion, Scene, Start, simulate
+from engines import swings
 from engines.checks import (
     GAIN_LIMIT,
     HEIGHT_TOLERANCE,
@@ -228,6 +229,18 @@ def test_a_gain_of_energy_fails():
     scene, trace, *_ = observed("rigid ground", 1e-3)
     thrown = dataclasses.replace(trace, tilt_rate=trace.tilt_rate + 2.0 * (trace.time > 3.0))
     assert energy_gain(scene, thrown) > GAIN_LIMIT and "energy" in seen(scene, thrown).failure.reason
+
+
+def test_the_work_of_a_pulse_shorter_than_what_a_contact_takes_to_settle_is_no_gain(monkeypatch):
+    """Also in a run of so many steps that its energy is taken in pieces."""
+    scene = Scene(block=block(0.25), motion=PulseMotion("half-sine", 4000.0, 1e4), duration=0.1)
+    history = simulate(scene, output_step=5e-6).history
+    trace = Trace(*(getattr(history, name) for name in Trace.COLUMNS), EDGE, settle=0.01)
+    whole = energy_gain(scene, trace)
+    monkeypatch.setattr(swings, "PIECE", 100)
+    assert whole < 1e-4 and energy_gain(scene, trace) == pytest.approx(whole, rel=1e-6)
+    faster = dataclasses.replace(trace, tilt_rate=trace.tilt_rate * np.where(trace.time > 0.05, 1.5, 1.0))
+    assert energy_gain(scene, faster) > GAIN_LIMIT
 
 
 def test_free_flight_keeps_its_energy_where_the_centre_is_read():

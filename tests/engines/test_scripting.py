@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from engine_cases import needs
 from scripts import code_lines, measured, ran, run_alone, written
+from sliding_scenes import SAVED, SLIDES
 
 import analytic
 from analytic import Bearings, PulseMotion, SampledMotion, load_scene
@@ -105,6 +106,7 @@ GRID = {  # 24 scenes
     **{f"isolated, record, {slenderness}": block_of(slenderness) for slenderness in (0.1, 0.2, 0.35)},
     "isolated, given, 0.2": released(block_of(0.2).with_(block={"restitution": 0.75})),
 }
+SLIDES_ON_BEARINGS = pulse(block_of(0.2), size=3.0, speed=2.0).with_(friction=0.25)
 every_engine = pytest.mark.parametrize("engine", ABLE)
 
 
@@ -163,6 +165,28 @@ def test_a_script_is_exact(engine, name, tmp_path):
 @pytest.mark.parametrize("name", GRID | OTHERS)
 def test_scripts_are_exact(engine, name, tmp_path):
     check(engine, (GRID | OTHERS)[name], tmp_path)
+
+
+@every_engine
+@pytest.mark.parametrize("scene", [SAVED, SLIDES, SLIDES_ON_BEARINGS], ids=["rocks", "slides", "on bearings"])
+def test_a_script_slides_as_the_model_does_and_says_how_far(engine, scene, tmp_path):
+    needs(engine)
+    found = ran(engine, scene, tmp_path)
+    model, slid = found.model, found.model.sliding
+    assert f"\n{model.outcome}" in f"\n{found.said}"
+    told = [float(number) for number in re.search(r"slip ([\d.]+) m, end (-?[\d.]+)", found.said).groups()]
+    assert told == pytest.approx([slid.peak, slid.end], abs=1e-3 * slid.peak)
+    assert [np.abs(found.slip).max(), found.slip[-1]] == pytest.approx(told, abs=1e-6)
+    if model.outcome == "overturns":
+        assert found.seen.overturning_time == pytest.approx(model.overturning_time, rel=1e-3)
+    else:
+        assert found.seen.peak_tilt == pytest.approx(model.peak_tilt, abs=2e-4 * scene.block.slenderness)
+
+
+def test_no_script_of_a_scene_whose_slip_is_not_determined():
+    scene = released(on_ground(block_of(0.28, friction=0.15)))
+    with pytest.raises(SceneError, match="friction = 0.15: below .*give .* or more, or let the block start at rest"):
+        write_script(ENGINES[ABLE[0]], scene)
 
 
 @every_engine

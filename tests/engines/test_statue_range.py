@@ -53,6 +53,7 @@ def test_a_block_that_stands_has_no_tilt_whatever_an_engine_leaves_of_it():
     assert stands.outcome == "stands" and not outside(STANDING, stands)
     (found,) = outside(STANDING, replace(stands, outcome="rocks"))
     assert str(found).startswith("peak tilt over slenderness 1e-06 is outside the range")
+    assert not outside(STANDING, replace(stands, outcome="slides"))
 
 
 def test_scenes_drawn_within_the_range_are_inside():

@@ -88,6 +88,15 @@ def size_that_survives() -> float:
     return edge(lambda size: overturns(pulse_scene(0.5, size=size)), 1.0, 3.0)
 
 
+def slip_of_a_push() -> float:
+    """Of a block with tan(gamma) = 0.3 on friction 0.2 under 0.4 g that last half a second [m]."""
+    block = Block(mass=1.0, radius=math.hypot(1.0, 0.3), slenderness=math.atan2(0.3, 1.0))
+    push = PulseMotion("rectangular", 0.4 * G, math.pi / 0.5)
+    response = simulate(Scene(block=block, motion=push, friction=0.2))
+    assert response.outcome == "slides" and response.sliding is not None
+    return response.sliding.peak
+
+
 def code() -> object:
     from math import pi
 
@@ -114,7 +123,7 @@ LESSON = Lesson(
     needs="moment of a force, Newton’s second law",
     minutes=12,
     drawing=labelled,
-    symbols=("b", "h", r"\gamma", "R", "m", "J_O", r"\phi", "s", "g", "a_g"),
+    symbols=("b", "h", r"\gamma", "R", "m", "J_O", r"\phi", "s", "g", "a_g", r"\mu"),
     equations=(
         Equation(
             r"|a_g| > g \tan \gamma = g \frac{b}{h}",
@@ -143,6 +152,8 @@ LESSON = Lesson(
         "overturn again. Bisection assumes a single boundary: it finds one of them and says nothing of the others.",
         "*A static check ignores size.* Two blocks of one shape lift at the same acceleration, but the larger one "
         "survives what overturns the smaller.",
+        "*A block that cannot stick cannot rock.* With a friction $\\mu < \\tan \\gamma$ it slides before it could "
+        "lift, at $\\mu g$; with a little more it may do both. Above, the friction is taken to be ample.",
     ),
     exercises=(
         Exercise(
@@ -163,6 +174,15 @@ LESSON = Lesson(
             size_that_survives,
             "times",
             "The same bisection, over R. The acceleration that lifts it has not changed.",
+        ),
+        Exercise(
+            "The block of the first exercise stands on a floor of friction $\\mu = 0.2$. The ground pushes with 0.4 g "
+            "for half a second. Does the block slide or rock, and how far does it slide?",
+            slip_of_a_push,
+            "m",
+            "$\\mu = 0.2$ is below $\\tan \\gamma = 0.3$: it only slides. Newmark’s closed form: it lags the more, "
+            "by $a_g - \\mu g$, for the time $T$, up to $v = (a_g - \\mu g) T$, and slides on by $v^2 / (2 \\mu g)$. "
+            "In a scene file: friction = 0.2.",
         ),
     ),
     code=code,

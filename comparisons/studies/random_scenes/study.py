@@ -23,39 +23,56 @@ STIFFER = (2.0, 20.0)  # initial stiffness of a bearing over that after yielding
 YIELDS = (1e-2, 1.0)  # displacement at which it yields, over R gamma
 # of the pulses; by name, as one more in `pulses.PULSES` would change the scenes that are drawn
 SHAPES = ("one-sine", "one-cosine", "half-sine", "rectangular", "ricker")
-PULSE = (0.5, 6.0)  # amplitude over the uplift acceleration, and frequency over omega_r
+PEAKS = (0.5, 6.0)  # of a motion over the uplift acceleration
+FREQUENCIES = (0.5, 6.0)  # over omega_r
 STARTS = 0.95  # most tilt of a released block over its slenderness
 
 
 def random_scene(seed: int, index: int) -> Scene:
-    """Scene number `index` of the ensemble `seed`: a statue released, or under a pulse, until its outcome is decided.
+    """Scene number `index` of the ensemble `seed`: a statue released or under a pulse, until its outcome is decided."""
+    rng = np.random.default_rng([seed, index])
+    scene = random_statue(rng, f"random scene {seed}/{index}")
+    side = float(rng.choice([-1.0, 1.0]))
+    if rng.random() < 0.5:
+        tilt = side * scene.block.slenderness * log_uniform(rng, RANGE["tilt"][0], STARTS)
+        return scene.with_(start=Start(tilt=tilt))
+    return scene.with_(motion=random_pulse(rng, scene, side))
+
+
+def log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
+    """A number drawn evenly over the logarithm."""
+    return math.exp(rng.uniform(math.log(low), math.log(high)))
+
+
+def random_statue(rng: np.random.Generator, name: str) -> Scene:
+    """A statue at rest, without a motion.
 
     A quarter stands on rigid ground, a fifth of the others on a free base. Half of the bearings have viscous damping.
     """
-    rng = np.random.default_rng([seed, index])
     block = _block(rng)
     base = bearings = None
     if rng.random() < 0.75:
-        base = Base(mass=block.mass * _log(rng, RANGE["base_mass"][0], HEAVIEST_BASE))
+        base = Base(mass=block.mass * log_uniform(rng, RANGE["base_mass"][0], HEAVIEST_BASE))
         bearings = _bearings(rng, block, base) if rng.random() < 0.8 else None
-    scene = Scene(block=block, base=base, bearings=bearings, name=f"random scene {seed}/{index}")
-    side = float(rng.choice([-1.0, 1.0]))
-    if rng.random() < 0.5:
-        return scene.with_(start=Start(tilt=side * block.slenderness * _log(rng, RANGE["tilt"][0], STARTS)))
-    omega = scene.rocking_frequency
-    amplitude = side * scene.gravity * math.tan(block.slenderness) * _log(rng, *PULSE)
+    return Scene(block=block, base=base, bearings=bearings, name=name)
+
+
+def random_peak(rng: np.random.Generator, scene: Scene) -> float:
+    """A peak of the ground acceleration [m/s2]: of a pulse, or of any other motion."""
+    return scene.gravity * math.tan(scene.block.slenderness) * log_uniform(rng, *PEAKS)
+
+
+def random_pulse(rng: np.random.Generator, scene: Scene, side: float) -> PulseMotion:
+    """A pulse to `side`; every second one begins some time after the run."""
+    omega, amplitude = scene.rocking_frequency, side * random_peak(rng, scene)
     start = float(rng.choice([0.0, rng.uniform(0, 0.5) / omega]))
-    return scene.with_(motion=PulseMotion(str(rng.choice(SHAPES)), amplitude, omega * _log(rng, *PULSE), start))
-
-
-def _log(rng: np.random.Generator, low: float, high: float) -> float:
-    return math.exp(rng.uniform(math.log(low), math.log(high)))
+    return PulseMotion(str(rng.choice(SHAPES)), amplitude, omega * log_uniform(rng, *FREQUENCIES), start)
 
 
 def _block(rng: np.random.Generator) -> Block:
     low, high, _ = RANGE["inertia"]
-    radius = _log(rng, *RANGE["radius"][:2])
-    mass = _log(rng, *DENSITY) * radius**3
+    radius = log_uniform(rng, *RANGE["radius"][:2])
+    mass = log_uniform(rng, *DENSITY) * radius**3
     inertia = mass * radius**2 * rng.uniform(low, high) if rng.random() < 0.5 else None  # else a cuboid's, 4/3
     slenderness = float(rng.uniform(*RANGE["slenderness"][:2]))
     return Block(mass=mass, radius=radius, slenderness=slenderness, corner_inertia=inertia)
@@ -64,15 +81,15 @@ def _block(rng: np.random.Generator) -> Block:
 def _bearings(rng: np.random.Generator, block: Block, base: Base) -> Bearings:
     law, count = str(rng.choice(["algebraic", "linear", "bouc-wen"])), int(rng.integers(1, 9))
     carried = block.mass + base.mass
-    omega = 2 * math.pi / _log(rng, *RANGE["period"][:2])
+    omega = 2 * math.pi / log_uniform(rng, *RANGE["period"][:2])
     k = carried * omega**2 / count
     share = rng.uniform(*RANGE["damping"][:2]) if rng.random() < 0.5 else 0.0
     damping = share * 2 * omega * carried / count
     if law == "linear":
         return Bearings(law=law, count=count, ka=k, damping=damping)
     # x = 1/(2 (alpha - 1)): where the algebraic law has lost half of its excess of stiffness
-    alpha = 1 + 0.5 / (block.radius * block.slenderness * _log(rng, *YIELDS))
-    return Bearings(law=law, count=count, ka=k * _log(rng, *STIFFER), kb=k, alpha=alpha, damping=damping)
+    alpha = 1 + 0.5 / (block.radius * block.slenderness * log_uniform(rng, *YIELDS))
+    return Bearings(law=law, count=count, ka=k * log_uniform(rng, *STIFFER), kb=k, alpha=alpha, damping=damping)
 
 
 SCENES, QUICK_SCENES = 500, 20  # of the engines' main variants

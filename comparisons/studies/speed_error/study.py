@@ -69,7 +69,9 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
             repeats = min(MOST_REPEATS, math.ceil(TICK / cpu))
             cpu = sum(searched(run, case.scene, goal)[2] for _ in range(repeats)) / repeats
     cost = {"cpu_seconds": cpu / (RUNS if goal else 1), "repeats": repeats}
-    return {**response.to_json(), "boundary_shifts": shifts, "cost": cost}
+    values = response.to_json()
+    del values["sliding"]  # no scene gives a friction
+    return {**values, "boundary_shifts": shifts, "cost": cost}
 
 
 def errors(trial: Trial, values: Mapping[str, Any], shifts: Sequence[float] | None = None) -> dict[str, float]:

@@ -2,62 +2,37 @@
 
 import functools
 import math
-from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from analytic import Base, Block, PulseMotion, SampledMotion, Scene, Start
-from analytic.caryatid import BASE, BEARINGS, caryatid_block
-from analytic.problems import benchmark_block
+from analytic.caryatid import BEARINGS
 
-BLOCK = benchmark_block()  # omega_r = 2.60 rad/s, slenderness 0.25
-GAMMA = BLOCK.slenderness
-THRESHOLD = 9.81 * math.tan(GAMMA)  # uplift acceleration on rigid ground [m/s2]
-STATUE = caryatid_block(0.28)
-ISOLATED = Scene(block=STATUE, base=BASE, bearings=BEARINGS, duration=8.0)
+from .basis import BLOCK, GAMMA, ISOLATED, STATUE, THRESHOLD, HardCase, sampled, times
+from .extremes import extremes
+from .sliding import sliding
+
 # One sine of 7.8 rad/s on BLOCK: amplitudes over THRESHOLD at which the outcome changes, from bisection with the kernel
 # (the tests bisect again).
 OVERTURNS_FROM = 1.401851713752694
 GAP = 3.62  # between overturning with and without an impact
 
 
-@dataclass(frozen=True, eq=False)
-class HardCase:
-    """One hard case.
-
-    title: what is hard about it. oracle: "free rocking", where the solution is known in closed form, else "kernel and
-    twin": each judges the other, and the kernel all others. expected: measure -> value known beforehand. step [s]: what
-    every solver that steps has to take. tolerances: kind of solver -> measure -> (value, reason), in place of the
-    general ones. twin_until: the twin is slow, and judges the kernel up to this time [s] only. quick: part of the quick
-    study.
-    """
-
-    title: str
-    scene: Scene
-    oracle: str = "kernel and twin"
-    expected: dict = field(default_factory=dict)
-    step: float | None = None
-    tolerances: dict = field(default_factory=dict)
-    twin_until: float = math.inf
-    quick: bool = False
-
-    @property
-    def name(self) -> str:
-        return self.scene.name
-
-
-def _sampled(values, dt=0.01):
-    return SampledMotion(dt, np.asarray(values, dtype=float))
-
-
-def _times(seconds, dt=0.01):
-    return np.arange(round(seconds / dt) + 1) * dt
-
-
 @functools.cache
 def hard_cases() -> dict[str, HardCase]:
     """Name -> `HardCase`, in the order of the report."""
-    cases = [*_rest(), *_uplift(), *_overturning(), *_proportions(), *_bearings(), *_steps(), *_records()]
+    cases = [
+        *_rest(),
+        *_uplift(),
+        *_overturning(),
+        *_proportions(),
+        *_bearings(),
+        *_steps(),
+        *_records(),
+        *extremes(),
+        *sliding(),
+    ]
     by_name = {case.name: case for case in cases}
     if len(by_name) != len(cases):
         raise ValueError("two hard cases share a name")
@@ -65,13 +40,13 @@ def hard_cases() -> dict[str, HardCase]:
 
 
 def _rest():
-    burst, quiet = 1.3 * THRESHOLD * np.sin(4 * np.pi * _times(2.0)), np.zeros(1200)
+    burst, quiet = 1.3 * THRESHOLD * np.sin(4 * np.pi * times(2.0)), np.zeros(1200)
     flat = BLOCK.model_copy(update={"slenderness": math.asin(math.sqrt(2 / 3))})
     return [
         HardCase(
             "impacts accumulate until the block rests",
             Scene(name="zeno", block=BLOCK, start=Start(tilt=0.6 * GAMMA), duration=12.0),
-            oracle="free rocking",
+            closed=True,
             quick=True,
         ),
         HardCase(
@@ -83,14 +58,14 @@ def _rest():
             Scene(
                 name="rest and re-uplift",
                 block=BLOCK,
-                motion=_sampled(np.concatenate([burst, quiet, burst, quiet])),
+                motion=sampled(np.concatenate([burst, quiet, burst, quiet])),
                 duration=28.0,
             ),
         ),
         HardCase(
             "restitution 0: both corners land at once",
             Scene(name="flat drop", block=flat, start=Start(tilt=0.2), duration=3.0),
-            oracle="free rocking",
+            closed=True,
             quick=True,
         ),
         HardCase(
@@ -128,7 +103,7 @@ def _uplift():
         ),
         HardCase(
             "ground acceleration touches the threshold and turns back",
-            Scene(name="touching the threshold", block=BLOCK, motion=_sampled(triangle), duration=3.0),
+            Scene(name="touching the threshold", block=BLOCK, motion=sampled(triangle), duration=3.0),
             expected={"outcome": "stands"},
         ),
         *(
@@ -190,7 +165,7 @@ def _proportions():
 
 
 def _bearings():
-    t = _times(8.0, 0.005)
+    t = times(8.0, 0.005)
     reason = "eqs (9), (11) add the travel, here 6e-12 m, to 1 m: each reversal is rounded to 4e-5 of it"
     extreme = ISOLATED.with_(motion=PulseMotion("one-sine", 3.0, 6.0), start=Start(tilt=0.1), duration=6.0)
     return [
@@ -226,7 +201,7 @@ def _bearings():
 
 
 def _steps():
-    gentle = SampledMotion(1 / 60, np.sin(np.pi * _times(8.0, 1 / 60)))
+    gentle = SampledMotion(1 / 60, np.sin(np.pi * times(8.0, 1 / 60)))
     free = Scene(block=BLOCK, start=Start(tilt=0.6 * GAMMA))
     return [
         case
@@ -237,7 +212,7 @@ def _steps():
                 f"free rocking at steps of 1/{steps} s",
                 free.with_(name=f"step 1/{steps} s, free rocking", duration=duration),
                 step=1 / steps,
-                oracle="free rocking",
+                closed=True,
                 quick=steps == 60,
             ),
             HardCase(
@@ -251,15 +226,15 @@ def _steps():
 
 
 def _records():
-    weak = {"motion": _sampled(0.3 * np.sin(2.6 * np.pi * _times(600.0))), "duration": 600.0}
-    t = _times(12.0)
-    gaps = {
-        "motion": _sampled(1.3 * THRESHOLD * np.sin(4 * np.pi * t) * (np.sin(0.4 * np.pi * t) > 0.3)),
+    weak: dict[str, Any] = {"motion": sampled(0.3 * np.sin(2.6 * np.pi * times(600.0))), "duration": 600.0}
+    t = times(12.0)
+    gaps: dict[str, Any] = {
+        "motion": sampled(1.3 * THRESHOLD * np.sin(4 * np.pi * t) * (np.sin(0.4 * np.pi * t) > 0.3)),
         "duration": 14.0,
     }
-    t = _times(100.0, 1e-3)[:100_000]
+    t = times(100.0, 1e-3)[:100_000]
     many = 0.4 * (1 + np.sin(0.2 * t)) * np.sin(np.pi * t) + 0.3 * np.sin(37.0 * t)
-    t = _times(100.0)
+    t = times(100.0)
     pulses = 1.3 * THRESHOLD * np.sin(4 * np.pi * t) * (t % 10 < 1)
     return [
         HardCase(
@@ -292,12 +267,12 @@ def _records():
         ),
         HardCase(
             "10 pulses in 100 s",
-            Scene(name="pulses in a row", block=BLOCK, motion=_sampled(pulses), duration=105.0),
+            Scene(name="pulses in a row", block=BLOCK, motion=sampled(pulses), duration=105.0),
             twin_until=25.0,
         ),
     ]
 
 
 def _decaying(dt):
-    t = _times(4.0, dt)
+    t = times(4.0, dt)
     return SampledMotion(dt, 1.5 * THRESHOLD * np.sin(2 * np.pi * t) * np.exp(-0.5 * t))

@@ -6,19 +6,25 @@ import math
 
 import numpy as np
 
-from analytic import Response, Scene, simulate
+from analytic import Response, SampledMotion, Scene, simulate
 from analytic.closed_form import free_rocking_tilt, rest_time
 from analytic.rocking import restitution
+from analytic.sliding.moreau import Slid, simulate_moreau
+from analytic.solver import HISTORY_POINTS
 from analytic.twin import simulate_twin
+from engines.comparison import outcome_of
 from engines.copies import changed_copies
+from engines.statue_range import outside
 
 from ...measuring.errors import energy_errors
 from ...measuring.horizon import PERTURBATION, sensitivity_horizon
-from .cases import HardCase, hard_cases
+from .basis import FREE, HardCase
+from .cases import hard_cases
 
 JUDGE_TOLERANCE = 1e-15  # of the kernel where it judges others
 LEAST_RESTITUTION = 1e-30  # stands for none in the closed form, which divides by its logarithm
 LAST_PART = 0.1  # share of the run, at its end, over which a block at rest must not drift
+STEP, COARSER = 2e-6, (2, 4, 8)  # of Moreau's time stepping [s], and how many times it in further runs
 TIMES = 200  # about so many of the kernel's samples are compared with the closed form
 
 
@@ -28,7 +34,8 @@ class Oracle:
 
     outcome: None where a change of 1e-4 in restitution, motion or start changes it. uplifts, rests: times [s]. settled:
     the block is at rest over the last part of the run. response: of the solver that judges. noise: (energy drift,
-    energy gain) that the measures themselves show on a right history.
+    energy gain) that the measures themselves show on a right history; None where
+    the block slides, as they do not know the work of friction.
     """
 
     case: HardCase
@@ -38,12 +45,12 @@ class Oracle:
     rests: list[float]
     settled: bool
     response: Response
-    noise: tuple[float, float]
+    noise: tuple[float, float] | None
 
     def tilt(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(times [s] up to `until` where it is compared, the tilt there [rad])."""
         times = times[times <= self.until]
-        if self.case.oracle != "free rocking":
+        if self.case.oracle != FREE:
             return times, column_at(self.response, times, "tilt")
         times, known = times[:: max(1, len(times) // TIMES)], _free(self.case.scene)
         return times, np.array([free_rocking_tilt(*known, time) for time in times])
@@ -60,10 +67,15 @@ def comparable_until(name: str) -> tuple[float, bool]:
 
 def twin_step(scene: Scene) -> float:
     """Longest step of the twin [s]: its own choice, but short enough to interpolate in to 1e-8."""
-    longest = min(0.005, 0.5 * getattr(scene.motion, "dt", math.inf))
-    if scene.bearings is None:
-        return longest
-    return min(longest, 0.05 / math.sqrt(scene.bearings.count * scene.bearings.ka / scene.total_mass))
+    longest, rates, motion = 0.005, [0.0], scene.motion
+    if isinstance(motion, SampledMotion):
+        longest = min(longest, 0.5 * motion.dt)
+    elif motion is not None and motion.length > scene.end / HISTORY_POINTS:  # else no sample falls into it
+        rates.append(motion.frequency)
+    if scene.bearings is not None:
+        stiffness, damping = (scene.bearings.count * one for one in (scene.bearings.ka, scene.bearings.damping))
+        rates += [math.sqrt(stiffness / scene.total_mass), damping / scene.total_mass]
+    return min(longest, 0.05 / max(rates)) if max(rates) else longest
 
 
 @functools.cache
@@ -72,18 +84,21 @@ def oracle(name: str, of_kernel: bool) -> Oracle:
     case = hard_cases()[name]
     until, robust = comparable_until(name)
     response = simulate(case.scene, tolerance=JUDGE_TOLERANCE)
-    noise = energy_errors(case.scene, response, until=until, step=case.step or 0.0)
+    noise = None
+    if not response.sliding:  # whether others leave a sample beside an uplift out depends on their last digits
+        noise = energy_errors(case.scene, response, until=until, step=case.step or 0.0, settle=0.0)
     if of_kernel:
         until, robust = min(until, case.twin_until), math.isinf(case.twin_until)
         short = case.scene if robust else case.scene.with_(duration=case.twin_until)
         response = simulate_twin(short, energy=False, max_step=twin_step(case.scene))
     if response.unstable_time is not None:  # beyond, two motions part exponentially
         until = min(until, response.unstable_time)
-    outcome = case.expected.get("outcome", response.outcome if robust else None)
-    uplifts, rests = ([time for time in times if time <= until] for times in (response.uplifts, response.rests))
+    lifts = outcome_of(case.scene, response) not in ("stands", "slides")
+    outcome = case.expected.get("outcome", outcome_of(case.scene, response) if robust else None)
+    uplifts, rests = ([t for t in times if t <= until and lifts] for times in (response.uplifts, response.rests))
     if "uplift time" in case.expected:
         uplifts[0] = case.expected["uplift time"]
-    if case.oracle == "free rocking" and rests:
+    if case.oracle == FREE and rests:
         rests = [rest_time(*_free(case.scene))]
     last = response.rests[-1] if response.rests else math.inf
     at_rest = last < case.scene.duration * (1 - LAST_PART) and all(time < last for time in response.uplifts)
@@ -94,6 +109,74 @@ def _free(scene: Scene) -> tuple[float, float, float, float]:
     """What the closed form takes of a scene of free rocking: omega_r [rad/s], slenderness, restitution, tilt [rad]."""
     e = max(restitution(scene), LEAST_RESTITUTION)
     return scene.rocking_frequency, scene.block.slenderness, e, scene.start.tilt
+
+
+@functools.cache
+def beyond_range(name: str) -> dict[str, float]:
+    """{quantity: its value} of a case outside the statue range, in the kernel's run."""
+    scene = hard_cases()[name].scene
+    return {str(one.quantity): float(one.value) for one in outside(scene, simulate(scene, history=False))}
+
+
+SLIPS = ("peak slip", "end slip")
+
+
+def slips(run: Response | Slid) -> tuple[float, float]:
+    """(largest |slip|, slip at the end) [m]; 0 of a block that does not slide."""
+    if isinstance(run, Slid):
+        return run.peak_slip, run.slip
+    return (run.sliding.peak, run.sliding.end) if run.sliding else (0.0, 0.0)
+
+
+def slip_errors(hard: HardCase, run: Response | Slid, judge: Response | Slid, unit: float) -> dict[str, float]:
+    """Errors of the slips of a `run`, over `unit` [m]: against those known beforehand, else those of the judge."""
+    found = zip(SLIPS, slips(run), slips(judge), strict=True)
+    return {name: abs(own - hard.expected.get(name, other)) / unit for name, own, other in found}
+
+
+def slip_unit(scene: Scene, model: Response) -> float:
+    """The largest slip of the model [m]; half the block's width where it does not slide."""
+    return slips(model)[0] or scene.block.half_width
+
+
+@functools.cache
+def stepped(name: str) -> list[Slid]:
+    """Runs of a case with friction by Moreau's time stepping: the one that judges, and those of coarser steps."""
+    return [simulate_moreau(hard_cases()[name].scene, step=STEP * factor) for factor in (1, *COARSER)]
+
+
+def stepping_errors(hard: HardCase, model: Response) -> dict[str, float]:
+    """Differences of the model's run from Moreau's time stepping beyond the latter's own error; and this, its doubt.
+
+    That error is of first order, but not monotonic: an event falls anywhere in a step. Eight times the step err by
+    about eight times as much: as far as such a run, or one between, is from the run that judges, this one may err.
+    """
+    judge, *coarser = stepped(hard.name)
+    unit = slip_unit(hard.scene, model)
+    errors = {"outcome": float(model.outcome != judge.outcome)}
+    if model.uplifts and "uplift time" in hard.expected:
+        errors["uplift time"] = abs(model.uplifts[0] - hard.expected["uplift time"])
+    others, doubt = [_apart(hard, one, judge, unit) for one in coarser], 0.0
+    for name, error in _apart(hard, model, judge, unit).items():
+        own = 0.0 if name in hard.expected else max(one.get(name, math.inf) for one in others)
+        errors[name], doubt = max(0.0, error - own), max(doubt, own)
+    return errors | {"judge's doubt": doubt}
+
+
+def _apart(hard: HardCase, run: Response | Slid, judge: Slid, unit: float) -> dict[str, float]:
+    """{measure: distance of a run from the one that judges}; of tilt and displacement at peak and end."""
+    found, falls = slip_errors(hard, run, judge, unit), judge.overturning_time is not None
+    if run.overturning_time is not None and judge.overturning_time is not None:
+        found["overturning time"] = abs(run.overturning_time - judge.overturning_time)
+    columns = {"tilt": hard.scene.block.slenderness}
+    if hard.scene.base is not None:
+        columns["base_displacement"] = judge.peak_base_displacement
+    for column, scale in columns.items():
+        apart = [abs(getattr(run.end, column) - getattr(judge.end, column))]
+        if not falls:  # the model's peaks leave the last fall out
+            apart.append(abs(getattr(run, f"peak_{column}") - getattr(judge, f"peak_{column}")))
+        found[column.removeprefix("base_")] = max(apart) / scale
+    return found
 
 
 RATES = {"tilt": "tilt_rate", "base_displacement": "base_velocity"}  # of the columns that are compared

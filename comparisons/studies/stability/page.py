@@ -3,11 +3,14 @@
 import re
 from itertools import product
 
+from engines.statue_range import in_words
+
 from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure
 from ...showing.parts import NAME as ENGINE
 from ...showing.parts import Column, Head, Judgement, Mark, Page, grouped, short, table, where
-from .study import DEFAULT, DIFFERS, FAILED, FINER, RIGHT, worst
+from .basis import FREE, SLIDING
+from .study import DEFAULT, DIFFERS, FAILED, FINER, RIGHT, may_slide, worst
 
 WRONG = "wrong"  # a run that differs in its outcome: never the colour of a small error
 # sign in a cell, its class in the style sheet
@@ -20,6 +23,8 @@ SIGNS = {
 }
 NOT_TRIED, NONE_FOUND = "not tried", "none found"  # of finer levels
 NOT_RUN = {"result": "not run", "sign": "", "measure": "–", "value": None, "tolerance": None, "remedy": NOT_TRIED}
+NOT_MODELLED = {**NOT_RUN, "result": "not modelled"}  # a case with friction, by a solver that knows none
+APART = "outside the range"
 MOST, SOME = 0.85, 0.6  # shares of cases from which a solver may be trusted, and is usable with care
 NOTED = 2  # cases named in the note of the first table
 SLANT = 4.1  # height of a letter of the slanted names below a matrix
@@ -41,25 +46,34 @@ TOLERANCE = Column("tolerance", "tolerance", digits=None)
 def page(result: Result) -> Page:
     cases, measures = result.settings["cases"], result.settings["measures"]
     cells, variants = _cells(result), result.settings["variants"]
+    within, apart = _parted(cases)
     counts = sorted(_counts(result, cells), key=lambda row: -row[RIGHT])
     wrong = where(cells.values(), result={DIFFERS, FAILED})
     return Page(
-        _title(cells, cases, where(variants, kind="stepping", best=True)),
+        _title(cells, within, apart, where(variants, kind="stepping", best=True)),
         (
             "Scenes at which real integrators have failed: pulses at the boundary, grazing impacts, a base of a "
-            "ten-thousandth of the block, ten minutes of shaking. A result is right if every measure is within its "
-            "tolerance. It differs if the run ends but is not right. It failed if the solver gives up, exceeds its "
-            "time limit or moves the block in a physically impossible way.",
+            "ten-thousandth of the block, ten minutes of shaking, a block that just slides. A result is right if every "
+            "measure is within its tolerance. It differs if the run ends but is not right. It failed if the solver "
+            "gives up, exceeds its time limit or moves the block in a physically impossible way.",
             _most(where(counts, kind="stepping")),
+            *(
+                [
+                    f"{len(apart)} of the {len(cases)} cases lie outside the range for which engines are tested "
+                    f"({in_words()}): they are run as all others, and counted apart."
+                ]
+                if apart
+                else []
+            ),
         ),
         first=(
             _matrix(
                 cells,
-                cases,
+                within,
                 where(variants, best=True),
                 "Default levels. ✓ right, ~ differs, ≠ another outcome, ✗ failed; under the pointer: the measure "
                 "farthest outside its tolerance. 2nd code: the independent second implementation; steps: plain time "
-                "stepping of the equations.",
+                "stepping of the equations. –: not run, or not modelled, as these two know no friction.",
             ),
             table(
                 "Results at default levels",
@@ -67,10 +81,17 @@ def page(result: Result) -> Page:
                 NAME,
                 *(Column(f"{name} [-]", name) for name in (RIGHT, DIFFERS, FAILED)),
                 Column("right at finer levels [-]", FINER),
+                *([Column(f"right {APART}", APART)] if apart else []),
             ),
         ),
         more=(
-            _matrix(cells, cases, where(variants, best=False), "The engines’ other variants. –: not run."),
+            _matrix(cells, apart, where(variants, best=True), "Cases outside the range, counted apart."),
+            _matrix(
+                cells,
+                cases,
+                where(variants, best=False),
+                "The engines’ other variants, all cases. –: not run, or no friction modelled.",
+            ),
             table(
                 "Where default levels are not right",
                 wrong,
@@ -112,12 +133,16 @@ def page(result: Result) -> Page:
                 CASE,
                 Column("what is hard", lambda row: _readable(row["title"])),
                 Column("judged by, and tolerances of its own", _judge),
+                Column(
+                    APART, lambda case: ", ".join(f"{name} {short(v)}" for name, v in _outside(case).items()) or "–"
+                ),
                 Column("duration [s]", "duration", digits=None),
             ),
         ),
         how=(
             "Judged by the analytic kernel, its independent second implementation and, for free rocking, the closed "
-            "form. Trajectories are compared up to each scene’s sensitivity horizon and unstable point; beyond, only "
+            "form. With friction the model judges, and is judged by Moreau’s time stepping, which shares no code with "
+            "it. Trajectories are compared up to each scene’s sensitivity horizon and unstable point; beyond, only "
             "outcomes that a change of 10⁻⁴ does not alter. Energy drift and gain are what exceeds the same measure "
             "of the reference.",
             "Where a result is not right, finer levels are run in turn. Scenes of ten minutes are run by the engines’ "
@@ -137,12 +162,19 @@ def page(result: Result) -> Page:
 def judgements(result: Result) -> tuple[Judgement, ...]:
     marks, cells = {}, _cells(result)
     for row in _counts(result, cells):
+        if not row["run"]:
+            continue
         level = "good" if row[RIGHT] >= MOST * row["run"] else "fair" if row[RIGHT] >= SOME * row["run"] else "bad"
-        failed = [case for (case, name), cell in cells.items() if name == NAME.of(row) and cell["result"] == FAILED]
+        failed = [
+            case
+            for (case, name), cell in cells.items()
+            if name == NAME.of(row) and cell["result"] == FAILED and not _outside(result.settings["cases"][case])
+        ]
         more = f" and {len(failed) - NOTED} more" if len(failed) > NOTED else ""
         note = f"failed: {', '.join(map(_readable, failed[:NOTED]))}{more}" if failed else "none failed"
+        beyond = f" ({row[APART]} {APART})" if row[APART] else ""
         marks[row["engine"], row["variant"]] = Mark(
-            f"{row[RIGHT]} of {row['run']}", level, note, row[RIGHT] / row["run"]
+            f"{row[RIGHT]} of {row['run']}{beyond}", level, note, row[RIGHT] / row["run"]
         )
     return (Judgement("hard cases right", marks),)
 
@@ -152,8 +184,13 @@ def _cells(result):
 
     These are run in turn until one is right: the last one counts.
     """
-    names = [NAME.of(variant) for variant in result.settings["variants"]]
-    cells = {(case, name): NOT_RUN for case in result.settings["cases"] for name in names}
+    cells = {
+        (name, NAME.of(one)): NOT_MODELLED
+        if case["oracle"] == SLIDING and not may_slide(one["engine"], one["applies_impact"])
+        else NOT_RUN
+        for name, case in result.settings["cases"].items()
+        for one in result.settings["variants"]
+    }
     finer = {(row["case"], NAME.of(row)): row for row in where(result.rows, part=FINER)}
     for row in where(result.rows, part=DEFAULT):
         key = row["case"], NAME.of(row)
@@ -186,22 +223,42 @@ def _remedy(row, finer):
 
 
 def _counts(result, cells):
-    """Each variant with the numbers of its results, of runs, and of finer levels run and right."""
+    """Each variant with the numbers of its results, of runs, and of finer levels run and right, inside the range; and,
+    in words, of its right results outside."""
+    _, apart = _parted(result.settings["cases"])
     for variant in result.settings["variants"]:
-        rows = [cell for (_, name), cell in cells.items() if name == NAME.of(variant) and cell is not NOT_RUN]
+        ran = {case: cell for (case, name), cell in cells.items() if name == NAME.of(variant) and "engine" in cell}
+        beyond = [cell for case, cell in ran.items() if case in apart]
+        rows = [cell for case, cell in ran.items() if case not in apart]
         found = {kind: len(where(rows, result=kind)) for kind in (RIGHT, DIFFERS, FAILED)}
         tried = [row for row in rows if row["remedy"] != NOT_TRIED]
         cured = len(tried) - len(where(tried, remedy=NONE_FOUND))
-        yield {**variant, **found, "run": len(rows), "tried": len(tried), FINER: cured}
+        right = f"{len(where(beyond, result=RIGHT))} of {len(beyond)}" if beyond else ""
+        yield {**variant, **found, "run": len(rows), "tried": len(tried), FINER: cured, APART: right}
 
 
-def _title(cells, cases, engines):
+def _outside(case):
+    """{quantity outside the range for which engines are tested: its value} of a case; older results do not tell."""
+    return case.get("outside", {})
+
+
+def _parted(cases):
+    """(cases inside the range for which engines are tested, those outside)."""
+    apart = {name: case for name, case in cases.items() if _outside(case)}
+    return {name: case for name, case in cases.items() if name not in apart}, apart
+
+
+def _title(cells, within, apart, engines):
     names = [NAME.of(engine) for engine in engines]
-    none = [case for case in cases if not any(cells[case, name]["result"] == RIGHT for name in names)]
+    none, beyond = (
+        [case for case in cases if not any(cells[case, name]["result"] == RIGHT for name in names)]
+        for cases in (within, apart)
+    )
     listed = _readable(f" ({'; '.join(none[:3])}{' …' if len(none) > 3 else ''})") if none else ""
+    more = f"; {APART} {len(beyond)} of {len(apart)}" if apart else ""
     if len(names) > 2:
-        return f"Hard cases: no engine solves {len(none)} of {len(cases)}{listed}"
-    return f"Hard cases: {len(none)} of {len(cases)} are not right in {' and '.join(names)}{listed}"
+        return f"Hard cases: no engine solves {len(none)} of {len(within)}{listed}{more}"
+    return f"Hard cases: {len(none)} of {len(within)} are not right in {' and '.join(names)}{listed}{more}"
 
 
 def _most(counts):
@@ -216,9 +273,9 @@ def _most(counts):
 
 
 def _matrix(cells, cases, variants, caption):
-    """A line for each case, a column for each variant, in two halves; None: no variants."""
+    """A line for each case, a column for each variant, in two halves; None: no variants or cases."""
     names = {NAME.of(one): SHORT.get(NAME.of(one), one["engine"] if one["best"] else NAME.of(one)) for one in variants}
-    if not names:
+    if not names or not cases:
         return None
     middle, foot, charts = (len(cases) + 1) // 2, 22 + round(SLANT * max(map(len, names.values()))), []
     for half in (list(cases)[:middle], list(cases)[middle:]):
@@ -244,7 +301,8 @@ def _matrix(cells, cases, variants, caption):
 def _judge(case):
     """Who judges a case, and its own tolerances."""
     until = case["twin_until"]
-    words = {"free rocking": "closed form"}.get(case["oracle"], f"kernel and {TWIN}")
+    known = {FREE: "closed form", SLIDING: "model, and Moreau’s time stepping"}
+    words = known.get(case["oracle"], f"kernel and {TWIN}")
     words += "" if until is None else f" (this one up to {until:g} s; beyond, the energy ledger)"
     own = [
         f"{name} {short(limit)} for {kind} solvers: {reason}"

@@ -8,6 +8,7 @@ from sliding_scenes import scene_of
 
 import analytic.sliding.run as sliding
 from analytic import PulseMotion, SceneError, load_scene, overturning_map, simulate, simulate_many
+from analytic.decision import RIGID_BEARINGS
 from analytic.response import Response
 from analytic.rocking import RockingModel
 from analytic.sliding.bounds import slipping_friction
@@ -115,6 +116,15 @@ def test_a_march_that_does_not_slide_leaves_the_kernels_answer():
     assert tight.sliding is None and tight.impacts == plain.impacts and tight.end == plain.end
     many = simulate_many([scene, scene.with_(friction=plain.friction_demand / sliding.NEAR * 0.95)], contact=True)
     assert many.peak_tilt[0] == many.peak_tilt[1] and not many.slid.any()
+
+
+def test_a_block_that_slides_warns_of_what_any_run_does():
+    up = PulseMotion("one-sine", 2.0, 6.0)
+    scene = scene_of(0.2, 0.4, base=212.0, motion=PulseMotion("one-sine", 6.0, 6.0, vertical=up), duration=2.0)
+    run = simulate(scene.with_(bearings={"x_max": None}), history=False)
+    assert run.outcome == "slides" and [caution.text for caution in run.warnings] == [RIGID_BEARINGS]
+    pushed = scene.with_(bearings=None, motion=None, start={"base_velocity": 3.0})
+    assert [caution.quantity for caution in simulate(pushed, history=False).warnings] == ["base_velocity"]
 
 
 def test_a_fall_slides_at_any_friction():

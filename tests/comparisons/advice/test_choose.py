@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 
 import pytest
+from sliding_scenes import SAVED, SLIDES
 
 from analytic import PulseMotion, SampledMotion, Start, load_scene, simulate
 from analytic.errors import SettingError
@@ -56,6 +57,8 @@ def test_restitution_is_looked_at_up_to_the_eighth_strong_impact():
         (STANDING, "displacement"),
         (RIGID.with_(start=Start(), motion=PulseMotion("one-sine", 0.5, 5.0)), "outcome"),
         (GIVEN, "tilt"),
+        (SAVED, "tilt"),
+        (SLIDES, "slip"),
     ],
 )
 def test_a_block_that_never_hits_is_judged_by_what_it_shows(scene, criterion):
@@ -186,3 +189,29 @@ def test_a_choice_from_python_runs_what_it_names():
 def test_what_cannot_be_chosen_is_one_message(rocking, arguments, words):
     status, _, err = rocking("choose", *arguments)
     assert status == 2 and words in err
+
+
+def test_slip_is_compared_over_its_peak_and_its_restitution_is_not_that_of_eq_7():
+    model = simulate(SAVED)
+    off = replace(model.history, slip=model.history.slip + 0.01 * model.sliding.peak)
+    assert criteria.error("slip", SAVED, replace(model, history=off), model) == pytest.approx(0.01, rel=1e-6)
+    unread = replace(model, history=replace(model.history, slip=None))
+    assert criteria.error("slip", SAVED, unread, model) is None
+    assert criteria.error("slip", SAVED, replace(model, history=off), unread) == 0.0
+    with pytest.raises(SettingError, match="--for restitution: .* slides, .*; choose tilt, slip or outcome"):
+        criteria.until(SAVED, "restitution")
+    with pytest.raises(SettingError, match="--for slip: .* does not slide"):
+        criteria.until(RIGID, "slip")
+    with pytest.raises(SettingError, match="--for tilt: .* never lifts"):
+        criteria.until(SLIDES, "tilt")
+    assert 0 < criteria.until(SLIDES, "slip") <= SLIDES.duration
+
+
+def test_whether_friction_is_needed_is_said_where_it_is_given():
+    parts = {}
+    for name, scene in {"slides": SLIDES, "holds": RIGID.with_(friction=0.9), "none": RIGID}.items():
+        found = criteria.model_parts(scene, {1.0: scene}, 1e-3, None, [], 1e-3)
+        parts[name] = {one.part: one for one in found}
+    assert parts["slides"]["sliding"].needed and "does not lift" in parts["slides"]["rocking"].why
+    assert not parts["holds"]["sliding"].needed and "the friction 0.9" in parts["holds"]["sliding"].why
+    assert "sliding" not in parts["none"]

@@ -121,6 +121,7 @@ def test_engines_with_a_name_tells_all_of_it(rocking, name):
     for variant, one in engine.variants.items():
         assert f"--variant {variant} (" in out and one.kind in out
         assert f"the engine computes: {one.computes}" in out and f"the adapter imposes: {one.imposes}" in out
+        assert f"known faults: {one.faults}" in out or not one.faults
         assert all(f"{setting}=" in out for setting in vars(one.settings))
         assert all(out.count(f"        {call}") == 1 for call in one.calls) and "engines." not in out
         assert f"{one.accuracy_parameter}={one.default:g} (accuracy parameter)" in out

@@ -18,6 +18,8 @@ MORE = re.compile(r"A terminal of (\d+) columns \(or COLUMNS=\1\) shows more: (.
 COMMANDS = {
     "run": ("run", "bust.toml", "--records", "records", "--json", "run.json"),
     "compare": ("compare", "bronze.toml", "--engine", "exudyn", "--engine", "pybullet"),
+    "run, sliding": ("run", "slides.toml"),
+    "compare, sliding": ("compare", "slides.toml", "--engine", "exudyn", "--engine", "pybullet"),
     "margin": ("margin", "bronze.toml", "--records", "records"),
     "design": ("design", "bust.toml", "--stroke", "0.25"),
     "choose": ("choose", "bronze.toml", "--engine", "exudyn", "--all"),
@@ -28,6 +30,18 @@ COMMANDS = {
     "score": ("score", "answers.csv"),
     "new": ("new", "new.toml", "--height", "1.9", "--width", "0.55", "--mass", "1000"),
 }
+SLIDES = """friction = 0.4
+[block]
+mass = 3172.05
+radius = 1.86
+slenderness = 0.348
+[motion]
+pulse = "half-sine"
+amplitude = 9.38
+frequency = 6.34
+[run]
+duration = 6.0
+"""
 BEARINGS = "[bearings]\nka = 22950.5\nkb = 2295.05\nalpha = 66.6021\ncount = 4\nx_max = 0.2\n"
 
 
@@ -36,6 +50,7 @@ def place(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "bust.toml").write_text(BUST.format(bearings=BEARINGS))
     (tmp_path / "bronze.toml").write_text(BRONZE.format(scale=CLIFF))
+    (tmp_path / "slides.toml").write_text(SLIDES)
     (tmp_path / "records").mkdir()
     pairs(tmp_path / "records", 1)
     answer = "scene,quantity,value\nfree-rigid,outcome,rocks\nfree-rigid,impact_time_1,0.31\n"

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from engine_cases import needs
+from sliding_scenes import LOST
 
 from analytic import Block, SampledMotion, Scene, Start, simulate
 from analytic.records import read_record
@@ -164,3 +165,12 @@ def test_no_engine_parts_before_its_own_horizon_on_a_record(engine, name):
         for share in (1.3, 2.0)
     ]
     assert_no_engine_parts_before_its_own_horizon(engine, scenes)
+
+
+def test_errors_of_a_block_that_slides_are_those_against_its_own_impacts():
+    """Its restitution is not that of (7): by that the model itself would be off."""
+    model = simulate(LOST)
+    assert restitution_error(LOST, model) > 0.1
+    assert perturbation_of(LOST, model, model) == LEAST
+    off = [dataclasses.replace(impact, rate_after=1.01 * impact.rate_after) for impact in model.impacts]
+    assert perturbation_of(LOST, dataclasses.replace(model, impacts=tuple(off)), model) == pytest.approx(0.01)

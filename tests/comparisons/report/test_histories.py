@@ -9,6 +9,7 @@ from time import sleep
 import numpy as np
 import psutil
 import pytest
+from sliding_scenes import SAVED
 
 from analytic import load_scene, simulate, synthetic_motion
 from analytic.response import History
@@ -19,12 +20,14 @@ from comparisons.running.files import PlaceError
 from comparisons.running.provenance import ResultError, read_result
 
 
-def test_responses_survive_the_way_through_a_result_file_and_a_lost_history_is_said(tmp_path):
-    response = simulate(load_scene("caryatid-isolated").with_(duration=5.0))
+@pytest.mark.parametrize("scene", [load_scene("caryatid-isolated").with_(duration=5.0), SAVED], ids=["rocks", "slides"])
+def test_responses_survive_the_way_through_a_result_file_and_a_lost_history_is_said(tmp_path, scene):
+    response = simulate(scene)
     values = json.loads(json.dumps(histories.ToFile(str(tmp_path))(None, response)))
     again = histories.response_of(values, tmp_path)
     assert again.to_json() == response.to_json()
-    for column in History.COLUMNS:
+    assert ("slip" in again.history.columns) == (scene is SAVED)
+    for column in response.history.columns:
         np.testing.assert_array_equal(getattr(again.history, column), getattr(response.history, column))
     (tmp_path / values["history"]).unlink()
     with pytest.raises(ResultError, match="missing; remove the folder"):

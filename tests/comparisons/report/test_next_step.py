@@ -105,7 +105,7 @@ def test_the_stroke_is_the_x_max_of_the_bearings_and_none_where_none_would_do():
     built = weak.with_(bearings={"x_max": 0.07})
     assert needed_by(built, [built.motion])["stroke"] == 0.07
     assert needed_by(GROUND, [PulseMotion("one-sine", 10.0, 2.3)])["stroke"] is None
-    nothing = {"stroke": None, "stands": None, "upright": None}
+    nothing = {"stroke": None, "stands": None, "upright": None, "friction": None}
     assert needed_by(load_scene("free-rocking-isolated"), []) == nothing
     assert needed_by(GROUND.with_(start={"tilt": 0.01}), [GROUND.motion]) == nothing
 
@@ -127,6 +127,18 @@ SAID = [
     (SCENE, NEEDED, "", "0.610 m wide (now 0.550 m) it does not overturn, to one of 0.800 m it does not lift"),
     (SCENE, {**NEEDED, "upright": None}, "", "fixed to a plate 0.800 m wide (now 0.550 m) it does not lift"),
     (SCENE, {**NEEDED, "stroke": None}, "rocking margin FILE", "No bearings are likely to keep it from lifting; widen"),
+    (
+        {**SCENE, "friction": 0.3},
+        {**NEEDED, "upright": None, "friction": 0.4},
+        "rocking design FILE --base-mass 1550 --stroke 0.25",
+        "neither lifts nor slides. Both",
+    ),
+    (
+        {**SCENE, "friction": 0.3},
+        {"stroke": None, "stands": None, "upright": None, "friction": 0.4},
+        "rocking margin FILE",
+        "from lifting or sliding; it needs a friction of 0.400 (now 0.300) not to slide.",
+    ),
     (SCENE, dict.fromkeys(NEEDED), "rocking margin FILE", "lifting; widen, fix or lower it."),
 ]
 
@@ -135,3 +147,16 @@ SAID = [
 def test_what_is_said_next(scene, needed, command, words):
     found, said = next_step(scene, needed, "FILE")
     assert command in ("", found) and words in said and said.endswith(".")
+
+
+def test_where_the_friction_is_less_than_the_block_needs_it_is_said_and_how_wide_it_only_slides():
+    rubs = GROUND.with_(friction=0.35)  # tan(gamma) is .288, the peak of the motion .515 g
+    found = needed_by(rubs, [rubs.motion])
+    assert found["friction"] == pytest.approx(rubs.motion.peak / rubs.gravity, rel=5e-3)
+    assert fate(rubs, rubs.motion, found["stands"]) == "slides"
+    assert fate(rubs, rubs.motion, 0.95 * found["stands"]) in ("rocks", "overturns")
+    held = rubs.with_(friction=found["friction"])
+    assert fate(held, held.motion, found["stands"] * found["friction"] / 0.35 * 1.01) == "stands"
+    assert needed_by(held, [held.motion])["friction"] is None
+    slides = needed_by(rubs.with_(friction=0.2), [rubs.motion])  # before it lifts, on any plate
+    assert (slides["stands"], slides["upright"]) == (None, None) and slides["friction"] == found["friction"]

@@ -183,6 +183,7 @@ GRID = overturning.Grid(("rigid ground",), ("one-sine",), (2.0,), (2.0, 6.0), (4
 SMALL: dict[str, dict[str, Any]] = {
     "restitution": {},
     "random-scenes": {},
+    "sliding": {"scenes": 80},
     "constants": {},
     "stability": {"names": ("zeno",)},
     "overturning": {"grid": GRID},

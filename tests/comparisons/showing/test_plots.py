@@ -1,9 +1,12 @@
 """What is drawn: which lines, in which units, how told apart."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from sliding_scenes import SAVED
 
-from analytic import load_scene, simulate
+from analytic import Start, load_scene, simulate
 from comparisons.showing.plots import draw_histories, style
 from engines import ENGINES
 
@@ -45,3 +48,18 @@ def test_solvers_differ_in_colour_and_in_dashes():
     """Those of the model's second implementations too, which stand beside the engines."""
     looks = [style(solver) for solver in ("analytic", *ENGINES, "time-stepping")]
     assert len({look["color"] for look in looks}) == len({look["linestyle"] for look in looks}) == len(looks)
+
+
+def test_slip_has_a_panel_of_its_own_where_the_block_slides_and_when_is_shaded():
+    response = simulate(SAVED)
+    told = [response, replace(response, engine="pybullet", sliding=replace(response.sliding, modes=()))]
+    axes = {axis.get_ylabel().split("\n")[0]: axis for axis in draw_histories(SAVED, told).axes}
+    slip = axes["slip of the block"]
+    assert len(slip.lines) == 1 + len(told)
+    np.testing.assert_array_equal(slip.lines[1].get_ydata(), response.history.slip)
+    (shaded,) = slip.patches
+    begin, end = (time for time, mode in response.sliding.modes[2:4])
+    assert [shaded.get_x(), shaded.get_x() + shaded.get_width()] == pytest.approx([begin, end])
+    assert [text.get_text() for text in slip.get_legend().get_texts()] == ["slides"]
+    still = SAVED.with_(motion=None, start=Start(tilt=0.1))
+    assert len(draw_histories(still, [simulate(still)]).axes) == 1

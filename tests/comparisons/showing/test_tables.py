@@ -4,11 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from sliding_scenes import SAVED
 
 from analytic import Caution, Failure, load_scene, simulate
 from analytic.response import COMPARED, Difference
 from comparisons.measuring.horizon import Horizon
-from comparisons.showing.terminal import comparison, show
+from comparisons.showing.terminal import comparison, mode_words, show, summary
 
 SCENE = load_scene("free-rocking-rigid")
 MODEL = simulate(SCENE, history=False)
@@ -84,3 +85,29 @@ def test_how_long_histories_are_compared_contradicts_no_dependence_on_the_motion
     out = " ".join(" ".join(lines).split())
     assert lines[-1] == str(cliff) and words in out and "ot sensitive" not in out
     assert ("histories can be compared to the end" in out) == (not parted)
+
+
+def test_slip_of_a_block_that_slides_stands_in_both_tables(capsys):
+    model = simulate(SAVED, history=False)
+    off = replace(model, engine="exudyn", sliding=replace(model.sliding, peak=1.01 * model.sliding.peak))
+    unread = replace(model, engine="pymunk", sliding=None)
+    show(comparison(SAVED, [model, off, unread], {}), [model])
+    rows = capsys.readouterr().out.splitlines()
+    heads = next(line.split() for line in rows if line.strip().startswith("solver"))
+    slip = [row.split()[heads.index("[s]") + 2 :] for row in rows if row.split()[:1] in (["exudyn"], ["pymunk"])]
+    assert [row[1:3] for row in slip] == [[f"{1.01 * model.sliding.peak:.4g}", "+1e+00"], ["-", "0.0000"]]
+    show(summary(SAVED, model), [model])
+    said = {line.split("  ")[1]: line for line in capsys.readouterr().out.splitlines() if line.startswith("  ")}
+    assert f"{model.sliding.work:.4g}" in said["work of friction [J]"]
+    assert "stick, from 0.06138 s rock, from 0.09021 s slide-rock, from 0.5422 s rock" in said["contact"]
+    show(summary(SAVED, replace(model, sliding=replace(model.sliding, peak=0.0))), [model])
+    assert "slip" not in capsys.readouterr().out
+
+
+def test_more_changes_of_contact_than_are_told_are_counted():
+    modes = [(0.0, "stick"), *((float(k), ("rock", "slide-rock")[k % 2]) for k in range(1, 5)), (5.0, "slide-rock")]
+    assert (
+        mode_words(modes, 4)
+        == "stick, from 1 s slide-rock, from 2 s rock, from 3 s slide-rock, 2 more changes (--json)"
+    )
+    assert mode_words([(0.0, "rock"), (1.0, "rock")]) == "rock"
