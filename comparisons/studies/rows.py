@@ -80,7 +80,8 @@ ROWS = {
             brier_interval?""",
         "fit": """engine variant specimen change slenderness centre spread alone_right size right brier brier_interval
             misses false_alarms""",
-        "paired": "engine variant specimen forecast beside difference interval disagree right",
+        "paired": """engine variant specimen forecast beside difference interval more_right more_interval disagree
+            right""",
         "reliability": "engine variant specimen forecast size mean happened",
         "where": "engine variant specimen forecast size right",
         "cell": "engine variant specimen size pga ratio overturned mean",

@@ -24,15 +24,15 @@ def tone(probability: float) -> str:
 
 
 def reliabilities(rows: Sequence[dict[str, Any]]) -> Figure | None:
-    """The share that overturned over the probability foretold, by cells of tests; a panel for each specimen."""
+    """The share that overturned over the predicted probability, by cells of tests; a panel for each specimen."""
     names = [name for (name,) in grouped(rows, "forecast")]
     looks = {name: curve(place) for place, name in enumerate(names)}
     charts = []
     for (specimen,), members in grouped(rows, "specimen").items():
         chart = Chart(
-            Axis("probability foretold [-]", 0.0, 1.0),
+            Axis("predicted probability [-]", 0.0, 1.0),
             Axis("share that overturned [-]", 0.0, 1.0),
-            f"{specimen}: share that overturned over the probability foretold by {', '.join(names)}.",
+            f"{specimen}: share that overturned over the probability predicted by {', '.join(names)}.",
             title=specimen,
             height=300,
         )

@@ -1,4 +1,4 @@
-"""What foretells the outcomes of a campaign, and how well: the model, and what is simpler, each judged on tests that it
+"""What predicts the outcomes of a campaign, and how well: the model, and what is simpler, each judged on tests that it
 was not fitted to.
 
 Of the model one number is fitted, the slenderness in the plane of motion, and its spread: a boulder has no drawing, and
@@ -17,7 +17,8 @@ from ...measuring.forecasts import HALF, brier, clustered, folds, halves, held_o
 
 BY_RECORD, BY_HALVES, IN_SAMPLE = "held out by record", "fitted to every other test", "fitted to the same tests"
 SPREADS = np.arange(1, 21) / 60  # of the normal spread, over the width of the grid of slendernesses
-MODEL, ONE, PGV, BOTH = "model", "model, one slenderness", "PGV, logistic", "model and PGV, logistic"
+MODEL, ONE, BOTH = "model", "model, one slenderness", "model and PGV, logistic"
+PGV, THRESHOLD = "PGV, logistic", "PGV, threshold"
 OTHER, AUTHORS = "the other specimen", "authors’ discrete elements"
 AS_IT_IS = "as it is"  # the model without a change
 SURE = 1e-3  # nearest to 0 and 1 that a probability is taken where its odds are asked for
@@ -142,13 +143,16 @@ def score(probability: np.ndarray, measured: np.ndarray, records: Sequence[str],
 
 
 def paired(one: np.ndarray, other: np.ndarray, measured: np.ndarray, records: Sequence[str]) -> dict[str, Any]:
-    """How much smaller the Brier score of one is than the other's, with its interval by record; and who is right where
-    they disagree."""
+    """How much smaller the Brier score of one is than the other's, and in how many more tests it is right, each with
+    its interval by record; and who is right where they disagree."""
     less = brier(other, measured) - brier(one, measured)
+    more = right(one, measured).astype(int) - right(other, measured)
     apart = (one >= HALF) != (other >= HALF)
     return {
         "difference": float(less.mean()),
         "interval": clustered(less, records),
+        "more_right": int(more.sum()),
+        "more_interval": [len(more) * end for end in clustered(more, records)],
         "disagree": int(apart.sum()),
         "right": int(right(one, measured)[apart].sum()),
     }

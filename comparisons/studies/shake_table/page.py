@@ -1,4 +1,4 @@
-"""What is shown of a shake table: how often the outcome is foretold, by what, and how sure of itself."""
+"""What is shown of a shake table: how often the outcome is predicted, by what, and how surely."""
 
 import math
 from collections.abc import Sequence
@@ -8,21 +8,24 @@ from ...measuring.statistics import TOO_FEW
 from ...running.provenance import Result
 from ...showing.charts import Axis
 from ...showing.figures import ranks
-from ...showing.parts import NAME, Column, Figure, Head, Judgement, Page, number, short, table, where
+from ...showing.parts import NAME, Column, Figure, Head, Judgement, Page, Table, grouped, number, short, table, where
 from ...showing.wording import equal_mark, listed
 from . import at_hand
 from .campaign import outcomes_of
 from .drawn import agreement, plane, reliabilities
-from .judging import AS_IT_IS, AUTHORS, BY_RECORD, IN_SAMPLE, MODEL, ONE, PGV
+from .judging import AS_IT_IS, AUTHORS, BY_RECORD, IN_SAMPLE, MODEL, ONE, PGV, THRESHOLD
 from .runs import ALL, ANSWERS, counted
 
-SHARES = (0.5, 1.0)  # between which shares of right answers are drawn
-BARS = (MODEL, AUTHORS, "PGA and PGV, logistic", PGV, "PGV, threshold", "PGA, threshold")  # besides the solvers
-SPECIMEN, FORECAST = Column("specimen", "specimen"), Column("foretold by", "forecast")
+FORECAST, CHANGE = Column("predicted by", "forecast"), Column("change of the model", "change")
 RIGHT = Column("right", lambda row: None if row["right"] is None else f"{row['right']} of {row['size']}")
 SHARE = Column("right answers [%]", "share", percent=True, within="within")
+RIGHT_SHARE = Column(
+    "share", lambda row: row["right"] / row["size"], percent=True, within=lambda row: (row["low"], row["high"])
+)
+ERRORS = Column("missed / false alarms", "{misses} / {false_alarms}")
 BRIER = Column("Brier score [-]", "brier", 2, within="brier_interval")
-CHANGE = Column("change of the model", "change")
+BARS = (MODEL, AUTHORS, "PGA and PGV, logistic", PGV, THRESHOLD, "PGA, threshold")  # besides the solvers
+OF_TABLE = "of the table"  # in the name of a measure that is taken of the table's own acceleration
 
 
 def page(result: Result) -> Page:
@@ -30,38 +33,33 @@ def page(result: Result) -> Page:
         return Page("Shake table: not computed, the tests are not at hand", (f"{absent[0]['reason']}.",))
     engines, settings = engines_of(result), result.settings
     scores = where(result.rows, part="score")
+    main = [row for row in where(scores, judged=BY_RECORD) if OF_TABLE not in row["forecast"]]
     return Page(
         _title(scores, settings),
         (_sentence(result, engines), _bounds(result)),
         first=(_bars(result, engines), _table_of_engines(engines)),
         more=(
-            Head("On tests that nothing was fitted to"),
+            _right_of_engines(engines),
+            Head("Tests that nothing was fitted to"),
             _scores(
-                "Each record held out in turn: right answers with the 95 % interval of their share, and Brier scores "
-                "(smaller is better) with theirs",
-                where(scores, judged=BY_RECORD),
+                "Each record held out in turn. Share of right answers and Brier score (smaller is better), with "
+                "95 % intervals by record",
+                main,
             ),
-            Head("As a probability"),
+            Head("The probability"),
             reliabilities(where(result.rows, part="reliability")),
-            table(
-                "By how much the Brier score is smaller, paired, with its 95 % interval by record; and who is right "
-                "where the two disagree",
-                where(result.rows, part="paired"),
-                FORECAST,
-                Column("beside", "beside"),
-                SPECIMEN,
-                Column("smaller by [-]", "difference", within="interval"),
-                Column("disagree in", "disagree"),
-                Column("the first is right in", "right"),
-            ),
+            _pairs(result),
             *_where_alike(result),
-            Head("Where it is wrong"),
+            Head("Where the model is wrong"),
             plane(where(result.rows, part="cell"), at_hand.of(settings)),
             Head("What is fitted, and what is not known"),
             _fitted(result),
             agreement(settings["specimens"], _by_restitution(result)),
             _fits(result),
-            _scores("Judged otherwise", [row for row in scores if row["judged"] != BY_RECORD]),
+            _scores(
+                "Judged otherwise, and by measures of the table’s own acceleration",
+                [row for row in scores if row not in main],
+            ),
             _not_shown(result),
         ),
         how=_how(result),
@@ -72,19 +70,38 @@ def page(result: Result) -> Page:
     )
 
 
+def _by_specimen(caption: str, rows: Sequence[dict[str, Any]], names: Sequence[Column], *columns: Column) -> Table:
+    """A line for rows that differ in their specimen alone, with these columns of each specimen."""
+    specimens = list(dict.fromkeys(row["specimen"] for row in rows))
+    lines = [{row["specimen"]: row for row in some} for some in grouped(rows, *(name.text for name in names)).values()]
+
+    def of_first(column):
+        return Column(column.head, lambda line: column.text(next(iter(line.values()))))
+
+    def of_one(column, specimen):
+        head = f"{specimen}: {column.head}" if len(specimens) > 1 else column.head
+        return Column(head, lambda line: column.text(line[specimen]) if specimen in line else None)
+
+    shown = [of_one(column, specimen) for specimen in specimens for column in columns]
+    return table(caption, lines, *map(of_first, names), *shown)
+
+
 def _scores(caption, rows):
     ways = {row["judged"] for row in rows}
-    return table(
-        caption,
-        rows,
-        FORECAST,
-        SPECIMEN,
-        *((Column("judged on tests", "judged"),) if len(ways) > 1 else ()),
-        RIGHT,
-        Column("share", _share, percent=True, within=lambda row: (row["low"], row["high"])),
-        Column("misses", "misses"),
-        Column("false alarms", "false_alarms"),
-        BRIER,
+    judged = (Column("judged on tests", "judged"),) if len(ways) > 1 else ()
+    return _by_specimen(caption, rows, (FORECAST, *judged), RIGHT, RIGHT_SHARE, ERRORS, BRIER)
+
+
+def _pairs(result):
+    return _by_specimen(
+        "Paired: how many more answers of the first are right, and by how much its Brier score is smaller (a yes or no "
+        "is a probability of 1 or 0), with 95 % intervals by record; and who is right where the two disagree",
+        where(result.rows, part="paired"),
+        (FORECAST, Column("compared with", "beside")),
+        Column("more right", "more_right", 2, within="more_interval"),
+        Column("Brier smaller by [-]", "difference", within="interval"),
+        Column("disagree", "disagree"),
+        Column("first right", "right"),
     )
 
 
@@ -123,71 +140,67 @@ def engines_of(result: Result) -> list[dict[str, Any]]:
     return found
 
 
-def _share(row):
-    return row["right"] / row["size"]
-
-
 def _score(rows, **wanted):
     return next(iter(where(rows, **wanted)), None)
 
 
 def _title(scores, settings):
     def right(name):
-        rows = where(scores, forecast=name, judged=BY_RECORD)
-        return listed([str(row["right"]) for row in rows])
+        return listed([str(row["right"]) for row in where(scores, forecast=name, judged=BY_RECORD)])
 
-    return (
-        f"Shake table: of {len(settings['tests'])} outcomes the model foretells {right(MODEL)}, "
-        f"a threshold of PGV {right('PGV, threshold')}"
-    )
+    count = len(settings["tests"])
+    return f"Shake table: the model predicts {right(MODEL)} of {count} outcomes, a threshold of PGV {right(THRESHOLD)}"
 
 
 def _sentence(result, engines):
     """How large the error of engines is beside that of the model."""
     scores = where(result.rows, part="score", judged=BY_RECORD, forecast=MODEL)
     wrong = listed([str(row["size"] - row["right"]) for row in scores])
-    words = [f"The model itself is wrong in {wrong} of {len(result.settings['tests'])} tests."]
+    words = [f"The model is wrong in {wrong} of {len(result.settings['tests'])} tests."]
     together = where(engines, specimen=ALL) or engines
-    for kind, told in (("tuned", "Tuned"), ("defaults", "With their defaults")):
-        rows = where(together, tier=kind)
-        said = [
-            f"{row['engine']} ends otherwise than the model in {_apart(row)} of {row['size']} runs, "
-            f"{row['on_edge']} of them near an outcome boundary"
-            for row in rows
-        ]
-        if said:
-            words.append(f"{told}, {listed(said)}.")
-    one_way = [row for row in where(together, tier="defaults") if row["p_records"] is not None]
-    unsafe = [row for row in one_way if row["only_a"] > row["only_b"] and row["p_records"] < 0.05]
-    if unsafe:
-        said = [
-            f"{row['engine']} misses {row['only_a']} overturnings and adds {row['only_b']} "
-            f"(sign test by record, p = {number(row['p_records'], 2)})"
-            for row in unsafe
-        ]
-        words.append(f"Defaults err on the unsafe side: {listed(said)}.")
+    for row in where(together, tier={"tuned", "defaults"}):
+        failed = f", and fails in {row['failed']}" if row["failed"] else ""
+        p = f"; sign test by record, p = {number(row['p_records'], 2)}" if row["p_records"] is not None else ""
+        words.append(
+            f"{_name(row)}, ends differently from it in {_apart(row)} of {row['size']} runs: it misses {row['only_a']} "
+            f"of the model’s overturnings and adds {row['only_b']}{failed} ({row['on_edge']} near an outcome "
+            f"boundary{p})."
+        )
+    rows = [row for row in where(together, tier="defaults") if _unsafe(row)]
+    if rows:
+        words.append(f"The differences of {listed([_name(row) for row in rows])} are on the unsafe side.")
     return " ".join(words)
+
+
+def _unsafe(row):
+    return row["only_a"] > row["only_b"] and row["p_records"] is not None and row["p_records"] < 0.05
 
 
 def _apart(row):
     return row["only_a"] + row["only_b"] + row["failed"]
 
 
+def _name(row):
+    return f"{row['engine']}, {row['tier']}"
+
+
 def _bounds(result):
     """What a model can be asked for at most."""
     settings = result.settings
     names = listed([one["name"] for one in settings["specimens"]])
-    words = f"{settings['campaign'].capitalize()}, {len(settings['tests'])} tests under {settings['records']} records"
-    words += f" at many scales; {listed([str(count) for count in settings['overturned']])} overturned ({names})."
+    count = len(settings["tests"])
+    words = (
+        f"{settings['campaign'].capitalize()}: {count} tests under {settings['records']} records at many scales; "
+        f"{listed([str(one) for one in settings['overturned']])} overturned ({names})."
+    )
     if settings["agree"] is not None:
         words += (
-            f" The two end alike in {settings['agree']} of them. No test of one was repeated: of two blocks that "
-            "differ a little, that is the nearest to a repeatability that is known, and no model can be asked for very "
-            "much more."
+            f" The two boulders end alike in {settings['agree']} of them. No test was repeated, and they differ in "
+            "shape, so that is a rough measure of repeatability and no upper bound."
         )
     return words + (
-        " The model is planar, the block is not; one number of it is fitted, the slenderness, with its spread, and "
-        "judged on records that it was not fitted to."
+        " The model is planar, the block is not. Its slenderness, with a spread, is fitted, and judged on records that "
+        "it was not fitted to."
     )
 
 
@@ -201,17 +214,18 @@ def _bars(result: Result, engines: Sequence[dict[str, Any]]) -> Figure | None:
         same = _score(mine, forecast=ONE, judged=IN_SAMPLE)
         rows.append(_bar(same, "model, as engines", same["right"], (same["low"], same["high"])))
         for row in where(engines, specimen=one["name"]):
-            rows.append(_bar(row, NAME.text(row), *_between(row, same)))
+            rows.append(_bar(row, _name(row), *_between(row, same)))
     agree = result.settings["agree"]
     rules = () if agree is None else ((agree / len(result.settings["tests"]), "the two boulders alike"),)
+    first = math.floor(10 * min(low for row in rows for low in row["within"]))  # tenths
     return ranks(
         rows,
-        Column("foretold by", "name"),
+        Column("predicted by", "name"),
         SHARE,
-        "Share of outcomes foretold, with 95 % intervals by record. “model, as engines” and the engines: one "
-        "slenderness, fitted to all tests. Where an engine differs in fewer than five tests, its right answers are "
-        "told as between those that this leaves.",
-        Axis(SHARE.head, *SHARES, ticks=tuple((share / 100, str(share)) for share in range(50, 101, 10))),
+        "Share of outcomes predicted, with 95 % intervals by record. “model, as engines” and the engines: at one "
+        "slenderness, fitted to all tests; all else held out by record. Where an engine differs from the model in fewer "
+        "than five tests, its right answers are not told: the line spans what is possible.",
+        Axis(SHARE.head, first / 10, 1.0, ticks=tuple((tenth / 10, str(10 * tenth)) for tenth in range(first, 11))),
         panel="specimen",
         rules=rules,
     )
@@ -232,33 +246,39 @@ def _between(row, model):
 
 def _table_of_engines(engines):
     return table(
-        "Engines beside the model at the same slenderness; equal: at most 5 % of outcomes differ, by the upper limit "
-        "of the interval (95 %, Wilson, by record); tests that overturn in one alone, in brackets records by most of "
-        "theirs",
-        engines,
+        "Engines and the model at the same slenderness. Equal: at most 5 % of outcomes differ, by the upper end of the "
+        "95 % interval (Wilson, by record). In brackets, records in which most differences go that way",
+        where(engines, specimen=ALL) or engines,
         NAME,
         Column("kind", "tier"),
-        SPECIMEN,
         Column("outcomes that differ", lambda row: f"{_apart(row)} of {row['size']}"),
-        Column("of these near an outcome boundary", "on_edge"),
-        Column("up to", lambda row: row["interval"][1], percent=True),
+        Column("at most", lambda row: row["interval"][1], percent=True),
         Column("equal", lambda row: "inconclusive" if row["equal"] == TOO_FEW else row["equal"]),
-        Column("only the model’s overturns", "{only_a} ({records_a})"),
-        Column("only the engine’s", "{only_b} ({records_b})"),
-        Column("p, by test", "p_value"),
-        Column("p, by record", "p_records"),
+        Column("overturnings missed", "{only_a} ({records_a})"),
+        Column("added", "{only_b} ({records_b})"),
+        Column("p, sign test by record", "p_records"),
         Column("failed", "failed"),
-        RIGHT,
+        Column("near an outcome boundary", "on_edge"),
+    )
+
+
+def _right_of_engines(engines):
+    return _by_specimen(
+        "Engines and the model at the same slenderness, beside what was measured; peak tilt: median over the tests in "
+        "which both rock and stay upright",
+        [row for row in engines if row["specimen"] != ALL],
+        (NAME,),
+        Column("outcomes that differ", lambda row: f"{_apart(row)} of {row['size']}"),
+        Column("right", "right"),
         Column("model right", "model_right"),
-        Column("misses", "misses"),
-        Column("false alarms", "false_alarms"),
-        Column("peak tilt over the model’s", "tilt"),
+        ERRORS,
+        Column("peak tilt over the model’s", "tilt", 3),
     )
 
 
 def _where_alike(result):
     rows = where(result.rows, part="where")
-    return (table("Where the two boulders end alike", rows, FORECAST, SPECIMEN, RIGHT),) if rows else ()
+    return (_by_specimen("Where the two boulders end alike", rows, (FORECAST,), RIGHT),) if rows else ()
 
 
 def _fitted(result):
@@ -287,16 +307,13 @@ def _degrees(name):
 
 
 def _fits(result):
-    return table(
-        "The model with one thing changed; right answers and Brier score held out by record",
+    return _by_specimen(
+        "The model with one thing changed. Slenderness by itself, and mean and spread, fitted to all tests; right "
+        "answers and Brier score held out by record",
         where(result.rows, part="fit"),
-        CHANGE,
-        SPECIMEN,
-        *(
-            Column(f"{head} [deg]", _degrees(name))
-            for head, name in (("slenderness", "slenderness"), ("mean", "centre"), ("spread", "spread"))
-        ),
-        Column("right by itself, same tests", "alone_right"),
+        (CHANGE,),
+        Column("slenderness [deg]", _degrees("slenderness")),
+        Column("mean, spread [deg]", lambda row: [math.degrees(row["centre"]), math.degrees(row["spread"])]),
         RIGHT,
         BRIER,
     )

@@ -35,6 +35,7 @@ from .judging import (
     MODEL,
     ONE,
     PGV,
+    THRESHOLD,
     Forecast,
     Outcomes,
     forecasts,
@@ -63,7 +64,7 @@ KINDS: tuple[dict[str, float], ...] = (
     *({"inertia": factor} for factor in (0.93, 1.07)),
 )
 EDGES = (0.0, 0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 0.98, 1.0)  # of probability, of the cells of reliability
-TWICE = (MODEL, ONE, "PGA, threshold", "PGV, threshold", "PGA and PGV, logistic")  # judged in both ways
+TWICE = (MODEL, ONE, "PGA, threshold", THRESHOLD, "PGA and PGV, logistic")  # judged in both ways
 SHOWN = (MODEL, PGV)  # whose reliability is told
 
 Data = Annotated[
@@ -199,7 +200,7 @@ def _of_specimen(campaign: Campaign, k: int, kinds: Sequence[Outcomes]) -> list[
             said = score(probability, measured, records, forecast.sure)
             rows.append({"part": "score", **shared, "forecast": forecast.name, "judged": how, **said})
     rows += [_fit(shared, kind, one, records) for kind, one in zip(KINDS, kinds, strict=True)]
-    for other in (PGV, ONE, "PGA and PGV, logistic"):
+    for other in (THRESHOLD, PGV, "PGA and PGV, logistic", ONE):
         said = paired(found[MODEL], found[other], measured, records)
         rows.append({"part": "paired", **shared, "forecast": MODEL, "beside": other, **said})
     said = paired(found[BOTH], found[MODEL], measured, records)
