@@ -5,10 +5,12 @@ those of a bootstrap over groups. A forecast says yes where its probability is o
 """
 
 from collections.abc import Callable, Iterator, Sequence
+from itertools import combinations_with_replacement
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from scipy.optimize import minimize
 from scipy.special import expit
 
 from .statistics import draws
@@ -16,7 +18,8 @@ from .statistics import draws
 DRAWS = 2000
 HALF = 0.5
 FEWEST = 5  # cases in a cell that is told
-STEPS, SMALL, RIDGE = 100, 1e-10, 1e-6  # of Newton; the ridge keeps the slope finite where outcomes are separated
+STEPS, SMALL, SETTLED = 1000, 1e-8, 1e-6  # of the search; of the slope, at its end, a case
+RIDGE = 1e-6  # keeps the slope finite where outcomes are separated
 
 
 def right(probability: npt.ArrayLike, happened: npt.ArrayLike) -> np.ndarray:
@@ -78,20 +81,42 @@ def logistic(features: npt.ArrayLike, happened: npt.ArrayLike, chosen: np.ndarra
     """Probabilities of all cases by logistic regression, the likeliest one, fitted to those chosen.
 
     features : shape (cases, features), in their logarithms where that is meant.
+
+    Raises
+    ------
+    ArithmeticError
+        The search has not settled.
     """
     features, happened = np.asarray(features, dtype=float), np.asarray(happened, dtype=float)
     centre, spread = features[chosen].mean(axis=0), features[chosen].std(axis=0)
     columns = np.column_stack([np.ones(len(features)), (features - centre) / np.where(spread > 0, spread, 1)])
-    mine, beta = columns[chosen], np.zeros(columns.shape[1])
-    for _ in range(STEPS):
+    mine, yes = columns[chosen], happened[chosen]
+    ridge = RIDGE * np.append(0, np.ones(columns.shape[1] - 1))
+
+    def loss(beta):
+        z = mine @ beta
+        value = (np.logaddexp(0, z) - yes * z).sum() + 0.5 * (ridge * beta**2).sum()
+        return value, mine.T @ (expit(z) - yes) + ridge * beta
+
+    def curvature(beta):
         p = expit(mine @ beta)
-        pull = RIDGE * np.append(0, beta[1:])
-        information = (mine * (p * (1 - p))[:, None]).T @ mine + RIDGE * np.eye(len(beta))
-        step = np.linalg.solve(information, mine.T @ (happened[chosen] - p) - pull)
-        beta += np.clip(step, -2, 2)
-        if np.abs(step).max() < SMALL:
-            break
-    return expit(columns @ beta)
+        return (mine.T * (p * (1 - p))) @ mine + np.diag(ridge + RIDGE)
+
+    start = np.zeros(columns.shape[1])
+    found = minimize(
+        loss, start, jac=True, hess=curvature, method="trust-exact", options={"gtol": SMALL, "maxiter": STEPS}
+    )
+    if np.abs(loss(found.x)[1]).max() > SETTLED * len(yes):
+        raise ArithmeticError(f"logistic regression of {len(yes)} cases has not settled: {found.message}")
+    return expit(columns @ found.x)
+
+
+def bent(features: npt.ArrayLike) -> np.ndarray:
+    """Features, standardised, with their squares and products: a logistic curve of these may bend."""
+    features = np.asarray(features, dtype=float)
+    plain = (features - features.mean(axis=0)) / features.std(axis=0)
+    pairs = combinations_with_replacement(range(plain.shape[1]), 2)
+    return np.column_stack([plain, *(plain[:, one] * plain[:, other] for one, other in pairs)])
 
 
 def clustered(values: npt.ArrayLike, groups: Sequence[Any], seed: int = 0) -> list[float]:

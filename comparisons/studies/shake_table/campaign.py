@@ -44,13 +44,15 @@ class TableTest:
 
 @dataclass(frozen=True, eq=False)
 class Campaign:
-    """name: as pages call it. cite: how to cite it, and where it is to be had. missing: tests without a motion."""
+    """name: as pages call it. cite: how to cite it, and where it is to be had. missing: tests without a motion.
+    published: sampling of the files as published [Hz], 0 where there is no other."""
 
     name: str
     specimens: tuple[Specimen, ...]
     tests: tuple[TableTest, ...]
     cite: str = ""
-    missing: int = 0
+    missing: tuple[TableTest, ...] = ()
+    published: float = 0
 
     def digest(self) -> str:
         """Of names, motions and outcomes: whether another has the same at hand."""

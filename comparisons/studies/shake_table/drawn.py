@@ -45,7 +45,9 @@ def reliabilities(rows: Sequence[dict[str, Any]]) -> Figure | None:
             chart.dots(xs, ys, name, says=says, look=looks[name])
         charts.append(chart)
     keys = {name: key_of(name, joined=False, look=look) for name, look in looks.items()}
-    caption = "On the line a probability means what it says. Cells of five tests or more, with 95 % Wilson intervals."
+    caption = (
+        "On the line a probability means what it says. Cells of five tests or more, with 95 % Wilson intervals by test."
+    )
     return figure(charts, caption, keys, keys) if charts else None
 
 
@@ -69,8 +71,8 @@ def agreement(specimens: Sequence[dict[str, Any]], right: dict[str, np.ndarray])
         charts.append(chart)
     keys = {name: key_of(name, look=look) for name, look in looks.items()}
     caption = (
-        "Right answers of the model over its slenderness, as it is and with its restitution times a factor, fitted to "
-        "nothing. Sums over all tests."
+        "Right answers of the model over its slenderness, as it is and with its restitution times a factor. Nothing is "
+        "fitted; sums over all tests."
     )
     return figure(charts, caption, keys, keys) if charts else None
 
@@ -97,7 +99,7 @@ def _chart(name, x, y, words):
     (across, up) = (
         Axis(label, low, high, "log", tuple((tick, f"{tick:g}") for tick in ticks if low <= tick <= high))
         for label, values, ticks in zip(("PGA [g]", "PGV/PGA [s]"), (x, y), TICKS, strict=True)
-        for low, high in ((0.9 * min(values), 1.1 * max(values)),)
+        for low, high in ((0.9 * min(values), 1.3 * max(values)),)  # room for the words beside a cell
     )
     return Chart(across, up, f"{name}: {words} over PGA and PGV/PGA.", title=name, height=320)
 

@@ -7,6 +7,7 @@ the two boulders, by the authors' meshes.
 
 import re
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +31,7 @@ NUMBER, RECORD = "Test Number", "Ground Motion"
 MEASURED = "Experimental Results for response-Specimen {}"
 STATED = {"PGV/PGA": "ratio", "Scaled PGA (g)": "peak"}
 COLUMN = 2  # of a motion file: Plot 0, the acceleration of the table along the motion [g]
+PUBLISHED = 800.0  # Hz
 SECONDS = 1.0  # s at the beginning, where the table is at rest: what its accelerometer says then is its offset
 
 # From the meshes, by the density 2700 kg/m3: mass [kg], height of the centre of mass over the lowest point [m]. The
@@ -71,25 +73,28 @@ def read(place: Path, every: int, progress: Callable[[int, int], None]) -> Campa
     records = {row["Test No."]: row for _, row in _table(place / RECORDS, "Test No.")}
     names = list(BOULDERS)
     authors = [_settings(results, number) for number in range(1, len(names) + 1)]
-    found, missing = [], 0
+    found, missing = [], []
     for at, row in results:
         number = row[NUMBER]
         if type(number) is not int or number not in records:
             raise SettingError(
                 f"{place / RESULTS}, row {at}, {NUMBER} = {number!r}: {RECORDS} has no such test; fetch both again"
             )
-        if (file := _file(place, number)) is None:
-            missing += 1
-            continue
         measured = tuple(flag(place / RESULTS, at, MEASURED.format(k), row) for k in range(1, len(names) + 1))
         said = tuple({word: flag(place / RESULTS, at, title, row) for word, title in one.items()} for one in authors)
-        found.append((file, str(number), records[number], measured, said))
-    chosen, tests = found[::every], []
-    for count, (file, name, record, measured, said) in enumerate(chosen, 1):
+        record = records[number]
         stated = {key: float(record[title]) for title, key in STATED.items() if isinstance(record.get(title), float)}
-        tests.append(TableTest(name, record_of(record[RECORD]), measured, motion_of(file), said, stated))
+        test = TableTest(str(number), record_of(record[RECORD]), measured, None, said, stated)
+        if (file := _file(place, number)) is None:
+            missing.append(test)
+        else:
+            found.append((file, test))
+    chosen, tests = found[::every], []
+    for count, (file, test) in enumerate(chosen, 1):
+        tests.append(replace(test, motion=motion_of(file)))
         progress(count, len(chosen))
-    return Campaign("two granite boulders", specimens(), tuple(tests), f"{CITE}; {WHERE}", missing)
+    cite = f"{CITE}; {WHERE}"
+    return Campaign("two granite boulders", specimens(), tuple(tests), cite, tuple(missing), PUBLISHED)
 
 
 def motion_of(file: Path) -> SampledMotion:

@@ -13,12 +13,26 @@ from typing import Any
 
 import numpy as np
 
-from ...measuring.forecasts import HALF, brier, clustered, folds, halves, held_out, logistic, middle, right, threshold
+from ...measuring.forecasts import (
+    HALF,
+    bent,
+    brier,
+    clustered,
+    folds,
+    halves,
+    held_out,
+    logistic,
+    middle,
+    right,
+    threshold,
+)
 
 BY_RECORD, BY_HALVES, IN_SAMPLE = "held out by record", "fitted to every other test", "fitted to the same tests"
 SPREADS = np.arange(1, 21) / 60  # of the normal spread, over the width of the grid of slendernesses
 MODEL, ONE, BOTH = "model", "model, one slenderness", "model and PGV, logistic"
 PGV, THRESHOLD = "PGV, logistic", "PGV, threshold"
+CURVE, BEYOND = "PGA and PGV, quadratic", "model, PGA and PGV, quadratic"
+FREQUENT, EACH = "the more frequent outcome", "a threshold of PGA for each record"
 OTHER, AUTHORS = "the other specimen", "authors’ discrete elements"
 AS_IT_IS = "as it is"  # the model without a change
 SURE = 1e-3  # nearest to 0 and 1 that a probability is taken where its odds are asked for
@@ -69,12 +83,11 @@ class Outcomes:
 
 @dataclass(frozen=True, eq=False)
 class Forecast:
-    """name. fit: tests chosen -> probabilities of all tests. sure: they are 0 or 1. fitted: False where nothing is."""
+    """name. fit: tests chosen -> probabilities of all tests. sure: they are 0 or 1."""
 
     name: str
     fit: Callable[[np.ndarray], np.ndarray]
     sure: bool = False
-    fitted: bool = True
 
 
 def forecasts(
@@ -85,21 +98,38 @@ def forecasts(
     measured = outcomes.measured
     logs = {name: np.log(values)[:, None] for name, values in measures.items()}
 
-    def joined(chosen):
-        p = np.clip(outcomes.spread(chosen), SURE, 1 - SURE)
-        return logistic(np.column_stack([logs["PGV"], np.log(p / (1 - p))]), measured, chosen)
+    two = np.column_stack([logs["PGA"], logs["PGV"]])
+
+    def joined(features):
+        def fit(chosen):
+            p = np.clip(outcomes.spread(chosen), SURE, 1 - SURE)
+            return logistic(np.column_stack([features, np.log(p / (1 - p))]), measured, chosen)
+
+        return fit
 
     found = [Forecast(MODEL, outcomes.spread), Forecast(ONE, outcomes.alone, sure=True)]
+    found.append(Forecast(FREQUENT, lambda chosen: np.full(len(measured), measured[chosen].mean() >= HALF), sure=True))
     for name, values in measures.items():
         found.append(Forecast(f"{name}, threshold", _above(values, measured), sure=True))
         found.append(Forecast(f"{name}, logistic", _logistic(logs[name], measured)))
-    two = np.column_stack([logs["PGA"], logs["PGV"]])
-    found += [Forecast("PGA and PGV, logistic", _logistic(two, measured)), Forecast(BOTH, joined)]
+    found += [Forecast("PGA and PGV, logistic", _logistic(two, measured))]
+    found += [Forecast(CURVE, _logistic(bent(two), measured))]
+    found += [Forecast(BOTH, joined(logs["PGV"])), Forecast(BEYOND, joined(bent(two)))]
     if other is not None:
         found.append(Forecast(OTHER, _logistic(other[:, None].astype(float), measured)))
     if authors:
         settings = np.array(list(authors.values()))
         found.append(Forecast(AUTHORS, lambda chosen: _most_often(settings, measured, chosen), sure=True))
+    return found
+
+
+def of_each_record(values: np.ndarray, measured: np.ndarray, records: Sequence[str]) -> np.ndarray:
+    """0 or 1 by a threshold of a measure for each record, fitted to its own tests: how far the outcome under a record
+    is one of its scale alone."""
+    names, found = np.array(records), np.zeros(len(measured))
+    for name in dict.fromkeys(records):
+        own = names == name
+        found[own] = values[own] > threshold(values[own], measured[own])
     return found
 
 

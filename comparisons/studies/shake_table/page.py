@@ -2,20 +2,24 @@
 
 import math
 from collections.abc import Sequence
+from itertools import count
 from typing import Any
 
-from ...measuring.statistics import TOO_FEW
+from ...measuring.statistics import EQUAL, TOO_FEW, wilson
 from ...running.provenance import Result
 from ...showing.charts import Axis
 from ...showing.figures import ranks
-from ...showing.parts import NAME, Column, Figure, Head, Judgement, Page, Table, grouped, number, short, table, where
-from ...showing.wording import equal_mark, listed
+from ...showing.parts import NAME, Column, Figure, Head, Judgement, Page, Table, grouped, number, percent, table, where
+from ...showing.wording import equal_mark
 from . import at_hand
 from .campaign import outcomes_of
 from .drawn import agreement, plane, reliabilities
-from .judging import AS_IT_IS, AUTHORS, BY_RECORD, IN_SAMPLE, MODEL, ONE, PGV, THRESHOLD
+from .judging import AS_IT_IS, AUTHORS, BEYOND, BY_RECORD, CURVE, FREQUENT, IN_SAMPLE, MODEL, ONE, THRESHOLD
+from .measures import TABLE
 from .runs import ALL, ANSWERS, counted
+from .words import apart, bounds, how, name_of, not_shown, sentence, title
 
+APART = 0.15  # between what was observed and what was predicted, of cells that are listed
 FORECAST, CHANGE = Column("predicted by", "forecast"), Column("change of the model", "change")
 RIGHT = Column("right", lambda row: None if row["right"] is None else f"{row['right']} of {row['size']}")
 SHARE = Column("right answers [%]", "share", percent=True, within="within")
@@ -24,8 +28,7 @@ RIGHT_SHARE = Column(
 )
 ERRORS = Column("missed / false alarms", "{misses} / {false_alarms}")
 BRIER = Column("Brier score [-]", "brier", 2, within="brier_interval")
-BARS = (MODEL, AUTHORS, "PGA and PGV, logistic", PGV, THRESHOLD, "PGA, threshold")  # besides the solvers
-OF_TABLE = "of the table"  # in the name of a measure that is taken of the table's own acceleration
+BARS = (BEYOND, MODEL, CURVE, AUTHORS, THRESHOLD, "PGA, threshold", FREQUENT)  # besides the solvers
 
 
 def page(result: Result) -> Page:
@@ -33,25 +36,23 @@ def page(result: Result) -> Page:
         return Page("Shake table: not computed, the tests are not at hand", (f"{absent[0]['reason']}.",))
     engines, settings = engines_of(result), result.settings
     scores = where(result.rows, part="score")
-    main = [row for row in where(scores, judged=BY_RECORD) if OF_TABLE not in row["forecast"]]
+    main = [row for row in where(scores, judged=BY_RECORD) if TABLE not in row["forecast"]]
     return Page(
-        _title(scores, settings),
-        (_sentence(result, engines), _bounds(result)),
-        first=(_bars(result, engines), _table_of_engines(engines)),
+        title(scores, settings),
+        (sentence(result, engines), bounds(result)),
+        first=(_bars(result, engines), _table_of_engines(result, engines)),
         more=(
             _right_of_engines(engines),
-            Head("Tests that nothing was fitted to"),
-            _scores(
-                "Each record held out in turn. Share of right answers and Brier score (smaller is better), with "
-                "95 % intervals by record",
-                main,
-            ),
+            Head("Each record held out in turn"),
+            _scores("Share of right answers and Brier score (smaller is better), with 95 % intervals by record", main),
             Head("The probability"),
             reliabilities(where(result.rows, part="reliability")),
             _pairs(result),
-            *_where_alike(result),
             Head("Where the model is wrong"),
             plane(where(result.rows, part="cell"), at_hand.of(settings)),
+            _quarters(result),
+            _worst(result),
+            _where(result),
             Head("What is fitted, and what is not known"),
             _fitted(result),
             agreement(settings["specimens"], _by_restitution(result)),
@@ -60,9 +61,9 @@ def page(result: Result) -> Page:
                 "Judged otherwise, and by measures of the table’s own acceleration",
                 [row for row in scores if row not in main],
             ),
-            _not_shown(result),
+            *not_shown(result),
         ),
-        how=_how(result),
+        how=how(result),
         evidence=tuple(
             (f"{NAME.text(row)}, {row['specimen']}, test {row['test']}: {row['reason']}", row["message"])
             for row in where(result.rows, part="failure")
@@ -144,66 +145,6 @@ def _score(rows, **wanted):
     return next(iter(where(rows, **wanted)), None)
 
 
-def _title(scores, settings):
-    def right(name):
-        return listed([str(row["right"]) for row in where(scores, forecast=name, judged=BY_RECORD)])
-
-    count = len(settings["tests"])
-    return f"Shake table: the model predicts {right(MODEL)} of {count} outcomes, a threshold of PGV {right(THRESHOLD)}"
-
-
-def _sentence(result, engines):
-    """How large the error of engines is beside that of the model."""
-    scores = where(result.rows, part="score", judged=BY_RECORD, forecast=MODEL)
-    wrong = listed([str(row["size"] - row["right"]) for row in scores])
-    words = [f"The model is wrong in {wrong} of {len(result.settings['tests'])} tests."]
-    together = where(engines, specimen=ALL) or engines
-    for row in where(together, tier={"tuned", "defaults"}):
-        failed = f", and fails in {row['failed']}" if row["failed"] else ""
-        p = f"; sign test by record, p = {number(row['p_records'], 2)}" if row["p_records"] is not None else ""
-        words.append(
-            f"{_name(row)}, ends differently from it in {_apart(row)} of {row['size']} runs: it misses {row['only_a']} "
-            f"of the model’s overturnings and adds {row['only_b']}{failed} ({row['on_edge']} near an outcome "
-            f"boundary{p})."
-        )
-    rows = [row for row in where(together, tier="defaults") if _unsafe(row)]
-    if rows:
-        words.append(f"The differences of {listed([_name(row) for row in rows])} are on the unsafe side.")
-    return " ".join(words)
-
-
-def _unsafe(row):
-    return row["only_a"] > row["only_b"] and row["p_records"] is not None and row["p_records"] < 0.05
-
-
-def _apart(row):
-    return row["only_a"] + row["only_b"] + row["failed"]
-
-
-def _name(row):
-    return f"{row['engine']}, {row['tier']}"
-
-
-def _bounds(result):
-    """What a model can be asked for at most."""
-    settings = result.settings
-    names = listed([one["name"] for one in settings["specimens"]])
-    count = len(settings["tests"])
-    words = (
-        f"{settings['campaign'].capitalize()}: {count} tests under {settings['records']} records at many scales; "
-        f"{listed([str(one) for one in settings['overturned']])} overturned ({names})."
-    )
-    if settings["agree"] is not None:
-        words += (
-            f" The two boulders end alike in {settings['agree']} of them. No test was repeated, and they differ in "
-            "shape, so that is a rough measure of repeatability and no upper bound."
-        )
-    return words + (
-        " The model is planar, the block is not. Its slenderness, with a spread, is fitted, and judged on records that "
-        "it was not fitted to."
-    )
-
-
 def _bars(result: Result, engines: Sequence[dict[str, Any]]) -> Figure | None:
     scores, rows = where(result.rows, part="score"), []
     for one in result.settings["specimens"]:
@@ -214,17 +155,17 @@ def _bars(result: Result, engines: Sequence[dict[str, Any]]) -> Figure | None:
         same = _score(mine, forecast=ONE, judged=IN_SAMPLE)
         rows.append(_bar(same, "model, as engines", same["right"], (same["low"], same["high"])))
         for row in where(engines, specimen=one["name"]):
-            rows.append(_bar(row, _name(row), *_between(row, same)))
+            rows.append(_bar(row, name_of(row), *_between(row, same)))
     agree = result.settings["agree"]
-    rules = () if agree is None else ((agree / len(result.settings["tests"]), "the two boulders alike"),)
+    rules = () if agree is None else ((agree / len(result.settings["tests"]), "the other boulder"),)
     first = math.floor(10 * min(low for row in rows for low in row["within"]))  # tenths
     return ranks(
         rows,
         Column("predicted by", "name"),
         SHARE,
         "Share of outcomes predicted, with 95 % intervals by record. “model, as engines” and the engines: at one "
-        "slenderness, fitted to all tests; all else held out by record. Where an engine differs from the model in fewer "
-        "than five tests, its right answers are not told: the line spans what is possible.",
+        "slenderness, fitted to all tests; the rest held out by record. Where an engine differs from the model in fewer"
+        " than five tests, its right answers are not told: the line spans what is possible.",
         Axis(SHARE.head, first / 10, 1.0, ticks=tuple((tenth / 10, str(10 * tenth)) for tenth in range(first, 11))),
         panel="specimen",
         rules=rules,
@@ -240,26 +181,34 @@ def _between(row, model):
     """Right answers of an engine, with their interval; where they are not told, with those that are possible."""
     if row["right"] is not None:
         return row["right"], (row["low"], row["high"])
-    ends = (model["right"] - _apart(row), model["right"] + _apart(row))
+    ends = (model["right"] - apart(row), model["right"] + apart(row))
     return model["right"], (max(ends[0], 0) / row["size"], min(ends[1], row["size"]) / row["size"])
 
 
-def _table_of_engines(engines):
+def _table_of_engines(result, engines):
     return table(
         "Engines and the model at the same slenderness. Equal: at most 5 % of outcomes differ, by the upper end of the "
-        "95 % interval (Wilson, by record). In brackets, records in which most differences go that way",
+        f"95 % interval (Wilson, by record){_undecidable(result)}. In brackets, records in which most differences go "
+        "that way. Last, how many differences are among the runs in which a change of the scene by 1e-4 changes the "
+        "model’s own outcome or time of a fall",
         where(engines, specimen=ALL) or engines,
         NAME,
         Column("kind", "tier"),
-        Column("outcomes that differ", lambda row: f"{_apart(row)} of {row['size']}"),
+        Column("outcomes that differ", lambda row: f"{apart(row)} of {row['size']}"),
         Column("at most", lambda row: row["interval"][1], percent=True),
         Column("equal", lambda row: "inconclusive" if row["equal"] == TOO_FEW else row["equal"]),
         Column("overturnings missed", "{only_a} ({records_a})"),
         Column("added", "{only_b} ({records_b})"),
         Column("p, sign test by record", "p_records"),
         Column("failed", "failed"),
-        Column("near an outcome boundary", "on_edge"),
+        Column("the model’s own end is sensitive", "{on_edge} of {near}"),
     )
+
+
+def _undecidable(result):
+    """Said where so few records cannot show that an engine is equal, even if it were."""
+    records = result.settings["records"]
+    return f"; with {records} records not even an engine without a difference" if wilson(0, records)[1] > EQUAL else ""
 
 
 def _right_of_engines(engines):
@@ -268,7 +217,7 @@ def _right_of_engines(engines):
         "which both rock and stay upright",
         [row for row in engines if row["specimen"] != ALL],
         (NAME,),
-        Column("outcomes that differ", lambda row: f"{_apart(row)} of {row['size']}"),
+        Column("outcomes that differ", lambda row: f"{apart(row)} of {row['size']}"),
         Column("right", "right"),
         Column("model right", "model_right"),
         ERRORS,
@@ -276,9 +225,47 @@ def _right_of_engines(engines):
     )
 
 
-def _where_alike(result):
+OBSERVED = Column("overturned", lambda row: row["overturned"] / row["size"], percent=True)
+PREDICTED = Column("predicted", "mean", percent=True)
+
+
+def _quarters(result):
+    rows = [row | {"quarter": f"{place}"} for row, place in _numbered(where(result.rows, part="quarter"))]
+    return _by_specimen(
+        "Quarters of the tests by PGV/PGA, the model held out by record",
+        rows,
+        (Column("quarter", "quarter"), Column("PGV/PGA [s], mean", "ratio"), Column("tests", "size")),
+        OBSERVED,
+        PREDICTED,
+    )
+
+
+def _numbered(rows):
+    """(row, its number among those of its specimen)."""
+    return [pair for members in grouped(rows, "specimen").values() for pair in zip(members, count(1), strict=False)]
+
+
+def _worst(result):
+    """The cells in which the model errs most."""
+    cells = [
+        row for row in where(result.rows, part="cell") if abs(row["overturned"] / row["size"] - row["mean"]) > APART
+    ]
+    return table(
+        f"Cells of the figure whose shares, observed and predicted, are more than {percent(APART)} apart",
+        cells,
+        Column("specimen", "specimen"),
+        Column("PGA [g]", "pga"),
+        Column("PGV/PGA [s]", "ratio"),
+        Column("tests", "size"),
+        OBSERVED,
+        PREDICTED,
+    )
+
+
+def _where(result):
     rows = where(result.rows, part="where")
-    return (_by_specimen("Where the two boulders end alike", rows, (FORECAST,), RIGHT),) if rows else ()
+    names = (Column("among the tests in which", "among"), FORECAST)
+    return _by_specimen("Right answers among some of the tests", rows, names, RIGHT)
 
 
 def _fitted(result):
@@ -316,48 +303,4 @@ def _fits(result):
         Column("mean, spread [deg]", lambda row: [math.degrees(row["centre"]), math.degrees(row["spread"])]),
         RIGHT,
         BRIER,
-    )
-
-
-def _not_shown(result):
-    pairs = where(result.rows, part="paired", beside=PGV)
-    sure = [row["specimen"] for row in pairs if row["interval"][0] > 0]
-    better = f"the difference is above 0 for {listed(sure)}" if sure else "for no specimen the difference is above 0"
-    return (
-        "What this does not show: it is one campaign, of one kind of stone, on one axis; boulders of another size or "
-        "slenderness may do otherwise. A threshold of PGV has nearly as many right answers: what the model knows more "
-        f"shows in its probability alone, and {better} with 95 %. Records repeat at many scales; intervals go by record"
-        " and say nothing of records unlike these. Restitution and friction of granite on the table were not measured; "
-        "the table above says what they move."
-    )
-
-
-def _how(result: Result) -> tuple[str, ...]:
-    s = result.settings
-    steps = listed([f"{round(1 / step):g} Hz" for step in s["steps"]])
-    blocks = "; ".join(
-        f"{one['name']}: centre of mass {one['height']:.3g} m up, radius of gyration {one['gyration']:.3g} m"
-        for one in s["specimens"]
-    )
-    speed = f"{s['model_runs']:,} runs of the model took {short(s['model_seconds'])} s of CPU time"
-    return tuple(
-        filter(
-            None,
-            (
-                f"Data: {s['cite']}. Nothing of them is stored here but sums and cells of five tests or more; "
-                "rocking study shake-table --data FOLDER draws every test."
-                if s["cite"]
-                else "",
-                f"Motions as the table moved, at {steps}, as published less the median of the first second; "
-                f"{s['missing']} further tests have no motion at hand and are left out. Rigid planar block on rigid "
-                f"ground; {blocks}. Moment of inertia: of the two horizontal axes of the meshes the mean. {speed}.",
-                "Said before the results: right answers, misses and false alarms; intervals by bootstrap over records "
-                f"(seed {result.provenance['seed']}); the sign of engines’ differences; Brier scores and their paired "
-                "difference to PGV’s; reliability in cells of five tests or more; who is right where model and PGV "
-                "disagree. Each record is held out in turn. PGA and PGV: as the campaign states them of what the table "
-                "was to play; “of the table”: of its measured acceleration, whose noise the integral gathers.",
-                f"Engines in question run all tests, the others one in {s['others']}, at the slenderness that is right "
-                "most often in the model. A failed run is not right, and differs.",
-            ),
-        )
     )

@@ -77,7 +77,7 @@ def differences(theirs: str, ours: str, records: Sequence[str], near: np.ndarray
 
     p_value: of a sign test over tests. records_a, records_b, p_records: of one over records, each by what most of its
     differences say, as those under one record are alike. A failed run is no difference of a sign, but differs. near: of
-    each test, whether it is near an outcome boundary of the model; on_edge: differences there.
+    each test, whether the model's own end is sensitive, see `shaking.ended_near`; on_edge: differences there.
     """
     engine, model = array_of(theirs), array_of(ours)
     sound, asked = np.isin(engine, [STANDS, OVERTURNS]), engine != NOT_RUN
@@ -95,6 +95,7 @@ def differences(theirs: str, ours: str, records: Sequence[str], near: np.ndarray
         "records_a": one,
         "records_b": other,
         "p_records": float(binomtest(one, one + other).pvalue) if one + other else None,
+        "near": int((asked & near).sum()),
         "on_edge": int((asked & near & (engine != model)).sum()),
         "equal": equal,
         "interval": list(interval),
@@ -102,7 +103,7 @@ def differences(theirs: str, ours: str, records: Sequence[str], near: np.ndarray
 
 
 def _near(campaign, name, rows):
-    """Whether each test is near an outcome boundary of the model."""
+    """Whether the model's own end is sensitive, of each test."""
     known = {row.case.tag["test"]: row.values["near"] for row in rows if row.case.tag["specimen"] == name}
     return np.array([known[test.name] for test in campaign.tests])
 

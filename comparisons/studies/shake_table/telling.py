@@ -75,3 +75,19 @@ def cell_rows(
         for members in cells(*logs)
         if len(members) >= FEWEST
     ]
+
+
+def quarter_rows(ratio: np.ndarray, measured: np.ndarray, probability: np.ndarray) -> list[dict[str, Any]]:
+    """A row for each quarter of the tests in the order of PGV/PGA: their geometric mean of it, how many there are, how
+    many overturned, and the model's mean probability."""
+    order = np.argsort(ratio, kind="stable")
+    return [
+        {
+            "size": len(members),
+            "ratio": float(np.exp(np.log(ratio[members]).mean())),
+            "overturned": int(measured[members].sum()),
+            "mean": float(probability[members].mean()),
+        }
+        for members in np.array_split(order, 4)
+        if len(members) >= FEWEST
+    ]

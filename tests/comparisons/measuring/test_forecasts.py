@@ -9,6 +9,7 @@ from scipy.optimize import minimize
 from comparisons.measuring.forecasts import (
     DRAWS,
     FEWEST,
+    bent,
     brier,
     clustered,
     folds,
@@ -79,6 +80,23 @@ def test_logistic_regression_is_the_likeliest_one():
     best = minimize(loss, np.zeros(3), method="Nelder-Mead", options={"xatol": 1e-10, "fatol": 1e-12, "maxiter": 9000})
     z = np.column_stack([np.ones(80), features - features.mean(axis=0)]) @ best.x
     np.testing.assert_allclose(logistic(features, happened, chosen), 1 / (1 + np.exp(-z)), atol=1e-4)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_logistic_regression_of_collinear_features_and_their_squares_settles(seed):
+    """At the likeliest one the slope of the likelihood is 0, but for the ridge, which weighs on other features in each."""
+    rng = np.random.default_rng(seed)
+    pga = rng.normal(-2, 1, 300)
+    plain = np.column_stack([pga, pga + 0.1 * rng.normal(size=300)])
+    raw = np.column_stack([plain, plain**2, plain.prod(axis=1)])
+    happened = rng.random(300) < 1 / (1 + np.exp(-6 * (pga + 2 + 0.3 * (pga + 2) ** 2)))
+    every = np.ones(300, dtype=bool)
+    found = [logistic(features, happened, every) for features in (bent(plain), raw)]
+    for probability in found:
+        assert np.abs(bent(plain).T @ (probability - happened)).max() < 0.01  # of 300 cases
+    one, other = (np.log(np.where(happened, probability, 1 - probability)).sum() for probability in found)
+    assert one == pytest.approx(other, abs=0.01)
+    assert bent(plain).shape == (300, 5)
 
 
 def test_separated_outcomes_give_a_steep_curve_and_no_overflow():

@@ -42,11 +42,21 @@ from comparisons.studies import get_study
 from comparisons.studies.rows import ROWS, wrong_with
 from comparisons.studies.shake_table import at_hand, campaign, granite, study
 from comparisons.studies.shake_table.campaign import outcomes_of
-from comparisons.studies.shake_table.judging import BY_RECORD, MODEL, Forecast, Outcomes, judged, paired, score
+from comparisons.studies.shake_table.judging import (
+    BY_RECORD,
+    MODEL,
+    Forecast,
+    Outcomes,
+    judged,
+    of_each_record,
+    paired,
+    score,
+)
 from comparisons.studies.shake_table.reading import read_campaign
 from comparisons.studies.shake_table.runs import ALL, answers, differences
 from comparisons.studies.shake_table.shaking import leaning, over_slendernesses
-from comparisons.studies.shake_table.telling import array_of, cell_rows, cells, may_be_told, text_of
+from comparisons.studies.shake_table.telling import array_of, cell_rows, cells, may_be_told, quarter_rows, text_of
+from comparisons.studies.shake_table.told import ALIKE
 from engines import ENGINES
 
 REAL = Path(__file__).parents[4] / "shared" / "experiments" / "granite-blocks"
@@ -92,7 +102,7 @@ def found(folder, small, tmp_path):
 def test_the_published_layout_is_read_at_any_sampling(tmp_path, rate, packed):
     place = published(tmp_path, range(11, 15), rate, packed, without=(13,))
     one = read_campaign(place)
-    assert [test.name for test in one.tests] == ["11", "12", "14"] and one.missing == 1
+    assert [test.name for test in one.tests] == ["11", "12", "14"] and len(one.missing) == 1
     for test in one.tests:
         number = int(test.name)
         assert test.motion.dt == pytest.approx(1 / rate, rel=1e-12)
@@ -186,7 +196,7 @@ def test_damaged_motions_are_refused_and_missing_ones_left_out(tmp_path):
     write(tmp_path, gzip.compress(text.encode())[:200], "Test012.txt.gz")
     refused(tmp_path, "Test012.txt.gz", "damaged gzip")
     (tmp_path / "Test012.txt.gz").unlink()
-    assert read_campaign(tmp_path).missing == 1
+    assert len(read_campaign(tmp_path).missing) == 1
     for file in tmp_path.glob("Test*.txt"):
         file.unlink()
     refused(tmp_path, "no test has a motion")
@@ -322,6 +332,34 @@ def test_every_test_is_in_one_cell_of_five_or_more(count):
     assert sum(row["size"] for row in rows) == count and sum(row["overturned"] for row in rows) == (x > 1).sum()
 
 
+def test_quarters_hold_every_test_once_and_few_tests_have_none():
+    rng = np.random.default_rng(1)
+    ratio, fell_over = rng.lognormal(size=50), rng.random(50) < 0.4
+    rows = quarter_rows(ratio, fell_over, np.full(50, 0.25))
+    assert [row["size"] for row in rows] == [13, 13, 12, 12] and [row["mean"] for row in rows] == [0.25] * 4
+    assert sum(row["overturned"] for row in rows) == fell_over.sum()
+    assert [row["ratio"] for row in rows] == sorted(row["ratio"] for row in rows)
+    assert quarter_rows(ratio[:16], fell_over[:16], ratio[:16]) == []
+
+
+def test_a_threshold_for_each_record_is_right_where_the_scale_alone_decides():
+    records, values = ["a"] * 4 + ["b"] * 4, np.array([1.0, 2, 3, 4, 10, 20, 30, 40])
+    fell_over = np.array([False, False, True, True, True, True, False, True])
+    said = of_each_record(values, fell_over, records)
+    assert said[:4].tolist() == [0, 0, 1, 1] and (said[4:] == fell_over[4:]).sum() == 3
+
+
+def test_what_the_missing_tests_did_is_told_as_sums_where_they_are_many(tmp_path, small):
+    place = published(tmp_path, without=range(11, 18))
+    answer = answered(study.plan(Request(()), data=str(place)), by_model())[-1]
+    told = answer.settings["missing"]
+    assert told["tests"] == 7 and told["overturned"] == [sum(fell(n, k) for n in range(11, 18)) for k in (0, 1)]
+    for mean, numbers in zip(told["ratios"], (range(11, 18), range(18, 35)), strict=True):
+        assert mean == pytest.approx(math.exp(np.mean([math.log(0.1 + 0.001 * n) for n in numbers])))
+    words = " ".join(get_study("shake-table").page(stored(tmp_path, "shake-table", answer)).whole().measured)
+    assert "7 tests have no motion at hand" in words and "published at 800 Hz" in words
+
+
 # What a row may have of what was measured: sums over all tests, and over cells; by test there are our own outcomes.
 STORED = {
     "score": {
@@ -336,17 +374,30 @@ STORED = {
         "forecast",
         "judged",
     },
-    "fit": {"change", "slenderness", "centre", "spread", "alone_right", "size", "right", "brier", "brier_interval"}
+    "fit": {
+        "change",
+        "slenderness",
+        "centre",
+        "spread",
+        "alone_right",
+        "neighbours",
+        "size",
+        "right",
+        "brier",
+        "brier_interval",
+    }
     | {"misses", "false_alarms"},
     "paired": {"forecast", "beside", "difference", "interval", "more_right", "more_interval", "disagree", "right"},
     "reliability": {"forecast", "size", "mean", "happened"},
-    "where": {"forecast", "size", "right"},
+    "where": {"among", "forecast", "size", "right"},
+    "quarter": {"size", "ratio", "overturned", "mean"},
     "cell": {"size", "pga", "ratio", "overturned", "mean"},
     "run": {"slenderness", "outcomes", "failed", "cpu_seconds"},
     "engine": {"tier", "size", "failed", "both_stand", "both_overturn", "only_a", "only_b", "p_value", "records_a"}
     | {
         "records_b",
         "p_records",
+        "near",
         "on_edge",
         "equal",
         "interval",
@@ -362,7 +413,7 @@ STORED = {
     "absent": {"reason"},
 }
 SETTINGS = {"quick", "campaign", "digest", "cite", "tests", "records", "missing", "steps", "overturned", "agree"}
-SETTINGS |= {"specimens", "kinds", "equal", "others", "variants", "model_runs", "model_seconds"}
+SETTINGS |= {"published", "specimens", "kinds", "equal", "others", "variants", "model_runs", "model_seconds"}
 OF_ALL = {"part", "engine", "variant", "specimen"}
 
 
@@ -374,7 +425,7 @@ def test_no_column_is_stored_that_could_hold_what_was_measured_in_one_test(found
     assert result.settings.keys() == SETTINGS | {"changed_while_running"}
     assert {*result.arrays} == {"right/as it is", "right/friction 0.5"}  # sums over all tests
     assert all(array.shape == (2, 9) for array in result.arrays.values())
-    for row in where(result.rows, part={"cell", "reliability"}):
+    for row in where(result.rows, part={"cell", "reliability", "quarter", "where"}):
         assert row["size"] >= FEWEST
 
 
@@ -415,7 +466,8 @@ def test_no_motion_of_a_table_is_stored_with_the_runs(folder, small):
 def test_rows_of_the_study_are_what_was_counted(found, folder):
     answer, result = found
     one = read_campaign(folder)
-    assert result.settings["missing"] == 2 and len(result.settings["tests"]) == len(one.tests) == 22
+    assert result.settings["missing"] == {"tests": 2, "overturned": None, "ratios": None}  # too few to tell
+    assert len(result.settings["tests"]) == len(one.tests) == 22
     for k, specimen in enumerate(("boulder 1", "boulder 2")):
         measured = outcomes_of(one.tests, k)
         (row,) = where(result.rows, part="score", specimen=specimen, forecast=MODEL, judged=BY_RECORD)
@@ -432,8 +484,8 @@ def test_rows_of_the_study_are_what_was_counted(found, folder):
         for row in where(result.rows, part="engine", specimen=specimen):
             assert row["failed"] == (specimen == "boulder 2") and row["only_b"] == 0 < row["only_a"] <= 2
     apart = sum(fell(n, 0) != fell(n, 1) for n in range(11, 35) if n not in (13, 20))
-    (where_alike,) = where(result.rows, part="where", specimen="boulder 1", forecast=MODEL)
-    assert where_alike["size"] == result.settings["agree"] == 22 - apart
+    assert result.settings["agree"] == 22 - apart and 0 < apart < FEWEST
+    assert not where(result.rows, part="where", among=ALIKE)  # the rest would be few
     for row in where(result.rows, part="engine", specimen=ALL):
         parts = where(result.rows, part="engine", engine=row["engine"], variant=row["variant"])
         assert row["only_a"] == sum(part["only_a"] for part in parts if part["specimen"] != ALL)
@@ -479,7 +531,7 @@ def test_tests_of_ones_own_go_all_the_way(tmp_path, small):
     plan = study.plan(Request((ENGINE,)), data=str(own(place)))
     result = stored(tmp_path, "shake-table", answered(plan, by_model())[-1])
     assert result.settings["agree"] is None and result.settings["cite"] == ""
-    assert not where(result.rows, part="where") and not where(result.rows, specimen=ALL)
+    assert not where(result.rows, among=ALIKE) and not where(result.rows, specimen=ALL)
     assert get_study("shake-table").page(result).whole().figures
     assert len(get_study("shake-table").judgements(result)) == 1
     assert json.dumps(result.settings).find(str(tmp_path)) == -1  # no place of anyone's machine
@@ -504,7 +556,7 @@ def test_real_runs_of_the_model_are_those_of_the_study(tmp_path, folder, monkeyp
 @needs_tests
 def test_the_real_campaign_is_read():
     one = read_campaign(REAL, every=40)
-    assert len(one.tests) == 13 and one.missing == 92
+    assert len(one.tests) == 13 and len(one.missing) == 92
     assert all(abs(np.median(test.motion.samples[:200])) < 1e-9 for test in one.tests)
     assert {len(test.authors[0]) for test in one.tests} == {5} and {len(test.authors[1]) for test in one.tests} == {8}
     assert all(test.motion.dt == pytest.approx(0.005) for test in one.tests)
