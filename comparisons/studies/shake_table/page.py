@@ -21,11 +21,11 @@ from .words import apart, bounds, how, name_of, not_shown, sentence, title
 
 APART = 0.15  # between what was observed and what was predicted, of cells that are listed
 FORECAST, CHANGE = Column("predicted by", "forecast"), Column("change of the model", "change")
-RIGHT = Column("right", lambda row: None if row["right"] is None else f"{row['right']} of {row['size']}")
 SHARE = Column("right answers [%]", "share", percent=True, within="within")
-RIGHT_SHARE = Column(
-    "share", lambda row: row["right"] / row["size"], percent=True, within=lambda row: (row["low"], row["high"])
+SHARE_RIGHT = Column(
+    "", lambda row: row["right"] / row["size"], percent=True, within=lambda row: (row["low"], row["high"])
 )
+RIGHT = Column("right", lambda row: f"{row['right']}, {SHARE_RIGHT.text(row)}")
 ERRORS = Column("missed / false alarms", "{misses} / {false_alarms}")
 BRIER = Column("Brier score [-]", "brier", 2, within="brier_interval")
 BARS = (BEYOND, MODEL, CURVE, AUTHORS, THRESHOLD, "PGA, threshold", FREQUENT)  # besides the solvers
@@ -90,7 +90,7 @@ def _by_specimen(caption: str, rows: Sequence[dict[str, Any]], names: Sequence[C
 def _scores(caption, rows):
     ways = {row["judged"] for row in rows}
     judged = (Column("judged on tests", "judged"),) if len(ways) > 1 else ()
-    return _by_specimen(caption, rows, (FORECAST, *judged), RIGHT, RIGHT_SHARE, ERRORS, BRIER)
+    return _by_specimen(caption, rows, (FORECAST, *judged), RIGHT, ERRORS, BRIER)
 
 
 def _pairs(result):
@@ -101,8 +101,7 @@ def _pairs(result):
         (FORECAST, Column("compared with", "beside")),
         Column("more right", "more_right", 2, within="more_interval"),
         Column("Brier smaller by [-]", "difference", within="interval"),
-        Column("disagree", "disagree"),
-        Column("first right", "right"),
+        Column("first right where they disagree", "{right} of {disagree}"),
     )
 
 
@@ -265,7 +264,7 @@ def _worst(result):
 def _where(result):
     rows = where(result.rows, part="where")
     names = (Column("among the tests in which", "among"), FORECAST)
-    return _by_specimen("Right answers among some of the tests", rows, names, RIGHT)
+    return _by_specimen("Right answers among some of the tests", rows, names, Column("right", "{right} of {size}"))
 
 
 def _fitted(result):
@@ -284,8 +283,8 @@ def _fitted(result):
 
 
 def _by_restitution(result):
-    """{kind of model: right answers by specimen and slenderness}, of those that differ in the restitution alone."""
-    names = [kind for kind in result.settings["kinds"] if kind == AS_IT_IS or kind.startswith("restitution")]
+    """{kind of model: right answers by specimen and slenderness}, of every other factor on the restitution."""
+    names = [kind for kind in result.settings["kinds"] if kind == AS_IT_IS or kind.startswith("restitution")][::2]
     return {name: result.arrays[f"right/{name}"] for name in names}
 
 
@@ -301,6 +300,6 @@ def _fits(result):
         (CHANGE,),
         Column("slenderness [deg]", _degrees("slenderness")),
         Column("mean, spread [deg]", lambda row: [math.degrees(row["centre"]), math.degrees(row["spread"])]),
-        RIGHT,
+        Column("right", "right"),
         BRIER,
     )

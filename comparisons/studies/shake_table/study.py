@@ -103,7 +103,8 @@ def plan(request: Request, *, data: Data = None) -> Plan:
 
 
 def _name(kind):
-    return ", ".join(f"{name} {value:g}" for name, value in kind.items()) or AS_IT_IS
+    words = (f"{name} {'' if name == 'friction' else 'times '}{value:g}" for name, value in kind.items())
+    return ", ".join(words) or AS_IT_IS
 
 
 def _grid(campaign):

@@ -77,9 +77,9 @@ def told_of(campaign: Campaign, k: int, kinds: Sequence[Outcomes], names: Sequen
     rows += [{"part": "cell", **shared, **cell} for cell in cell_rows(plane, measured, found[MODEL])]
     rows += [{"part": "quarter", **shared, **one} for one in quarter_rows(plane[1], measured, found[MODEL])]
     velocity, limit = measures["PGV"], threshold(measures["PGV"], measured)
-    among = {CLOSE: (velocity > limit / WITHIN) & (velocity < limit * WITHIN)} | (
-        {ALIKE: others[0] == measured} if others else {}
-    )
+    among = {CLOSE: (velocity > limit / WITHIN) & (velocity < limit * WITHIN)}
+    if others:
+        among[ALIKE] = others[0] == measured
     rows += [row for where, chosen in among.items() for row in _among(shared, where, chosen, found, measured)]
     return Told(measured, found), rows
 

@@ -70,11 +70,15 @@ def bounds(result: Result) -> str:
         f"{listed([str(one) for one in settings['overturned']])} overturned ({names})."
     )
     each = where(result.rows, part="score", forecast=EACH)
+    model = where(result.rows, part="score", forecast=MODEL, judged=BY_RECORD)
     words += (
-        " No test was repeated on purpose. But under one record outcomes are nearly those of its scale alone: one "
-        f"threshold of PGA for each record, fitted to these very tests, is right in "
-        f"{listed([str(row['right']) for row in each])}. So most of the model’s errors are its own."
+        "No test was repeated on purpose, but one threshold of PGA for each record, fitted to these very tests, is "
+        f"right in {listed([str(row['right']) for row in each])}"
     )
+    own = all(
+        2 * (one["size"] - one["right"]) < row["size"] - row["right"] for one, row in zip(each, model, strict=True)
+    )
+    words += ": most of the model’s errors are its own, not chance." if own else "."
     if settings["agree"] is not None:
         words += (
             f" The two blocks end alike in {settings['agree']} tests; they differ in shape, so that is a yardstick and "

@@ -84,7 +84,7 @@ def test_logistic_regression_is_the_likeliest_one():
 
 @pytest.mark.parametrize("seed", range(5))
 def test_logistic_regression_of_collinear_features_and_their_squares_settles(seed):
-    """At the likeliest one the slope of the likelihood is 0, but for the ridge, which weighs on other features in each."""
+    """At the likeliest one the slope is 0, but for the ridge, which weighs on other features in each."""
     rng = np.random.default_rng(seed)
     pga = rng.normal(-2, 1, 300)
     plain = np.column_stack([pga, pga + 0.1 * rng.normal(size=300)])
