@@ -17,7 +17,7 @@ from .drawn import agreement, plane, reliabilities
 from .judging import AS_IT_IS, AUTHORS, BEYOND, BY_RECORD, CURVE, FREQUENT, IN_SAMPLE, MODEL, ONE, THRESHOLD
 from .measures import TABLE
 from .runs import ALL, ANSWERS, counted
-from .words import apart, bounds, how, name_of, not_shown, sentence, title
+from .words import apart, bounds, how, more_right, name_of, not_shown, sentence, title
 
 APART = 0.15  # between what was observed and what was predicted, of cells that are listed
 FORECAST, CHANGE = Column("predicted by", "forecast"), Column("change of the model", "change")
@@ -90,17 +90,21 @@ def _by_specimen(caption: str, rows: Sequence[dict[str, Any]], names: Sequence[C
 def _scores(caption, rows):
     ways = {row["judged"] for row in rows}
     judged = (Column("judged on tests", "judged"),) if len(ways) > 1 else ()
-    return _by_specimen(caption, rows, (FORECAST, *judged), RIGHT, ERRORS, BRIER)
+    columns = (RIGHT, BRIER) if judged else (RIGHT, ERRORS, BRIER)
+    return _by_specimen(caption, rows, (FORECAST, *judged), *columns)
 
 
 def _pairs(result):
-    return _by_specimen(
+    rows = [row for some in grouped(where(result.rows, part="paired"), "forecast", "beside").values() for row in some]
+    return table(
         "Paired: how many more answers of the first are right, and by how much its Brier score is smaller (a yes or no "
         "is a probability of 1 or 0), with 95 % intervals by record; and who is right where the two disagree",
-        where(result.rows, part="paired"),
-        (FORECAST, Column("compared with", "beside")),
-        Column("more right", "more_right", 2, within="more_interval"),
-        Column("Brier smaller by [-]", "difference", within="interval"),
+        rows,
+        FORECAST,
+        Column("compared with", "beside"),
+        Column("specimen", "specimen"),
+        Column("more right", more_right),
+        Column("Brier score smaller by [-]", "difference", within="interval"),
         Column("first right where they disagree", "{right} of {disagree}"),
     )
 
@@ -154,18 +158,20 @@ def _bars(result: Result, engines: Sequence[dict[str, Any]]) -> Figure | None:
         same = _score(mine, forecast=ONE, judged=IN_SAMPLE)
         rows.append(_bar(same, "model, as engines", same["right"], (same["low"], same["high"])))
         for row in where(engines, specimen=one["name"]):
-            rows.append(_bar(row, name_of(row), *_between(row, same)))
+            failed = f" ({row['failed']} failed)" if row["failed"] else ""
+            rows.append(_bar(row, name_of(row) + failed, *_between(row, same)))
     agree = result.settings["agree"]
     rules = () if agree is None else ((agree / len(result.settings["tests"]), "the other boulder"),)
     first = math.floor(10 * min(low for row in rows for low in row["within"]))  # tenths
+    marked = range(first, 11, 1 if first >= 5 else 2)
     return ranks(
         rows,
         Column("predicted by", "name"),
         SHARE,
         "Share of outcomes predicted, with 95 % intervals by record. “model, as engines” and the engines: at one "
         "slenderness, fitted to all tests; the rest held out by record. Where an engine differs from the model in fewer"
-        " than five tests, its right answers are not told: the line spans what is possible.",
-        Axis(SHARE.head, first / 10, 1.0, ticks=tuple((tenth / 10, str(10 * tenth)) for tenth in range(first, 11))),
+        " than five tests, its right answers are not told: the line spans what is possible. A failed run is not right.",
+        Axis(SHARE.head, first / 10, 1.0, ticks=tuple((tenth / 10, str(10 * tenth)) for tenth in marked)),
         panel="specimen",
         rules=rules,
     )
@@ -249,6 +255,7 @@ def _worst(result):
     cells = [
         row for row in where(result.rows, part="cell") if abs(row["overturned"] / row["size"] - row["mean"]) > APART
     ]
+    cells.sort(key=lambda row: -abs(row["overturned"] / row["size"] - row["mean"]))
     return table(
         f"Cells of the figure whose shares, observed and predicted, are more than {percent(APART)} apart",
         cells,

@@ -35,7 +35,7 @@ def sentence(result: Result, engines: Sequence[dict[str, Any]]) -> str:
         )
     rows = [row for row in where(together, tier="defaults") if _unsafe(row)]
     if rows:
-        said = [f"{name_of(row)} (p = {number(row['p_records'], 2)})" for row in rows]
+        said = [f"{name_of(row)} (p = {number(row['p_records'], 2)})" for row in rows]
         words.append(f"On the unsafe side, by a sign test over records: {listed(said)}.")
     fits = [one for row in where(result.rows, part="fit", change=AS_IT_IS) for one in row["neighbours"]]
     step = math.degrees(result.settings["specimens"][0]["grid"][1] - result.settings["specimens"][0]["grid"][0])
@@ -72,7 +72,7 @@ def bounds(result: Result) -> str:
     each = where(result.rows, part="score", forecast=EACH)
     model = where(result.rows, part="score", forecast=MODEL, judged=BY_RECORD)
     words += (
-        "No test was repeated on purpose, but one threshold of PGA for each record, fitted to these very tests, is "
+        " No test was repeated on purpose, but one threshold of PGA for each record, fitted to these very tests, is "
         f"right in {listed([str(row['right']) for row in each])}"
     )
     own = all(
@@ -90,22 +90,23 @@ def bounds(result: Result) -> str:
     )
 
 
+def more_right(row: dict[str, Any]) -> str:
+    """Of a pair of forecasts: in how many more tests the first is right, with the interval."""
+    low, high = row["more_interval"]
+    return f"{row['more_right']} ({low:.0f} to {high:.0f})".replace("-", "−")
+
+
 def not_shown(result: Result) -> tuple[str, str]:
     """What the figures show, and what they do not."""
     pairs = {(row["specimen"], row["beside"]): row for row in where(result.rows, part="paired", forecast=MODEL)}
     last = list(dict.fromkeys(name for name, _ in pairs))[-1]  # all specimens together, if there are several
 
-    def more(name):
-        row = pairs[last, name]
-        low, high = row["more_interval"]
-        return f"{row['more_right']} ({low:.0f} to {high:.0f})".replace("-", "−")
-
     runs = len(result.settings["tests"]) * len(result.settings["specimens"])
     return (
-        f"What this shows: of {runs} outcomes the model is right in {more(THRESHOLD)} more than a threshold of PGV, "
-        f"and in {more(CURVE)} more than a curve in PGA and PGV with five slopes, which was added when a referee "
-        "asked for it. That curve holds for these blocks alone. Model and curve joined are compared with the curve "
-        "above.",
+        f"What this shows: of {runs} outcomes the model is right in {more_right(pairs[last, THRESHOLD])} more than a "
+        f"threshold of PGV, and in {more_right(pairs[last, CURVE])} more than a curve in PGA and PGV with five "
+        "slopes, which was added when a referee asked for it. That curve holds for these blocks alone. Model and "
+        "curve joined are compared with the curve above.",
         "What it does not show: it is one campaign, of one kind of stone, on one axis. The model’s block is "
         "symmetric; a boulder has another angle to either side, stands on three points, may twist, walk and wear. "
         "The spread stands for all of this. It was brought in after a prototype on the same tests, so no test is "
