@@ -194,7 +194,7 @@ def _table_of_engines(result, engines):
     return table(
         "Engines and the model at the same slenderness. Equal: at most 5 % of outcomes differ, by the upper end of the "
         f"95 % interval (Wilson, by record){_undecidable(result)}. In brackets, records in which most differences go "
-        "that way. Last, how many differences are among the runs in which a change of the scene by 1e-4 changes the "
+        "that way. Last, how many differences are among the runs in which a change of the scene by 10⁻⁴ changes the "
         "model’s own outcome or time of a fall",
         where(engines, specimen=ALL) or engines,
         NAME,

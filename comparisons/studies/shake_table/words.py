@@ -27,22 +27,20 @@ def sentence(result: Result, engines: Sequence[dict[str, Any]]) -> str:
     names = listed([row["specimen"] for row in scores])
     words = [f"The model is wrong in {wrong} of {len(result.settings['tests'])} tests ({names})."]
     together = where(engines, specimen=ALL) or engines
-    for row in where(together, tier={"tuned", "defaults"}):
-        failed = f", and fails in {row['failed']}" if row["failed"] else ""
+    if tuned := where(together, tier="tuned"):
+        said = [f"{name_of(row)}, {apart(row)} of {row['size']}" for row in tuned]
+        fits = [one for row in where(result.rows, part="fit", change=AS_IT_IS) for one in row["neighbours"]]
+        first, second, *_ = result.settings["specimens"][0]["grid"]
         words.append(
-            f"{name_of(row)}, ends differently from it in {apart(row)} of {row['size']} runs: it misses "
-            f"{row['only_a']} of the model’s overturnings and adds {row['only_b']}{failed}."
+            f"Runs that end differently from it: {listed(said)}; the model itself, with a slenderness "
+            f"{number(math.degrees(second - first), 1)} deg smaller or larger, {min(fits)} to {max(fits)} of "
+            f"{len(result.settings['tests'])}."
         )
-    rows = [row for row in where(together, tier="defaults") if _unsafe(row)]
-    if rows:
-        said = [f"{name_of(row)} (p = {number(row['p_records'], 2)})" for row in rows]
-        words.append(f"On the unsafe side, by a sign test over records: {listed(said)}.")
-    fits = [one for row in where(result.rows, part="fit", change=AS_IT_IS) for one in row["neighbours"]]
-    step = math.degrees(result.settings["specimens"][0]["grid"][1] - result.settings["specimens"][0]["grid"][0])
-    words.append(
-        f"For comparison: with a slenderness {number(step, 1)} deg smaller or larger the model ends differently from "
-        f"itself in {min(fits)} to {max(fits)} tests."
-    )
+    for row in where(together, tier="defaults"):
+        failed = f" and fails in {row['failed']} runs" if row["failed"] else ""
+        unsafe = f", on the unsafe side (p = {number(row['p_records'], 2)} by record)" if _unsafe(row) else ""
+        added = f"misses {row['only_a']} of the model’s overturnings, adds {row['only_b']}{failed}"
+        words.append(f"{name_of(row)}, {added}{unsafe}.")
     return " ".join(words)
 
 
@@ -72,18 +70,15 @@ def bounds(result: Result) -> str:
     each = where(result.rows, part="score", forecast=EACH)
     model = where(result.rows, part="score", forecast=MODEL, judged=BY_RECORD)
     words += (
-        " No test was repeated on purpose, but one threshold of PGA for each record, fitted to these very tests, is "
-        f"right in {listed([str(row['right']) for row in each])}"
+        " One threshold of PGA for each record, fitted to these very tests, is right in "
+        f"{listed([str(row['right']) for row in each])}"
     )
     own = all(
         2 * (one["size"] - one["right"]) < row["size"] - row["right"] for one, row in zip(each, model, strict=True)
     )
     words += ": most of the model’s errors are its own, not chance." if own else "."
     if settings["agree"] is not None:
-        words += (
-            f" The two blocks end alike in {settings['agree']} tests; they differ in shape, so that is a yardstick and "
-            "no bound."
-        )
+        words += f" The two blocks, of unlike shape, end alike in {settings['agree']}."
     return words + (
         " The model is planar, the block is not. Its slenderness and the spread of that are fitted, and judged on "
         "records that they were not fitted to."

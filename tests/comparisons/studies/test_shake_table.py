@@ -521,7 +521,7 @@ def test_the_page_with_the_campaign_at_hand_draws_every_test_and_without_it_cell
     assert "test 11: " not in cells_drawn and "overturned; model" in cells_drawn
     assert "–" in _right_of_engines(bare)
     assert "fitted" in " ".join(bare.text) and granite.DOI in " ".join(bare.measured)
-    assert "ends differently from it in" in " ".join(bare.text)
+    assert "end differently from it: " in " ".join(bare.text)
     assert str(result.settings["agree"]) in " ".join(bare.text)
 
 
