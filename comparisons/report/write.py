@@ -51,6 +51,7 @@ SHORT = {
     "autopsy": "Why engines err",
     "overturning": "Many pulses",
     "recorded": "Recorded motions",
+    "shake-table": "Shake table",
     "fragility": "Many earthquakes",
     "sensitivity": "What matters more",
     "speed-error": "Cost against error",

@@ -217,6 +217,11 @@ class Chart:
             f'<text x="{place:.1f}" y="{height}" class="soft" text-anchor="{anchor}">{escape(words)}</text>'
         )
 
+    def beside(self, x: float, y: float, words: str) -> None:
+        """Words to the right of a point."""
+        ((across, up),) = self.at([x], [y])
+        self.over.append(f'<text x="{across + 6:.1f}" y="{up + 4.5:.1f}" class="soft">{escape(words)}</text>')
+
     def label(self, y: float, text: str, who: str = "", tone: str = "", look: Look | None = None) -> None:
         """Name of a line, in the right margin at the height where it ends."""
         self.ends.append((float(self.at([self.x.low], [y])[0][1]), text, _group(who, False, tone, look)))

@@ -160,7 +160,14 @@ def _linear_axis(label, values):
 
 
 def ranks(
-    rows: Iterable[Row], name: Column, value: Column, caption: str, axis: Axis, *, panel: Key = lambda row: ""
+    rows: Iterable[Row],
+    name: Column,
+    value: Column,
+    caption: str,
+    axis: Axis,
+    *,
+    panel: Key = lambda row: "",
+    rules: Sequence[tuple[float, str]] = (),
 ) -> Figure | None:
     """Panels of values one below the other, each with its interval; None: nothing to draw.
 
@@ -176,6 +183,8 @@ def ranks(
         Of the values; what lies beyond stands at its end.
     panel : key
         Title of a row's panel.
+    rules : sequence of (value, words)
+        Lines to compare with, in every panel.
     """
     kept = [row for row in rows if value.of(row) is not None]
     charts, engines = [], {row["engine"]: None for row in kept if row["engine"] != REFERENCE}
@@ -186,10 +195,14 @@ def ranks(
             Axis("", len(members) - 0.5, -0.5, ticks=names),
             f"{title + ': ' if title else ''}{value.head} of {', '.join(map(name.text, members))}.",
             title=str(title),
-            height=90 + 21 * len(members),
+            height=90 + 21 * len(members) + 16 * len(rules),
             left=room(map(name.text, kept)),
             right=24,
+            head=16 * len(rules),
         )
+        for line, (at, words) in enumerate(rules):
+            chart.rule(at)
+            chart.heading(at, words, line)
         for place, row in enumerate(members):
             who = "" if row["engine"] == REFERENCE else row["engine"]
             middle, *ends = np.clip([value.of(row), *value.ends(row)], axis.low, axis.high)

@@ -302,7 +302,7 @@ class Column:
         if isinstance(value, list | tuple):
             return ", ".join(map(self.words, value)) or "–"
         if self.digits is None or isinstance(value, int):
-            return short(value) if self.digits is None else str(value)
+            return short(value) if self.digits is None else str(value).replace("-", "−")
         return percent(value, self.digits) if self.percent else number(value, self.digits)
 
 

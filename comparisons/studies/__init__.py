@@ -56,6 +56,7 @@ QUESTIONS = {
     "fragility": (
         "Fragility over intensity: which measure tells most, does a lognormal curve fit, does the engine shift it?"
     ),
+    "shake-table": "Blocks that were really shaken: what do the model, the engines and simpler measures predict?",
     "surface": "Probability of overturning over intensity and slenderness, from a million runs of the analytic model.",
     "sensitivity": (
         "What changes the outcome more often than the choice of the engine: vertical motion, a per cent of slenderness?"

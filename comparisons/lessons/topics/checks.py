@@ -1,6 +1,7 @@
 """Lesson 8: how to check a simulation."""
 
 import functools
+import math
 
 import numpy as np
 
@@ -11,9 +12,13 @@ from analytic.rocking import RockingModel, base_jump_length, base_jump_length_as
 from analytic.time_stepping import simulate_time_stepping
 from analytic.twin import simulate_twin
 
+from ...running.provenance import RESULTS
+from ...showing.parts import where
+from ...studies.rows import read_study
 from ..lesson import MODEL, SOFT, Control, Equation, Exercise, Lesson, View, canvas
 
 SLENDERNESS, START, DURATION = 0.28, 0.6, 2.5  # rad, tilt over slenderness, s
+TESTS, OVERTURNED = 490, 187  # of a granite boulder on a shake table, see the study
 SOLVERS = ("event-driven", "fixed steps")
 LEVELS = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
 FLOOR = 1e-17  # zero is drawn here
@@ -118,6 +123,15 @@ def mirror_defect() -> float:
     return abs(run(SOLVERS[0], 6.0).end.tilt + run(SOLVERS[0], 6.0, -1.0).end.tilt)
 
 
+def skill() -> float:
+    """Brier score of a forecast that knows the share of overturnings alone, over the model's on the shake table; nan if
+    its study is not stored."""
+    file = RESULTS / "shake-table.json"
+    rows = where(read_study(file).rows, part="fit", change="as it is") if file.exists() else ()
+    share = OVERTURNED / TESTS
+    return share * (1 - share) / rows[0]["brier"] if rows else math.nan
+
+
 def code() -> float:
     from analytic import Base, Block, Scene
     from analytic.rocking import base_jump_length_as_printed, restitution
@@ -140,6 +154,7 @@ LESSON = Lesson(
         "name five checks, and the errors that each of them detects",
         "measure an order of convergence",
         "find a misprint by a law that it violates",
+        "tell verification (are the equations solved right?) from validation (are they the right equations?)",
     ),
     needs="lessons 2 and 5",
     minutes=10,
@@ -165,6 +180,8 @@ LESSON = Lesson(
         "*Each check misses some errors.* Energy does not show a shift in time. The mirror image shows only errors "
         "that differ between the two sides. A second program shares the errors of its equations.",
         "*A finer level checks the solver, not the model.* It converges to wrong equations, too.",
+        "*None of the five is a validation.* A model can be solved to ten digits and be wrong about a real block. Only "
+        "tests tell, those to which nothing was fitted, and beside a simpler rule that may do as well.",
         "*Trajectories do not show small misprints.* (8) as printed changes the base’s jump by a few per cent. No plot "
         "shows that, but the momentum does.",
         "*A check that cannot fail is no check.* Introduce an error into the model, and see which check fails.",
@@ -194,6 +211,17 @@ LESSON = Lesson(
             mirror_defect,
             "rad",
             "Every operation is the same but for signs, which floating-point arithmetic keeps.",
+        ),
+        Exercise(
+            f"Validation: of {TESTS} tests on a shake table {OVERTURNED} overturned a granite boulder (`rocking study "
+            "shake-table`). The mean square error of a probability is its Brier score. How many times larger than the "
+            "model’s is that of a forecast that always gives the share of tests that overturned?",
+            skill,
+            "",
+            "A share $p$ has a Brier score of $p (1 - p)$. The model’s is stored, on records to which it was not "
+            "fitted. It is far from 0: whatever the solver’s digits, that is how well a planar block describes a "
+            "boulder.",
+            2,
         ),
     ),
     code=code,

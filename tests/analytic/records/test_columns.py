@@ -102,3 +102,10 @@ def test_refused(tmp_path, text, said, message):
 )
 def test_channels_side_by_side_are_read_when_one_is_chosen(tmp_path, text, column, values):
     assert read_record(write(tmp_path, text), "m/s2", dt=0.01, column=column).samples.tolist() == values
+
+
+@pytest.mark.parametrize("samples", [17_000, 22_856, 39_996])
+def test_times_of_six_digits_that_are_half_a_unit_off_are_those_of_a_whole_frequency(tmp_path, samples):
+    """As LabVIEW writes 800 Hz: 16.03125 s stands there as 16.0312, and one step alone fits them all."""
+    text = "Time [s]\tAmplitude\n" + "".join(f"{k / 800:.6g}\t{(-1) ** k * 0.1}\n" for k in range(samples))
+    assert read_record(write(tmp_path, text), "g").dt == 1 / 800

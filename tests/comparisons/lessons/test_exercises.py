@@ -17,6 +17,8 @@ from analytic.twin import simulate_twin
 from comparisons.lessons import engine_runs
 from comparisons.lessons.notebook import answer
 from comparisons.lessons.topics import bearing, caryatid, chaos, checks, corner, cost, impacts, lessons, tipping
+from comparisons.running.provenance import RESULTS
+from comparisons.studies.rows import read_study
 
 
 def test_every_exercise_is_tried_here():
@@ -66,6 +68,18 @@ LOSSY = 1 - restitution(Scene(block=caryatid_block(0.28), base=BASE))
 )
 def test_a_closed_form(answer, known, near):
     assert answer() == pytest.approx(known, **near)
+
+
+def test_the_skill_of_the_model_on_a_shake_table(monkeypatch):
+    """Held against a forecast that is made here, test by test."""
+    stored = read_study(RESULTS / "shake-table.json")
+    assert (len(stored.settings["tests"]), stored.settings["overturned"][0]) == (checks.TESTS, checks.OVERTURNED)
+    fell = np.arange(checks.TESTS) < checks.OVERTURNED
+    constant = np.mean((np.full(checks.TESTS, fell.mean()) - fell) ** 2)
+    model = next(row for row in stored.rows if row.get("forecast") == "model")  # of the first boulder, held out
+    assert checks.skill() == pytest.approx(constant / model["brier"]) and 2 < checks.skill() < 10
+    monkeypatch.setattr(checks, "RESULTS", Path("nowhere"))
+    assert math.isnan(checks.skill())
 
 
 @pytest.mark.parametrize("given, e", [(None, E), (0.8, 0.8)])

@@ -13,6 +13,7 @@ import pytest
 from answered import answered, by_model, by_runs, stored
 from installed_package import FAKE_ENGINE, install_fake_engine
 from record_files import pairs
+from table_tests import published
 
 import engines
 from analytic import synthetic_motion
@@ -25,12 +26,14 @@ from comparisons.studies.caryatid.runs import simulations
 from comparisons.studies.overturning import study as overturning
 from comparisons.studies.restitution.cases import CARYATID_BASE, Grid
 from comparisons.studies.rows import wrong_with
+from comparisons.studies.shake_table import campaign
+from comparisons.studies.shake_table import study as shake_table
 from comparisons.studies.speed_error import growth
 from comparisons.studies.speed_error.cases import near_overturning, trials
 from engines.plugins import find_engines
 from engines.simulating import Simulator
 
-ASK = Request(("crude",), quick=True)
+ASK, ASK_ALL = Request(("crude",), quick=True), Request(("crude",))
 DECIDING = FAKE_ENGINE.replace("takes_restitution=True,", "").replace("step: float", "span: float")
 DECIDING = DECIDING.replace("settings.step", "settings.span").replace('kind="assisted"', 'kind="tuned"')
 COLOUR = "#d55e00"
@@ -176,8 +179,9 @@ def test_the_growth_of_cost_and_the_report_run_it(crude):
 
 
 def test_every_study_of_this_project_is_covered():
-    # surface takes any solver a run at a time: test_surface; recorded: below; and test_constants, test_mistakes
-    own_tests = {"overturning", "caryatid", "tolerances", "surface", "recorded", "constants", "mistakes"}
+    # surface takes any solver a run at a time: test_surface; recorded, shake-table: below; and test_constants,
+    # test_mistakes
+    own_tests = {"overturning", "caryatid", "tolerances", "surface", "recorded", "constants", "mistakes", "shake-table"}
     assert set(BUILT_IN) == SHORT.keys() | own_tests
 
 
@@ -188,3 +192,16 @@ def test_the_study_of_recorded_motions_runs_it_where_it_is_tuned(crude, monkeypa
     study = get_study("recorded")
     found = answered(study.plan(ASK, records=str(pairs(tmp_path, 2))), by_model(history=True))[-1]
     assert rows_with(shown(study, found, tmp_path))
+
+
+@pytest.mark.parametrize("crude", [FAKE_ENGINE], indirect=True)
+def test_the_study_of_a_shake_table_runs_it_on_some_of_the_tests(crude, monkeypatch, tmp_path):
+    monkeypatch.setattr(campaign, "GRID", 9)
+    monkeypatch.setattr(shake_table, "KINDS", ({},))
+    place = tmp_path / "tests"
+    place.mkdir()
+    plan = get_study("shake-table").plan(ASK_ALL, data=str(published(place)))
+    found = answered(plan, by_model())[-1]
+    assert rows_with(shown(get_study("shake-table"), found, tmp_path))
+    (run, _) = where(found.rows, part="run", engine="crude")
+    assert len(run["outcomes"]) - run["outcomes"].count("-") == len(run["outcomes"]) / shake_table.OTHERS

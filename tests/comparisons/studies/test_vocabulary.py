@@ -5,6 +5,7 @@ from collections import Counter
 import pytest
 from answered import answered, by_model
 from record_files import pairs
+from table_tests import published
 
 from comparisons.running.plan import Request
 from comparisons.running.provenance import RESULTS, read_result
@@ -14,16 +15,20 @@ from engines import installed_engines
 
 # Of no stored result: an impact about which nothing can be determined.
 UNSEEN = {"autopsy": {"why_not"}}
+FAILED = {"kind": "solver", "reason": "the solver gave up", "message": "no convergence"}
 UNSEEN_OF_ANY = {"exit_code", "time_limit"}  # of failures that no stored run had
 
 
 @pytest.fixture(scope="module")
 def columns(tmp_path_factory):
-    """{study: columns of its rows}; those of recorded motions are made up here, too."""
+    """{study: columns of its rows}; those of recorded motions and of a shake table are made up here, too."""
     folder = str(pairs(tmp_path_factory.mktemp("records"), 2))
     ask = Request(installed_engines()[:1], quick=True)
     recorded = answered(get_study("recorded").plan(ask, records=folder), by_model(history=True))[-1].rows
-    found = {"recorded": set().union(*recorded)}
+    tests = str(published(tmp_path_factory.mktemp("table")))
+    last = get_study("shake-table").plan(Request(ask.engines), data=tests)
+    shaken = answered(last, by_model(failure=lambda case: FAILED if case.solver != "analytic" else None))[-1].rows
+    found = {"recorded": set().union(*recorded), "shake-table": set().union(*shaken)}
     for result in map(read_result, RESULTS.glob("*.json")):
         found.setdefault(result.kind, set()).update(*result.rows)
     return found

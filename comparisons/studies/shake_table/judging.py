@@ -1,0 +1,188 @@
+"""What predicts the outcomes of a campaign, and how well: the model, and what is simpler, each judged on tests that it
+was not fitted to.
+
+Of the model one number is fitted, the slenderness in the plane of motion, and its spread: a boulder has no drawing, and
+does not stand twice alike. Its probability of overturning is the share of a normal spread of slendernesses at which it
+overturns. Both are those of the least Brier score on the tests they are fitted to. All else of the model is as given.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ...measuring.forecasts import (
+    HALF,
+    bent,
+    brier,
+    clustered,
+    folds,
+    halves,
+    held_out,
+    logistic,
+    middle,
+    right,
+    threshold,
+)
+
+BY_RECORD, BY_HALVES, IN_SAMPLE = "held out by record", "fitted to every other test", "fitted to the same tests"
+SPREADS = np.arange(1, 21) / 60  # of the normal spread, over the width of the grid of slendernesses
+MODEL, ONE, BOTH = "model", "model, one slenderness", "model and PGV, logistic"
+PGV, THRESHOLD = "PGV, logistic", "PGV, threshold"
+CURVE, BEYOND = "PGA and PGV, curve", "curve and model"
+FREQUENT, EACH = "the more frequent outcome", "a threshold of PGA for each record"
+OTHER, AUTHORS = "the other specimen", "authors’ discrete elements"
+AS_IT_IS = "as it is"  # the model without a change
+SURE = 1e-3  # nearest to 0 and 1 that a probability is taken where its odds are asked for
+
+
+@dataclass(frozen=True, eq=False)
+class Outcomes:
+    """What the model overturns, bool, shape (tests, slendernesses), and what overturned, shape (tests,)."""
+
+    slendernesses: np.ndarray
+    model: np.ndarray
+    measured: np.ndarray
+
+    @cached_property
+    def settings(self) -> np.ndarray:
+        """(mean, spread) [rad] of all spreads that are tried, shape (settings, 2)."""
+        width = np.ptp(self.slendernesses)
+        return np.array([(mean, spread * width) for mean in self.slendernesses for spread in SPREADS])
+
+    @cached_property
+    def probabilities(self) -> np.ndarray:
+        """Shape (tests, settings)."""
+        mean, spread = self.settings.T
+        weights = np.exp(-0.5 * ((self.slendernesses[:, None] - mean) / spread) ** 2)
+        return self.model @ (weights / weights.sum(axis=0))
+
+    @cached_property
+    def _errors(self) -> np.ndarray:
+        return brier(self.probabilities, self.measured[:, None])
+
+    def fitted(self, chosen: np.ndarray) -> int:
+        """The place among the settings of the least Brier score on the tests chosen."""
+        return int(self._errors[chosen].mean(axis=0).argmin())
+
+    def best(self, chosen: np.ndarray) -> int:
+        """The place of the one slenderness right most often on the tests chosen; of several the one in the middle."""
+        score = (self.model[chosen] == self.measured[chosen, None]).sum(axis=0)
+        return middle(np.flatnonzero(score == score.max()))
+
+    def spread(self, chosen: np.ndarray) -> np.ndarray:
+        """Probabilities of all tests, fitted to those chosen."""
+        return self.probabilities[:, self.fitted(chosen)]
+
+    def alone(self, chosen: np.ndarray) -> np.ndarray:
+        """0 or 1 of all tests, by the slenderness fitted to those chosen."""
+        return self.model[:, self.best(chosen)].astype(float)
+
+
+@dataclass(frozen=True, eq=False)
+class Forecast:
+    """name. fit: tests chosen -> probabilities of all tests. sure: they are 0 or 1."""
+
+    name: str
+    fit: Callable[[np.ndarray], np.ndarray]
+    sure: bool = False
+
+
+def forecasts(
+    outcomes: Outcomes, measures: dict[str, np.ndarray], other: np.ndarray | None, authors: dict[str, np.ndarray]
+) -> list[Forecast]:
+    """Of one specimen. measures: {"PGA", "PGV", and others: (tests,)}; other: outcomes of the other specimen, or None;
+    authors: {setting: outcomes} of their simulations."""
+    measured = outcomes.measured
+    logs = {name: np.log(values)[:, None] for name, values in measures.items()}
+
+    two = np.column_stack([logs["PGA"], logs["PGV"]])
+
+    def joined(features):
+        def fit(chosen):
+            p = np.clip(outcomes.spread(chosen), SURE, 1 - SURE)
+            return logistic(np.column_stack([features, np.log(p / (1 - p))]), measured, chosen)
+
+        return fit
+
+    found = [Forecast(MODEL, outcomes.spread), Forecast(ONE, outcomes.alone, sure=True)]
+    found.append(Forecast(FREQUENT, lambda chosen: np.full(len(measured), measured[chosen].mean() >= HALF), sure=True))
+    for name, values in measures.items():
+        found.append(Forecast(f"{name}, threshold", _above(values, measured), sure=True))
+        found.append(Forecast(f"{name}, logistic", _logistic(logs[name], measured)))
+    found += [Forecast("PGA and PGV, logistic", _logistic(two, measured))]
+    found += [Forecast(CURVE, _logistic(bent(two), measured))]
+    found += [Forecast(BOTH, joined(logs["PGV"])), Forecast(BEYOND, joined(bent(two)))]
+    if other is not None:
+        found.append(Forecast(OTHER, _logistic(other[:, None].astype(float), measured)))
+    if authors:
+        settings = np.array(list(authors.values()))
+        found.append(Forecast(AUTHORS, lambda chosen: _most_often(settings, measured, chosen), sure=True))
+    return found
+
+
+def of_each_record(values: np.ndarray, measured: np.ndarray, records: Sequence[str]) -> np.ndarray:
+    """0 or 1 by a threshold of a measure for each record, fitted to its own tests: how far the outcome under a record
+    is one of its scale alone."""
+    names, found = np.array(records), np.zeros(len(measured))
+    for name in dict.fromkeys(records):
+        own = names == name
+        found[own] = values[own] > threshold(values[own], measured[own])
+    return found
+
+
+def _above(values, measured):
+    return lambda chosen: (values > threshold(values[chosen], measured[chosen])).astype(float)
+
+
+def _logistic(features, measured):
+    return lambda chosen: logistic(features, measured, chosen)
+
+
+def _most_often(settings, measured, chosen):
+    score = (settings[:, chosen] == measured[chosen]).sum(axis=1)
+    return settings[middle(np.flatnonzero(score == score.max()))].astype(float)
+
+
+def judged(forecast: Forecast, records: Sequence[str], how: str = BY_RECORD) -> np.ndarray:
+    """Its probabilities, each as `how` says."""
+    count = len(records)
+    if how == IN_SAMPLE:
+        return forecast.fit(np.ones(count, dtype=bool))
+    return held_out(forecast.fit, folds(records) if how == BY_RECORD else halves(count), count)
+
+
+def score(probability: np.ndarray, measured: np.ndarray, records: Sequence[str], sure: bool = False) -> dict[str, Any]:
+    """Right answers with the 95 % interval of their share by record, misses and false alarms, and the Brier score with
+    its interval, which an answer that is sure of itself has not."""
+    hit = right(probability, measured)
+    low, high = clustered(hit, records)
+    found: dict[str, Any] = {
+        "size": len(hit),
+        "right": int(hit.sum()),
+        "low": low,
+        "high": high,
+        "misses": int((measured & ~hit).sum()),
+        "false_alarms": int((~measured & ~hit).sum()),
+    }
+    errors = brier(probability, measured)
+    known = None if sure else (float(errors.mean()), clustered(errors, records))
+    return {**found, "brier": known and known[0], "brier_interval": known and known[1]}
+
+
+def paired(one: np.ndarray, other: np.ndarray, measured: np.ndarray, records: Sequence[str]) -> dict[str, Any]:
+    """How much smaller the Brier score of one is than the other's, and in how many more tests it is right, each with
+    its interval by record; and who is right where they disagree."""
+    less = brier(other, measured) - brier(one, measured)
+    more = right(one, measured).astype(int) - right(other, measured)
+    apart = (one >= HALF) != (other >= HALF)
+    return {
+        "difference": float(less.mean()),
+        "interval": clustered(less, records),
+        "more_right": int(more.sum()),
+        "more_interval": [len(more) * end for end in clustered(more, records)],
+        "disagree": int(apart.sum()),
+        "right": int(right(one, measured)[apart].sum()),
+    }

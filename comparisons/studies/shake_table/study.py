@@ -1,0 +1,222 @@
+"""The study of a shake table: what the model and the engines say of blocks that were really shaken.
+
+Statistics, fixed before this run, though after a prototype on the same tests: right answers with the 95 % interval of a
+bootstrap over records, as tests under one record at several scales are alike; misses and false alarms; of engines the
+sign of their differences to the model (exact test); of probabilities the Brier score, reliability, and differences of
+forecasts in pairs by the same bootstrap; who is right where two disagree. An engine is equal to the model where the
+upper end of the interval of the share of tests that it ends differently is below `EQUAL`.
+"""
+
+from collections.abc import Sequence
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+
+from analytic import SettingError
+from engines import get_engine
+
+from ...measuring.forecasts import FEWEST
+from ...measuring.statistics import EQUAL
+from ...running.cases import Case, variant_settings
+from ...running.plan import Batch, Computed, Plan, Request
+from ...running.progress import bar
+from ...running.provenance import Result
+from ...running.sweep import Row
+from . import at_hand, granite
+from .campaign import Campaign, outcomes_of
+from .judging import AS_IT_IS, MODEL, Outcomes
+from .reading import read_campaign
+from .runs import engine_rows, run_row
+from .shaking import OVERTURNS, ended, ended_near, leaning, over_slendernesses
+from .told import pairs_of, told_of
+
+# Why one engine's rows cannot be computed anew by themselves, see `Study.whole`.
+WHOLE = "what may be told of an engine's right answers depends on the outcomes of the others"
+
+SEED = 0  # of the bootstrap
+QUICK = 20  # of so many tests one
+OTHERS = 6  # of so many tests engines that are not in question, and their further variants, run one
+TIME_LIMIT = 900.0  # s, of an engine's run
+# What is changed in the model, one at a time; the first is as it is. Friction: granite on a steel table is not known.
+KINDS: tuple[dict[str, float], ...] = (
+    {},
+    *({"restitution": factor} for factor in (0.98, 0.95, 0.9, 0.85, 0.8)),
+    *({"friction": value} for value in (0.5, 0.3)),
+    *({"inertia": factor} for factor in (0.93, 1.07)),
+)
+
+Data = Annotated[
+    str | None, typer.Option(metavar="FOLDER", help="The tests: as their authors publish them, or your own.")
+]
+
+
+def plan(request: Request, *, data: Data = None) -> Plan:
+    """The plan of the study; an answer with one variant more each time.
+
+    Rows by "part": "score" (of a forecast, see `judging`), "paired", "reliability", "cell", "quarter", "fit" (of the
+    model to all tests), "where", "run" (a solver's outcomes by test) and "engine" (beside the model's); "absent",
+    alone, without data. Arrays ``right/<kind>``: right answers of the model by specimen and slenderness. What is
+    stored: `telling`.
+
+    Parameters
+    ----------
+    request : Request
+    data : str, optional
+        Folder of the tests, see `reading`.
+    """
+    if data is None:
+        reason = f"--data is missing: {granite.WHERE}"
+        row = {"part": "absent", "engine": "analytic", "variant": "", "reason": reason}
+        return Computed({"quick": request.quick, "campaign": "", "variants": []}, [row])
+    with bar("reading the tests") as progress:
+        campaign = read_campaign(data, QUICK if request.quick else 1, progress)
+    model = yield Batch(_on_grids(campaign), over_slendernesses, "model over slenderness")
+    known = _outcomes(campaign, model)
+    places = [one[0].best(np.ones(len(campaign.tests), dtype=bool)) for one in known]
+    slendernesses = [float(one[0].slendernesses[place]) for one, place in zip(known, places, strict=True)]
+    names = [_name(kind) for kind in KINDS]
+    told, parts = zip(*(told_of(campaign, k, one, names) for k, one in enumerate(known)), strict=True)
+    rows = [row for part in parts for row in part] + pairs_of(campaign, told)
+    at_hand.keep(campaign, [one.forecasts[MODEL] for one in told])
+    settings = _settings(request, campaign, slendernesses) | {"model_runs": len(model) * len(KINDS) * _grid(campaign)}
+    settings["model_seconds"] = float(sum(row.cost["grid_seconds"] for row in model))
+    arrays = {
+        f"right/{_name(kind)}": np.array([(one[k].model == one[k].measured[:, None]).sum(axis=0) for one in known])
+        for k, kind in enumerate(KINDS)
+    }
+    own = yield Batch(_at(campaign, slendernesses, "analytic", None, 1), ended_near, "model")
+    rows += [run_row(campaign, k, own, slendernesses[k]) for k in range(len(known))]
+    answer = Computed(settings, rows, arrays, seed=SEED)
+    yield answer
+    for engine, variant, every in [one for name in request.engines for one in _variants(name)]:
+        found = yield Batch(
+            _at(campaign, slendernesses, engine, variant, every), ended, f"{engine}, {variant}", TIME_LIMIT
+        )
+        runs = [run_row(campaign, k, found, slendernesses[k]) for k in range(len(known))]
+        rows = [*rows, *runs, *engine_rows(campaign, runs, rows, (own, found))]
+        rows = [*rows, *(_failure(row) for row in found if row.failed)]
+        settings = {**settings, "variants": [*settings["variants"], variant_settings(engine, variant)]}
+        answer = Computed(settings, rows, arrays, seed=SEED)
+        yield answer
+    return answer
+
+
+def _name(kind):
+    words = (f"{name} {'' if name == 'friction' else 'times '}{value:g}" for name, value in kind.items())
+    return ", ".join(words) or AS_IT_IS
+
+
+def _grid(campaign):
+    return len(campaign.specimens[0].slendernesses())
+
+
+def _variants(name: str) -> list[tuple[str, str, int]]:
+    """(engine, variant, of how many tests one is run): of those in question the main variant and the defaults, all."""
+    engine = get_engine(name)
+    chosen = [engine.default_variant, *(one for one, spec in engine.variants.items() if spec.kind == "defaults")]
+    return [(name, one, 1 if engine.subject else OTHERS) for one in dict.fromkeys(chosen)]
+
+
+def _on_grids(campaign: Campaign) -> list[Case]:
+    return [
+        Case(
+            specimen.scene.with_(motion=test.motion),
+            settings={"history": False},
+            tag={"test": test.name, "specimen": specimen.name, "slendernesses": specimen.slendernesses().tolist()}
+            | {"kinds": [dict(kind) for kind in KINDS]},
+        )
+        for test in campaign.tests
+        for specimen in campaign.specimens
+    ]
+
+
+def _at(campaign, slendernesses, solver, variant, every):
+    """Cases of a solver at the fitted slendernesses, on one of so many tests."""
+    return [
+        Case(
+            leaning(specimen.scene, slenderness).with_(motion=test.motion, name=specimen.name),
+            solver,
+            variant,
+            {"history": False},
+            {"test": test.name, "specimen": specimen.name},
+        )
+        for specimen, slenderness in zip(campaign.specimens, slendernesses, strict=True)
+        for test in campaign.tests[::every]
+    ]
+
+
+def _failure(row):
+    failure = {name: row.failure.get(name) or "" for name in ("kind", "reason", "message")}
+    return {"part": "failure", "engine": row.case.solver, "variant": row.case.variant, **row.case.tag, **failure}
+
+
+def _outcomes(campaign: Campaign, rows: Sequence[Row]) -> list[list[Outcomes]]:
+    """By specimen and kind."""
+    if failed := next((row for row in rows if row.failed), None):
+        raise SettingError(f"test {failed.case.tag['test']}: the model failed ({failed.failure['reason']})")
+    found = []
+    for k, specimen in enumerate(campaign.specimens):
+        own = [row.values["outcomes"] for row in rows if row.case.tag["specimen"] == specimen.name]
+        overturned = np.array([[[digit == OVERTURNS for digit in text] for text in one] for one in own])
+        measured, grid = outcomes_of(campaign.tests, k), specimen.slendernesses()
+        found.append([Outcomes(grid, overturned[:, kind], measured) for kind in range(len(KINDS))])
+    return found
+
+
+def _settings(request, campaign, slendernesses):
+    tests = campaign.tests
+    return {
+        "quick": request.quick,
+        "campaign": campaign.name,
+        "digest": campaign.digest(),
+        "cite": campaign.cite,
+        "tests": [test.name for test in tests],
+        "records": len({test.record for test in tests}),
+        "missing": _missing(campaign),
+        "published": campaign.published,
+        "steps": sorted({test.motion.dt for test in tests}),
+        "overturned": [int(outcomes_of(tests, k).sum()) for k in range(len(campaign.specimens))],
+        "agree": _agree(tests),
+        "specimens": [
+            {
+                "name": one.name,
+                "height": one.scene.block.half_height,
+                "gyration": float(np.sqrt(one.scene.block.centre_inertia / one.scene.block.mass)),
+                "span": list(one.span),
+                "grid": one.slendernesses().tolist(),
+                "slenderness": slenderness,
+                "note": one.note,
+            }
+            for one, slenderness in zip(campaign.specimens, slendernesses, strict=True)
+        ],
+        "kinds": [_name(kind) for kind in KINDS],
+        "equal": EQUAL,
+        "others": OTHERS,
+        "variants": [],
+    }
+
+
+def _missing(campaign):
+    """Of the tests without a motion: how many there are and, where it says nothing of single ones, how many of them
+    overturned; and geometric means of PGV/PGA [s] of them and of the others, where they are stated."""
+    tests = campaign.missing
+    found: dict[str, Any] = {"tests": len(tests), "overturned": None, "ratios": None}
+    if len(tests) >= FEWEST:
+        found["overturned"] = [int(outcomes_of(tests, k).sum()) for k in range(len(campaign.specimens))]
+        if all("ratio" in test.stated for test in (*tests, *campaign.tests)):
+            sides = ([test.stated["ratio"] for test in some] for some in (tests, campaign.tests))
+            found["ratios"] = [float(np.exp(np.log(one).mean())) for one in sides]
+    return found
+
+
+def _agree(tests):
+    """In how many tests the first two specimens end alike; None with one."""
+    if len(tests[0].overturned) < 2:
+        return None
+    return sum(test.overturned[0] == test.overturned[1] for test in tests)
+
+
+def problems(result: Result) -> list[str]:
+    """Why nothing was run, where it was not."""
+    return [row["reason"] for row in result.rows if row["part"] == "absent"]

@@ -1,0 +1,165 @@
+"""Sentences on a shake table: what was found, how far it reaches, and how it was measured."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from ...running.provenance import Result
+from ...showing.parts import number, percent, short, where
+from ...showing.wording import listed
+from .judging import AS_IT_IS, BY_RECORD, CURVE, EACH, MODEL, THRESHOLD
+from .measures import CORNER
+from .runs import ALL
+
+
+def title(scores: Sequence[dict[str, Any]], settings: dict[str, Any]) -> str:
+    def right(name):
+        return listed([str(row["right"]) for row in where(scores, forecast=name, judged=BY_RECORD)])
+
+    count = len(settings["tests"])
+    return f"Shake table: the model predicts {right(MODEL)} of {count} outcomes, a threshold of PGV {right(THRESHOLD)}"
+
+
+def sentence(result: Result, engines: Sequence[dict[str, Any]]) -> str:
+    """How large the error of engines is beside that of the model."""
+    scores = where(result.rows, part="score", judged=BY_RECORD, forecast=MODEL)
+    wrong = listed([str(row["size"] - row["right"]) for row in scores])
+    names = listed([row["specimen"] for row in scores])
+    words = [f"The model is wrong in {wrong} of {len(result.settings['tests'])} tests ({names})."]
+    together = where(engines, specimen=ALL) or engines
+    if tuned := where(together, tier="tuned"):
+        said = [f"{name_of(row)}, {apart(row)} of {row['size']}" for row in tuned]
+        fits = [one for row in where(result.rows, part="fit", change=AS_IT_IS) for one in row["neighbours"]]
+        first, second, *_ = result.settings["specimens"][0]["grid"]
+        words.append(
+            f"Runs that end differently from it: {listed(said)}; the model itself, with a slenderness "
+            f"{number(math.degrees(second - first), 1)} deg smaller or larger, {min(fits)} to {max(fits)} of "
+            f"{len(result.settings['tests'])}."
+        )
+    for row in where(together, tier="defaults"):
+        failed = f" and fails in {row['failed']} runs" if row["failed"] else ""
+        unsafe = f", on the unsafe side (p = {number(row['p_records'], 2)} by record)" if _unsafe(row) else ""
+        added = f"misses {row['only_a']} of the model’s overturnings, adds {row['only_b']}{failed}"
+        words.append(f"{name_of(row)}, {added}{unsafe}.")
+    return " ".join(words)
+
+
+def _unsafe(row):
+    return row["only_a"] > row["only_b"] and row["p_records"] is not None and row["p_records"] < 0.05
+
+
+def apart(row: dict[str, Any]) -> int:
+    """Runs that an engine ends differently, failed ones too."""
+    return row["only_a"] + row["only_b"] + row["failed"]
+
+
+def name_of(row: dict[str, Any]) -> str:
+    """An engine with the kind of its variant."""
+    return f"{row['engine']}, {row['tier']}"
+
+
+def bounds(result: Result) -> str:
+    """What a model can be asked for at most."""
+    settings = result.settings
+    names = listed([one["name"] for one in settings["specimens"]])
+    count = len(settings["tests"])
+    words = (
+        f"{settings['campaign'].capitalize()}: {count} tests under {settings['records']} records at many scales; "
+        f"{listed([str(one) for one in settings['overturned']])} overturned ({names})."
+    )
+    each = where(result.rows, part="score", forecast=EACH)
+    model = where(result.rows, part="score", forecast=MODEL, judged=BY_RECORD)
+    words += (
+        " One threshold of PGA for each record, fitted to these very tests, is right in "
+        f"{listed([str(row['right']) for row in each])}"
+    )
+    own = all(
+        2 * (one["size"] - one["right"]) < row["size"] - row["right"] for one, row in zip(each, model, strict=True)
+    )
+    words += ": most of the model’s errors are its own, not chance." if own else "."
+    if settings["agree"] is not None:
+        words += f" The two blocks, of unlike shape, end alike in {settings['agree']}."
+    return words + (
+        " The model is planar, the block is not. Its slenderness and the spread of that are fitted, and judged on "
+        "records that they were not fitted to."
+    )
+
+
+def more_right(row: dict[str, Any]) -> str:
+    """Of a pair of forecasts: in how many more tests the first is right, with the interval."""
+    low, high = row["more_interval"]
+    return f"{row['more_right']} ({low:.0f} to {high:.0f})".replace("-", "−")
+
+
+def not_shown(result: Result) -> tuple[str, str]:
+    """What the figures show, and what they do not."""
+    pairs = {(row["specimen"], row["beside"]): row for row in where(result.rows, part="paired", forecast=MODEL)}
+    last = list(dict.fromkeys(name for name, _ in pairs))[-1]  # all specimens together, if there are several
+
+    runs = len(result.settings["tests"]) * len(result.settings["specimens"])
+    return (
+        f"What this shows: of {runs} outcomes the model is right in {more_right(pairs[last, THRESHOLD])} more than a "
+        f"threshold of PGV, and in {more_right(pairs[last, CURVE])} more than a curve in PGA and PGV with five "
+        "slopes, which was added when a referee asked for it. That curve holds for these blocks alone. Model and "
+        "curve joined are compared with the curve above.",
+        "What it does not show: it is one campaign, of one kind of stone, on one axis. The model’s block is "
+        "symmetric; a boulder has another angle to either side, stands on three points, may twist, walk and wear. "
+        "The spread stands for all of this. It was brought in after a prototype on the same tests, so no test is "
+        "untouched by that choice. Outcomes do not tell slenderness and restitution apart: the fitted slenderness "
+        "stands for what the model lacks. Intervals go by record, hold the fits fixed, are not adjusted for their "
+        "number, and say nothing of records unlike these. The slenderness of the engines’ runs is the one at which "
+        "the model is right most often, which favours the model over them. Restitution and friction of granite on "
+        "the table were not measured.",
+    )
+
+
+def _left_out(settings):
+    """Of the tests without a motion: whether they are like the others."""
+    missing, names = settings["missing"], listed([one["name"] for one in settings["specimens"]])
+    if not missing["tests"]:
+        return ""
+    words = f"{missing['tests']} tests have no motion at hand and are left out"
+    if missing["overturned"]:
+        here = len(settings["tests"])
+        shares = [percent(one / missing["tests"]) for one in missing["overturned"]]
+        others = [percent(one / here) for one in settings["overturned"]]
+        words += f": {listed(shares)} of them overturned ({names}), of the others {listed(others)}"
+    if missing["ratios"]:
+        words += (
+            f"; mean PGV/PGA {number(missing['ratios'][0], 2)} s, of the others {number(missing['ratios'][1], 2)} s"
+        )
+    return f"{words}. "
+
+
+def how(result: Result) -> tuple[str, ...]:
+    s = result.settings
+    steps = listed([f"{round(1 / step):g} Hz" for step in s["steps"]])
+    blocks = "; ".join(
+        f"{one['name']}: centre of mass {one['height']:.3g} m up, radius of gyration {one['gyration']:.3g} m"
+        for one in s["specimens"]
+    )
+    resampled = s["published"] and any(abs(1 / step / s["published"] - 1) > 1e-3 for step in s["steps"])
+    published = f" (published at {s['published']:g} Hz; resampled by whoever made these files)" if resampled else ""
+    speed = f"{s['model_runs']:,} runs of the model took {short(s['model_seconds'])} s of CPU time"
+    return tuple(
+        filter(
+            None,
+            (
+                f"Data: {s['cite']}. Nothing of them is stored here but sums and cells of five tests or more; "
+                "rocking study shake-table --data FOLDER draws every test."
+                if s["cite"]
+                else "",
+                f"Motions: the measured acceleration of the table at {steps}{published}, less the median of the first "
+                f"second. {_left_out(s)}Rigid planar block on rigid ground; {blocks}. Moment of inertia: of the two "
+                f"horizontal axes of the meshes the mean. {speed}.",
+                f"Intervals: percentiles of a bootstrap over records (seed {result.provenance['seed']}); those of "
+                "reliability go by test (Wilson), and by record would be somewhat wider. PGA and PGV: as the campaign "
+                "states them of what the table was to play; “of the table”: of its measured acceleration above "
+                f"{CORNER} Hz. The other specimen’s outcome is one of the same shaking. The setting of the authors’ "
+                "discrete elements is chosen in the same way; none was fitted to these outcomes as the slenderness is. "
+                "“Fitted to every other test” has each record on both sides.",
+                f"Engines in question run all tests, the others one in {s['others']}, at the slenderness that is right "
+                "most often in the model. A failed run is not right, and differs.",
+            ),
+        )
+    )
