@@ -25,7 +25,10 @@ def held(scene, motions, points, stroke, tilt=0.0):
     return holds
 
 
-@pytest.mark.parametrize(("stroke", "tilt", "scale"), [(0.25, 0.0, 1.0), (0.3, 0.0, 1.2), (0.3, 0.2, 1.5)])
+@pytest.mark.parametrize(
+    ("stroke", "tilt", "scale"),
+    [(0.25, 0.0, 1.0), (0.3, 0.0, 1.2), pytest.param(0.3, 0.2, 1.5, marks=pytest.mark.slow)],
+)
 def test_the_region_is_that_of_single_runs_but_within_one_per_cent_of_its_edge(stroke, tilt, scale):
     motions = [synthetic_motion().scaled(scale), synthetic_motion(seed=7).scaled(scale)]
     scan = scan_bearings(SCENE, motions, stroke, tilt=tilt)
@@ -130,7 +133,7 @@ def test_what_is_out_of_range_is_refused(scene, motions, options, words):
         scan_bearings(scene, [SCENE.motion] * motions, **{"stroke": 0.25, **options})
 
 
-@pytest.mark.parametrize("friction, tilt", [(0.1, 0.0), (0.1, 0.5), (0.6, 0.0)])
+@pytest.mark.parametrize("friction, tilt", [pytest.param(0.1, 0.0, marks=pytest.mark.slow), (0.1, 0.5), (0.6, 0.0)])
 def test_with_a_friction_bearings_hold_only_where_the_block_does_not_slide_either(friction, tilt):
     scene, motions = SCENE.with_(friction=friction), [synthetic_motion().scaled(1.2)]
     scan = scan_bearings(scene, motions, 0.3, tilt=tilt)

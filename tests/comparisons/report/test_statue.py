@@ -257,23 +257,26 @@ def test_a_record_takes_the_place_of_the_scenes_motions(tmp_path):
         load_scenes([str(tmp_path / "none.toml")])
 
 
-def test_the_slip_stands_on_the_card_of_a_block_that_slides_and_on_no_other(page, scenes, tmp_path):
-    assert not any("slip" in card.lower() for card in cards(page))  # the cabinet's friction holds it
-    for place, scene in {"saved": SAVED, "slides": SLIDES}.items():
-        named = scene.with_(name=place, duration=None)
-        make_own_results(tmp_path / place, {place: named}, engines=[], motions={})
-        text = write_page(tmp_path / place).read_text()
-        (card,) = cards(text)
-        slid = simulate(named, history=False).sliding
-        assert f"It slides by up to {number(slid.peak, 3)} m, and ends {number(abs(slid.end), 3)} m from" in card
-        assert f"largest slip on the support [m] {number(slid.peak, 3)}" in card and "slip [m]" in card
-        stage = json.loads(re.search('id="histories">(.*?)</script>', text)[1])
-        (track,) = stage["scenes"][0]["tracks"]
-        assert max(map(abs, track["slip"])) == pytest.approx(slid.peak, abs=2e-3)
-        assert stage["scenes"][0]["reach"] == pytest.approx(max(map(abs, track["slip"])), abs=1e-3)
-        moved = float(re.search(r'data-track="0".*?translate[(](-?[\d.]+) 0', text)[1])
-        assert moved == pytest.approx(track["slip"][round(stage["still"] / stage["step"])], abs=1e-4)
-        assert 'class="stood"' in text and "Shaded: the block slides in" in text
+def test_no_slip_stands_on_the_card_of_a_block_that_its_friction_holds(page):
+    assert not any("slip" in card.lower() for card in cards(page))
+
+
+@pytest.mark.parametrize("place, scene", [pytest.param("saved", SAVED, marks=pytest.mark.slow), ("slides", SLIDES)])
+def test_the_slip_stands_on_the_card_of_a_block_that_slides(place, scene, tmp_path):
+    named = scene.with_(name=place, duration=None)
+    make_own_results(tmp_path / place, {place: named}, engines=[], motions={})
+    text = write_page(tmp_path / place).read_text()
+    (card,) = cards(text)
+    slid = simulate(named, history=False).sliding
+    assert f"It slides by up to {number(slid.peak, 3)} m, and ends {number(abs(slid.end), 3)} m from" in card
+    assert f"largest slip on the support [m] {number(slid.peak, 3)}" in card and "slip [m]" in card
+    stage = json.loads(re.search('id="histories">(.*?)</script>', text)[1])
+    (track,) = stage["scenes"][0]["tracks"]
+    assert max(map(abs, track["slip"])) == pytest.approx(slid.peak, abs=2e-3)
+    assert stage["scenes"][0]["reach"] == pytest.approx(max(map(abs, track["slip"])), abs=1e-3)
+    moved = float(re.search(r'data-track="0".*?translate[(](-?[\d.]+) 0', text)[1])
+    assert moved == pytest.approx(track["slip"][round(stage["still"] / stage["step"])], abs=1e-4)
+    assert 'class="stood"' in text and "Shaded: the block slides in" in text
 
 
 def test_every_outcome_has_a_colour_in_the_bar_of_a_margin():
