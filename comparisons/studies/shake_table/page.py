@@ -121,8 +121,7 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
 
 def tally_of(row: dict[str, Any]) -> dict[str, Any]:
     """The row of an engine as `wording.equal_mark` reads it."""
-    differing = row["only_a"] + row["only_b"] + row["failed"]
-    said = {"runs": row["size"], "differing": differing, "share": differing / row["size"]}
+    said = {"runs": row["size"], "differing": apart(row), "share": apart(row) / row["size"]}
     return said | {key: row[key] for key in ("failed", "equal", "interval")}
 
 
@@ -252,10 +251,12 @@ def _numbered(rows):
 
 def _worst(result):
     """The cells in which the model errs most."""
-    cells = [
-        row for row in where(result.rows, part="cell") if abs(row["overturned"] / row["size"] - row["mean"]) > APART
-    ]
-    cells.sort(key=lambda row: -abs(row["overturned"] / row["size"] - row["mean"]))
+
+    def error(row):
+        return abs(row["overturned"] / row["size"] - row["mean"])
+
+    cells = [row for row in where(result.rows, part="cell") if error(row) > APART]
+    cells.sort(key=error, reverse=True)
     return table(
         f"Cells of the figure whose shares, observed and predicted, are more than {percent(APART)} apart",
         cells,
@@ -284,7 +285,7 @@ def _fitted(result):
             f"({one['note']})."
         )
     return (
-        "The one exception to the rule that no constant is fitted, as nobody knows on which points a boulder stands. "
+        "The one exception to the rule that no constant is fitted, as nobody knows on which points a block stands. "
         "Slenderness that fits all tests best: " + " ".join(said)
     )
 

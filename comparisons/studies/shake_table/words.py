@@ -97,19 +97,23 @@ def not_shown(result: Result) -> tuple[str, str]:
     last = list(dict.fromkeys(name for name, _ in pairs))[-1]  # all specimens together, if there are several
 
     runs = len(result.settings["tests"]) * len(result.settings["specimens"])
+    boulders = bool(result.settings["cite"])  # the published campaign; of one's own nothing more is known
+    asked = " with five slopes, which was added when a referee asked for it" if boulders else " with five slopes"
+    stone = (
+        ", of one kind of stone, on one axis. The model’s block is symmetric; a boulder has another angle to either "
+        "side, stands on three points, may twist, walk and wear. The spread stands for all of this. It was brought in "
+        "after a prototype on the same tests, so no test is untouched by that choice."
+    )
+    granite = " Restitution and friction of granite on the table were not measured." if boulders else ""
     return (
         f"What this shows: of {runs} outcomes the model is right in {more_right(pairs[last, THRESHOLD])} more than a "
-        f"threshold of PGV, and in {more_right(pairs[last, CURVE])} more than a curve in PGA and PGV with five "
-        "slopes, which was added when a referee asked for it. That curve holds for these blocks alone. Model and "
-        "curve joined are compared with the curve above.",
-        "What it does not show: it is one campaign, of one kind of stone, on one axis. The model’s block is "
-        "symmetric; a boulder has another angle to either side, stands on three points, may twist, walk and wear. "
-        "The spread stands for all of this. It was brought in after a prototype on the same tests, so no test is "
-        "untouched by that choice. Outcomes do not tell slenderness and restitution apart: the fitted slenderness "
-        "stands for what the model lacks. Intervals go by record, hold the fits fixed, are not adjusted for their "
-        "number, and say nothing of records unlike these. The slenderness of the engines’ runs is the one at which "
-        "the model is right most often, which favours the model over them. Restitution and friction of granite on "
-        "the table were not measured.",
+        f"threshold of PGV, and in {more_right(pairs[last, CURVE])} more than a curve in PGA and PGV{asked}. That "
+        "curve holds for these blocks alone. Model and curve joined are compared with the curve above.",
+        f"What it does not show: it is one campaign{stone if boulders else '.'} Outcomes do not tell slenderness and "
+        "restitution apart: the fitted slenderness stands for what the model lacks. Intervals go by record, hold the "
+        "fits fixed, are not adjusted for their number, and say nothing of records unlike these. The slenderness of "
+        "the engines’ runs is the one at which the model is right most often, which favours the model over them."
+        f"{granite}",
     )
 
 
@@ -141,25 +145,30 @@ def how(result: Result) -> tuple[str, ...]:
     resampled = s["published"] and any(abs(1 / step / s["published"] - 1) > 1e-3 for step in s["steps"])
     published = f" (published at {s['published']:g} Hz; resampled by whoever made these files)" if resampled else ""
     speed = f"{s['model_runs']:,} runs of the model took {short(s['model_seconds'])} s of CPU time"
-    return tuple(
-        filter(
-            None,
-            (
-                f"Data: {s['cite']}. Nothing of them is stored here but sums and cells of five tests or more; "
-                "rocking study shake-table --data FOLDER draws every test."
-                if s["cite"]
-                else "",
-                f"Motions: the measured acceleration of the table at {steps}{published}, less the median of the first "
-                f"second. {_left_out(s)}Rigid planar block on rigid ground; {blocks}. Moment of inertia: of the two "
-                f"horizontal axes of the meshes the mean. {speed}.",
-                f"Intervals: percentiles of a bootstrap over records (seed {result.provenance['seed']}); those of "
-                "reliability go by test (Wilson), and by record would be somewhat wider. PGA and PGV: as the campaign "
-                "states them of what the table was to play; “of the table”: of its measured acceleration above "
-                f"{CORNER} Hz. The other specimen’s outcome is one of the same shaking. The setting of the authors’ "
-                "discrete elements is chosen in the same way; none was fitted to these outcomes as the slenderness is. "
-                "“Fitted to every other test” has each record on both sides.",
-                f"Engines in question run all tests, the others one in {s['others']}, at the slenderness that is right "
-                "most often in the model. A failed run is not right, and differs.",
-            ),
+    rigid = f"{_left_out(s)}Rigid planar block on rigid ground; {blocks}."
+    intervals = (
+        f"Intervals: percentiles of a bootstrap over records (seed {result.provenance['seed']}); those of reliability "
+        "go by test (Wilson), and by record would be somewhat wider. “Fitted to every other test” may have a record "
+        "on both sides."
+    )
+    runs = (
+        f"Engines in question run all tests, the others one in {s['others']}, at the slenderness that is right most "
+        "often in the model. A failed run is not right, and differs."
+    )
+    if not s["cite"]:
+        return (
+            f"Motions: as their files have them, at {steps}. {rigid} {speed}.",
+            f"{intervals} PGA and PGV: of these motions, PGV of what they have above {CORNER} Hz.",
+            runs,
         )
+    return (
+        f"Data: {s['cite']}. Nothing of them is stored here but sums and cells of five tests or more; rocking study "
+        "shake-table --data FOLDER draws every test.",
+        f"Motions: the measured acceleration of the table at {steps}{published}, less the median of the first second. "
+        f"{rigid} Moment of inertia: of the two horizontal axes of the meshes the mean. {speed}.",
+        f"{intervals} PGA and PGV: as the campaign states them of what the table was to play; “of the table”: of its "
+        f"measured acceleration above {CORNER} Hz. The other specimen’s outcome is one of the same shaking. The "
+        "setting of the authors’ discrete elements is chosen in the same way; none was fitted to these outcomes as "
+        "the slenderness is.",
+        runs,
     )

@@ -548,7 +548,10 @@ def test_tests_of_ones_own_go_all_the_way(tmp_path, small):
     result = stored(tmp_path, "shake-table", answered(plan, by_model())[-1])
     assert result.settings["agree"] is None and result.settings["cite"] == ""
     assert not where(result.rows, among=ALIKE) and not where(result.rows, specimen=ALL)
-    assert get_study("shake-table").page(result).whole().figures
+    whole = get_study("shake-table").page(result).whole()
+    words = " ".join((*whole.text, *whole.measured, *(part for part in whole.shown if isinstance(part, str)))).lower()
+    assert whole.figures and "one campaign" in words
+    assert not [word for word in ("granite", "boulder", "mesh", "referee", "first second") if word in words]
     assert len(get_study("shake-table").judgements(result)) == 1
     assert json.dumps(result.settings).find(str(tmp_path)) == -1  # no place of anyone's machine
 
