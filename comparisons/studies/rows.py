@@ -112,6 +112,7 @@ ROWS = {
             repeatable | cpu_seconds cpu_low cpu_high simulated steps? step? cpu_per_second cpu_per_step?
             boundary_shifts? settings""",
         "share": "scene engine variant level failure? share?",
+        "first run": "scene engine variant code failure? cpu_seconds?",
         "growth": "engine variant against value failure? | cpu_seconds traced_bytes? resident_bytes?",
     },
     "caryatid": {

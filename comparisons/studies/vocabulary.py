@@ -211,6 +211,7 @@ OWN: dict[str, dict[str, Explained]] = {
         "share": number("of the CPU time, inside the engine's compiled functions"),
         "boundary_shifts": series("of the boundary of overturning from the reference's, relative, run by run"),
         "settings": table("all settings of the run"),
+        "code": word("of a first run in a process of its own: whether the analytic model's compiled code was stored"),
         "against": word("what the cost grows with: duration [s], or samples of the motion [1/s]"),
         "value": number("of what it grows with", "s or 1/s"),
         "traced_bytes": number("peak of what Python and numpy allocate during the run", "byte"),

@@ -5,7 +5,7 @@ import ast
 import pytest
 
 from analytic import load_scene
-from comparisons.studies.mistakes.script import with_mistake
+from comparisons.measuring.scripts import with_mistake
 from comparisons.studies.mistakes.study import scenes
 from engines import ENGINES
 from engines.mistakes import GROUPS, NO_MATTER, Mistake

@@ -1,6 +1,5 @@
 """The mistakes study: scripts of a few scenes, each with one mistake, compared with the analytic model."""
 
-import hashlib
 import math
 from typing import Any
 
@@ -12,15 +11,13 @@ from analytic.rocking import restitution
 from engines import get_engine
 from engines.contract import Engine
 from engines.mistakes import NO_MATTER, Mistake
-from engines.observe import observe
 from engines.swings import Trace
 
 from ...measuring.errors import impact_errors, rate_restitution, rms
+from ...measuring.scripts import NAME, SECONDS, ScriptFailed, as_written, run_script, version_of, with_mistake
 from ...running.cases import Case
 from ...running.plan import Batch, Computed, Plan, Request
-from .script import ScriptFailed, run_script, with_mistake
 
-SECONDS = 300.0  # of a script; those that end take 5 s of CPU time at most
 QUICK = ("inertia + 1 %", "default damping", "10 × softer")
 NOTHING = dict.fromkeys(("error", "energy", "graph", "displacement", "steps"))
 
@@ -54,9 +51,8 @@ def plan(request: Request) -> Plan:
         for mistake in changes(engine, request.quick):
             for place, scene in scenes(request.quick).items():
                 if mistake is None or mistake.fits(scene):
-                    script = "".join(with_mistake(engine, scene, mistake).values())
-                    digest = hashlib.sha256(script.encode()).hexdigest()[:16]
-                    tag = {"scene": place, "mistake": mistake.key if mistake else None, "script": digest}
+                    script = version_of(engine, scene, mistake)
+                    tag = {"scene": place, "mistake": mistake.key if mistake else None, "script": script}
                     cases.append(Case(scene, name, engine.default_variant, {"history": False}, tag))
     runs = yield Batch(cases, cost, "mistakes", time_limit=2 * SECONDS)
     model = {place: simulate(scene, history=False).outcome for place, scene in scenes(request.quick).items()}
@@ -95,13 +91,12 @@ def cost(case: Case, response: Response) -> dict[str, Any]:
     engine = get_engine(case.solver)
     mistake = engine.known_mistakes().get(case.tag["mistake"])
     try:
-        trace = run_script(with_mistake(engine, case.scene, mistake), SECONDS)
+        trace, _ = run_script(with_mistake(engine, case.scene, mistake), SECONDS)
     except ScriptFailed as failed:
         return _failed(str(failed))
     scene = case.scene if case.scene.duration else case.scene.with_(duration=float(trace.time[-1]))
-    over = "overturned" if abs(trace.tilt[-1]) >= math.pi / 2 else None
-    about: dict[str, Any] = dict(cpu_seconds=0.0, steps=len(trace.time) - 1, settings={}, versions={})
-    seen = observe(scene, trace, history=False, ended=over, engine=case.solver, variant="script", **about)
+    about: dict[str, Any] = dict(engine=case.solver, variant=NAME, cpu_seconds=0.0, settings={}, versions={})
+    seen = as_written(scene, trace, history=False, **about)
     if seen.failure:
         return _failed(seen.failure.reason)
     return {"outcome": seen.outcome, "reason": None, **errors(scene, seen, trace), "steps": seen.steps}

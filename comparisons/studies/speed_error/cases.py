@@ -16,7 +16,7 @@ from analytic.caryatid import BASE, BEARINGS, caryatid_block
 from engines import ENGINES, get_engine
 from engines.contract import Variant
 
-from ...measuring import models
+from ...measuring import models, scripts
 from ...measuring.horizon import sensitivity_horizon
 from ...running.cases import Case
 from . import integrators
@@ -97,8 +97,9 @@ def _next(known, last):
 
 TIGHTEST = 1e-17  # tolerance of the kernel as a reference
 LONGEST = 10.0  # s, of a run under the synthetic motion: the strong shaking and what follows
-FREQUENCY_RATIO = 3.0  # pulse frequency over omega_r, near-overturning scene
-BRACKET = (1.35, 1.45)  # amplitude / g tan(slenderness) around its boundary
+FREQUENCY_RATIO = 3.0  # pulse frequency over omega_r, near-overturning scenes
+# shape of a pulse: amplitude / g tan(slenderness) on either side of its boundary; the second starts with a jump
+BRACKETS = {"one-sine": (1.35, 1.45), "one-cosine": (1.8, 1.95)}
 
 TRANSPARENT = ("free-rigid", "near-overturning")  # scenes without base or record
 SAMPLED = ("isolated-standing", "isolated-rocking")
@@ -136,7 +137,7 @@ def tight(scene: Scene) -> Response:
 
 
 def trials() -> list[Trial]:
-    """The five trials, in order of what they ask of a solver."""
+    """The six trials, in order of what they ask of a solver."""
     free = caryatid_block(0.2)
     isolated: dict[str, Any] = {"base": BASE, "bearings": BEARINGS, "motion": synthetic_motion()}
     rigid = Scene(name="free rocking on rigid ground", block=free, start=Start(tilt=0.12), duration=5.0)
@@ -150,7 +151,8 @@ def trials() -> list[Trial]:
         Trial("free-sliding", sliding, (*events, "peak_displacement")),
         Trial("isolated-standing", stands, ("peak_displacement",)),
         Trial("isolated-rocking", rocks, ("restitution", "peak_tilt", "impact_time", "peak_displacement")),
-        near_overturning(),
+        near_overturning("one-sine"),
+        near_overturning("one-cosine", name="near-overturning-jump"),
     ]
 
 
@@ -159,36 +161,39 @@ def problem_trials() -> list[Trial]:
     return [Trial(name, problem.scene, ("horizon_tilt",)) for name, problem in integrators.PROBLEMS.items()]
 
 
-def near_overturning() -> Trial:
-    """One sine at the amplitude where the block just overturns after one impact; its boundary is the question."""
+def near_overturning(shape: str, name: str = "near-overturning") -> Trial:
+    """A pulse at the amplitude where the block just overturns after one impact; its boundary is the question."""
     block = caryatid_block(0.25)
     unit = 9.81 * math.tan(block.slenderness)
-    pulse = PulseMotion("one-sine", unit, FREQUENCY_RATIO * Scene(block=block, duration=1.0).rocking_frequency)
-    scene = Scene(name="one sine at the overturning boundary", block=block, motion=pulse, duration=2.5)
+    pulse = PulseMotion(shape, unit, FREQUENCY_RATIO * Scene(block=block, duration=1.0).rocking_frequency)
+    words = f"{shape.replace('-', ' ')} at the overturning boundary"
+    scene = Scene(name=words, block=block, motion=pulse, duration=2.5)
 
     def at(amplitude):
         return margin(scene, tight(at_amplitude(scene, amplitude)).end)
 
-    amplitude = brentq(at, BRACKET[0] * unit, BRACKET[1] * unit, xtol=1e-15, rtol=1e-15)
+    low, high = BRACKETS[shape]
+    amplitude = brentq(at, low * unit, high * unit, xtol=1e-15, rtol=1e-15)
     change = 1e-4
     slope = (at(amplitude * (1 + change)) - at(amplitude * (1 - change))) / (2 * change)
     measures = ("boundary_shift", "restitution", "peak_tilt", "impact_time")
-    return Trial("near-overturning", at_amplitude(scene, amplitude), measures, Boundary(amplitude, slope))
+    return Trial(name, at_amplitude(scene, amplitude), measures, Boundary(amplitude, slope))
 
 
 @dataclass(frozen=True, eq=False)
 class Entry:
     """One solver at one level of its accuracy parameter on one trial.
 
-    engine, variant: what rows call it. solver: what is run, if not the engine. model: `NEEDED`, or what is modelled
-    beyond what the scene needs; scene_of: the scene so modelled, of the trial's.
+    engine, variant: what rows call it. parameter, level: None where there is but one. solver: what is run, if not the
+    engine. model: `NEEDED`, or what is modelled beyond what the scene needs; scene_of: the scene so modelled, of the
+    trial's.
     """
 
     trial: Trial
     engine: str
     variant: str
-    parameter: str
-    level: float
+    parameter: str | None
+    level: float | None
     solver: str = ""
     settings: dict = field(default_factory=dict)
     model: str = NEEDED
@@ -197,11 +202,12 @@ class Entry:
     def case(self, turn: int) -> Case:
         """The measurement of one round as a `Case`."""
         solver, boundary = self.solver or self.engine, self.trial.boundary
+        level = {self.parameter: self.level} if self.parameter else {}
         return Case(
             self.scene_of(self.trial.scene),
             solver,
             self.variant if solver in ENGINES else None,
-            {**self.settings, self.parameter: self.level, "history": False},
+            {**self.settings, **level, "history": False},
             {"boundary": boundary and [boundary.amplitude, boundary.slope], "round": turn},
         )
 
@@ -254,7 +260,12 @@ def _ladders(trial: Trial, engines: Sequence[str], quick: bool) -> Iterator[list
         return
     yield from _models(trial, SCIPY_SAMPLED if trial.name in SAMPLED else SCIPY, quick)
     for name in engines:
-        for variant, kind in get_engine(name).variants.items():
+        engine = get_engine(name)
+        if engine.script and not quick:
+            version = {**engine.versions(), "script": scripts.version_of(engine, trial.scene)}
+            as_written = {"engine": name, "version": version}
+            yield [Entry(trial, name, scripts.NAME, None, None, f"{scripts.__name__}:simulate_script", as_written)]
+        for variant, kind in engine.variants.items():
             yield [Entry(trial, name, variant, kind.accuracy_parameter, level) for level in levels_of(kind, quick)]
             if kind.free_block and trial.scene.bearings is None:
                 steps = FREE_3D_STEPS[quick]

@@ -217,7 +217,7 @@ def _assisted(result):
 
 
 def _level(row):
-    return f"{row['parameter'].replace('_', ' ')} {short(row['level'])}"
+    return f"{row['parameter'].replace('_', ' ')} {short(row['level'])}" if row["parameter"] else "as written"
 
 
 def _title(result, rows, noise):

@@ -27,6 +27,7 @@ from ...measuring.errors import (
 from ...running.cases import Case, variant_settings
 from ...running.plan import Batch, Computed, Plan, Request
 from .cases import PLAIN, RUNS, Boundary, Entry, Trial, entries, levels_of, problem_trials, searched, trials
+from .cold import ANEW, STORED, first_run, load
 from .growth import TICK, grown, growth_cases
 from .integrators import PROBLEMS, SOLVER, timed
 from .share import own_share
@@ -141,18 +142,22 @@ def plan(
     if not scenes:
         raise SettingError(f"--scene {scene}: no such scene; give one of {', '.join(trial.name for trial in known)}")
     measured = [(entry, []) for entry in entries(scenes, request.engines, request.quick) if keep(entry)]
+    loads = []
     for turn in range(rounds):
+        loads += yield Batch([Case(scenes[0].scene, tag={"round": turn})], load, "load", alone=True)
         cases = [entry.case(turn) for entry, _ in measured]
         done = yield Batch(cases, measure, f"round {turn + 1} of {rounds}", alone=True)
         for (_, rows), row in zip(measured, done, strict=True):
             rows.append(row)
     rows = [_row(entry, timings) for entry, timings in measured]
     rows += yield from _shares([entry for entry, _ in measured])
+    rows += yield from _first_runs(scenes, request, rounds)
     if grow and scene is None:
         rows += yield from _growth(scenes, request, rounds)
     settings = {
         "quick": request.quick,
         "rounds": rounds,
+        "load": [one.cost["load"] for one in loads],
         "scenes": {trial.name: description(trial) for trial in scenes},
         "variants": [
             variant_settings(engine, variant, levels_of(kind, request.quick))
@@ -225,6 +230,23 @@ def _shares(measured):
         }
         for entry, row in zip(chosen, done, strict=True)
     ]
+
+
+def _first_runs(scenes, request, rounds):
+    """Rows of first runs, each in a process of its own, in the scene `PLAIN`: of every solver as it comes."""
+    solvers = [("analytic", "analytic", "kernel", STORED), ("analytic", "analytic", "kernel", ANEW)]
+    solvers += [("twin", "scipy", "DOP853", STORED)]
+    solvers += [(name, name, get_engine(name).default_variant, STORED) for name in request.engines]
+    rows = []
+    for scene in (trial.scene for trial in scenes if trial.name == PLAIN):
+        for solver, engine, variant, code in solvers:
+            cases = [Case(scene, solver, None, {}, {"code": code, "round": turn}) for turn in range(rounds)]
+            done = yield Batch(cases, first_run, f"first runs, {solver}", alone=True)
+            seconds = [row.cost["cpu_seconds"] for row in done if not row.failed]
+            row = {"part": "first run", "scene": PLAIN, "engine": engine, "variant": variant, "code": code}
+            cpu = statistics.median(seconds) if seconds else None
+            rows.append({**row, "failure": _evidence(done[0].failure), "cpu_seconds": cpu})
+    return rows
 
 
 def _evidence(failure):

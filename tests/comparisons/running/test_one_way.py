@@ -15,7 +15,7 @@ ELSEWHERE = {
     ("comparisons/running/executors.py", "_work", "open"): "what a worker prints, in a temporary folder",
     ("comparisons/running/solving.py", "scene_of", "tempfile.NamedTemporaryFile"): "temporary",
     ("comparisons/running/provenance.py", "save", "numpy.savez_compressed"): "into memory",
-    ("comparisons/studies/mistakes/script.py", "run_script", "write_text"): "a script, in a temporary folder",
+    ("comparisons/measuring/scripts.py", "run_script", "write_text"): "a script, in a temporary folder",
     ("comparisons/report/histories.py", "__call__", "numpy.savez"): "into memory",
     ("comparisons/showing/plots.py", "picture", "savefig"): "into memory",
     ("comparisons/lessons/lesson.py", "svg", "savefig"): "into memory",

@@ -6,6 +6,7 @@ import pytest
 from answered import answered, by_model, by_runs, stored
 from engine_cases import needs
 
+from comparisons.measuring.scripts import ScriptFailed, run_script
 from comparisons.running.cases import Case
 from comparisons.running.plan import Request
 from comparisons.running.provenance import RESULTS, read_result
@@ -13,7 +14,6 @@ from comparisons.showing.parts import where
 from comparisons.studies import get_study
 from comparisons.studies.mistakes import study
 from comparisons.studies.mistakes.page import AS_IT_IS
-from comparisons.studies.mistakes.script import ScriptFailed, run_script
 from engines import ENGINES, get_engine
 from engines.mistakes import NO_MATTER, Mistake
 

@@ -5,22 +5,23 @@ import math
 
 import numpy as np
 import pytest
+from engine_cases import needs
 
 from analytic import simulate
 from analytic.rocking import restitution
 from analytic.time_stepping import simulate_time_stepping
-from comparisons.measuring import models
+from comparisons.measuring import models, scripts
 from comparisons.running.cases import Case, solver
 from comparisons.running.provenance import Result, read_result
 from comparisons.running.study import compute
 from comparisons.showing.parts import COST, Figure, Table
 from comparisons.studies import get_study
-from comparisons.studies.speed_error import growth
+from comparisons.studies.speed_error import cold, growth
 from comparisons.studies.speed_error.cases import NEEDED, entries, margin, searched, trials
 from comparisons.studies.speed_error.page import LEVELS, levels_run, passing
 from comparisons.studies.speed_error.share import own_share, seconds_inside
 from comparisons.studies.speed_error.study import errors, measure
-from engines import get_engine
+from engines import ENGINES, get_engine
 
 STUDY = get_study("speed-error")
 
@@ -326,3 +327,20 @@ def test_a_study_repeats_bit_for_bit_and_the_page_comes_from_its_result_alone(st
     assert f"{len(result.rows)} of {len(result.rows)} levels" in " ".join(page.how)
     slower = dataclasses.replace(result, rows=[one | {"cpu_high": 3 * one["cpu_low"]} for one in result.rows])
     assert "factor of 3.00 for" in STUDY.page(slower).how[0]
+
+
+@pytest.mark.parametrize("name", [name for name, engine in ENGINES.items() if engine.script])
+def test_a_script_as_it_is_written_is_a_solver_with_errors_of_its_own(free, name):
+    needs(name)
+    (entry,) = (one for one in entries([free], [name], quick=False) if one.variant == scripts.NAME)
+    values = measure(entry.case(0), entry.case(0).run())
+    found = errors(free, values)
+    assert found.pop("lost") == 0 and 0 < found["restitution"] < 1e-4 and values["cost"]["cpu_seconds"] > 0
+
+
+def test_a_first_run_costs_more_than_a_later_one_and_most_where_all_is_compiled(free):
+    cases = [Case(free.scene, tag={"code": code}) for code in (cold.STORED, cold.ANEW)]
+    response = cases[0].run()
+    stored, anew = (cold.first_run(case, response) for case in cases)
+    assert stored["outcome"] == anew["outcome"] == response.outcome
+    assert response.cpu_seconds < stored["cost"]["cpu_seconds"] < anew["cost"]["cpu_seconds"]
