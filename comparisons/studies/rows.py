@@ -53,6 +53,7 @@ ROWS = {
         "refinement": BOUNDARY,
         "confusion": """engine variant level ground region both_stand both_overturn only_a only_b kappa? kappa_low?
             kappa_high?""",
+        "scan": "engine variant level runs failed both_stand both_overturn only_a only_b interval",
         "disagreement": f"{PULSE} min_normal analytic_overturns distance?",
         "failure": f"{PULSE} min_normal kind reason message",
     },
@@ -68,7 +69,7 @@ ROWS = {
         "fit": """scene state measure size exceeded points median? dispersion? median_interval? dispersion_interval?
             p_value? reason? best ratio_interval?""",
         "check": "scene engine variant runs undecided failed",
-        "run": "scene engine variant seed comparable class quantities?",
+        "run": "scene engine variant seed comparable class quantities? model_overturns overturns?",
         "cost": "scene engine variant runs cpu_per_run?",
         "effect": """scene engine variant state left_out measure? both_stand both_overturn only_a only_b p_value
             difference detectable_difference? median_shift? median_interval? dispersion_shift? dispersion_interval?

@@ -121,7 +121,8 @@ OWN: dict[str, dict[str, Explained]] = {
         "period": number("of a drawn block on its bearings, at their stiffness after yielding", "s"),
         "shift": number("of the engine's boundary from the model's, relative"),
         "half_width": number("of the bracket in which that boundary lies, relative"),
-        "runs": whole("runs that the search took"),
+        "runs": whole("runs that the search took; of a scan, those that are judged"),
+        "interval": series("of a scan: 95 % interval of the share that differs or failed (Wilson, by frequency)"),
         "region": word('of a confusion: "scan", or "outside", "inside" the band, "held down" where N < 0'),
         "kappa": number("Cohen's kappa of the outcomes"),
         "kappa_low": number("lower end of kappa's 95 % interval"),
@@ -153,6 +154,8 @@ OWN: dict[str, dict[str, Explained]] = {
         "p_holm": number("p_value adjusted over limit states, by Holm"),
         "class": word('"right" or "differs" (how the block ends, and when), "failed" or "left out"'),
         "seed": whole("of the synthetic motion"),
+        "overturns": flag("whether the block overturns in the engine; null: the run failed"),
+        "model_overturns": flag("whether it overturns in the model"),
     },
     "recorded": {
         "record": word("name of the record, of both its components"),

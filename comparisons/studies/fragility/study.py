@@ -170,7 +170,8 @@ def plan(request: Request, scenes: dict[str, Any] | None = None, runs: tuple[int
             ours = {key: array[few] for key, array in model.items()}
             found += effects(drawn.measures, few, states, (ours, theirs), curves, pair)
             found += _runs(pair, run)
-            found += [_run_row(pair, row, ends) for row in run if pair != PERTURBED]
+            if pair != PERTURBED:
+                found += [_run_row(pair, row, ends, falls) for row, falls in zip(run, ours["overturns"], strict=True)]
             made |= _kept(label, theirs)
         rows += [{"scene": name, **row} for row in found]
         arrays |= {f"{name}/{key}": array.astype(np.float32) for key, array in made.items()} | {f"{name}/near": near}
@@ -218,11 +219,13 @@ def _kept(label, values):
     return {f"{label}/{key}": values[key] for key in KEPT[1:]}
 
 
-def _run_row(pair, row, ends):
-    """The row of an engine's run; ends: whether runs of a seed's scene can be judged by how the block ends."""
+def _run_row(pair, row, ends, falls):
+    """The row of an engine's run; ends: whether runs of a seed's scene can be judged by how the block ends; falls:
+    whether the model's overturns."""
     seed = row.case.tag["seed"]
     quantities = row.values.get("quantities")
     known = {"comparable": ends[seed], "class": class_of(ends[seed], quantities, END), "quantities": quantities}
+    known |= {"model_overturns": bool(falls), "overturns": row.values.get("overturns")}
     return {"part": "run", "engine": pair[0], "variant": pair[1], "seed": seed, **known}
 
 

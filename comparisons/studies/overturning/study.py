@@ -12,7 +12,7 @@ from analytic import Response, Scene, load_scene, overturning_map, simulate
 from engines import get_engine
 from engines.contract import Variant
 
-from ...measuring.statistics import cohen_kappa, confusion
+from ...measuring.statistics import Confusion, cohen_kappa, confusion, equality
 from ...running.cases import Case, variant_settings
 from ...running.plan import Batch, Computed, Plan, Request
 from ...running.progress import log
@@ -134,11 +134,13 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
     first_scripts = [
         Setting(name, variant, spec.default) for name, variant, spec in variants if spec.kind == "defaults"
     ]
-    runs = _Runs(grounds, default)
-    for setting in default:
-        yield from runs.scan(setting, grid)
-    rows += yield from runs.search("shift", default, found, DISTANCES, TOLERANCE)
     coarser = [one for one in first_scripts if one not in default]
+    runs, points = _Runs(grounds, default), _scan(grounds, grid)
+    known = _judged(grounds, points, found)
+    for setting in (*default, *coarser):
+        answers = yield from runs.ask([(setting, point) for point in points], f"scan: {setting.engine}", scan=True)
+        rows.append({"part": "scan", **setting.row(), **_counted(points, known, answers)})
+    rows += yield from runs.search("shift", default, found, DISTANCES, TOLERANCE)
     rows += yield from runs.search("shift", coarser, found, LEVEL_DISTANCES, LEVEL_TOLERANCE)
     log(f"analytic boundaries: {grid.drawn} drawn blocks")
     drawn = drawn_edges(grid.drawn)
@@ -252,14 +254,6 @@ class _Runs:
                 self.outcomes[setting.engine, *point[:-1]] = answers[-1], scan
         return answers
 
-    def scan(self, setting, grid):
-        points = [
-            (setting, Point(*place, least_normal(scene, pulse(scene, *place[1:]))))
-            for place in itertools.product(grid.grounds, grid.shapes, grid.frequencies, grid.scan)
-            for scene in (self._grounds[place[0]],)
-        ]
-        yield from self.ask(points, f"scan: {setting.engine}", scan=True)
-
     def search(self, part, settings, found, distances, tolerance):
         """Rows of the boundaries that settings have beside those found in the analytic model."""
         jobs = list(itertools.product(settings, found))
@@ -294,6 +288,38 @@ class _Runs:
         ]
 
 
+def _scan(grounds, grid):
+    """The points of the coarse scan."""
+    places = itertools.product(grid.grounds, grid.shapes, grid.frequencies, grid.scan)
+    return [Point(*place, least_normal(grounds[place[0]], pulse(grounds[place[0]], *place[1:]))) for place in places]
+
+
+def _judged(grounds, points, found):
+    """Whether the block overturns in the model at each point; None near a boundary, and where it would jump."""
+    models = [simulate(_under(grounds, point), history=False) for point in points]
+    return [
+        model.outcome == "overturns" if model.min_normal_ratio >= 0 and _distance(found, point) > BAND else None
+        for point, model in zip(points, models, strict=True)
+    ]
+
+
+def _counted(points, known, answers):
+    """Of the points that are judged: how many runs failed, and what the others found; runs of one shape and frequency
+    on one ground count as one in the interval of the share that differs or fails."""
+    chosen = [(*one, point[:3]) for *one, point in zip(known, answers, points, strict=True) if one[0] is not None]
+    models, engines, groups = zip(*chosen, strict=True)
+    both = [(a, b) for a, b in zip(models, engines, strict=True) if b is not None]
+    _, interval = equality([a != b for a, b in zip(models, engines, strict=True)], groups)
+    counts = vars(confusion(*np.transpose(both)) if both else Confusion(0, 0, 0, 0))
+    return {"runs": len(chosen), "failed": len(chosen) - len(both), **counts, "interval": interval}
+
+
+def _distance(found, point):
+    """From the nearest boundary of the analytic model, relative."""
+    near = (edge.amplitude for edge in found if (edge.ground, edge.shape, edge.frequency) == point[:3])
+    return min((abs(point.amplitude / amplitude - 1) for amplitude in near), default=math.inf)
+
+
 def _under(grounds, point):
     scene = grounds[point.ground]
     return scene.with_(motion=pulse(scene, point.shape, point.frequency, point.amplitude))
@@ -308,11 +334,6 @@ def _compared(outcomes, default, grounds, found):
     for (engine, *place), (overturns, scan) in outcomes.items():
         point = Point._make((*place, math.nan))
         response = simulate(_under(grounds, point), history=False)
-        distances = [
-            abs(point.amplitude / edge.amplitude - 1)
-            for edge in found
-            if (edge.ground, edge.shape, edge.frequency) == point[:3]
-        ]
         records.append(
             {
                 **rows[engine],
@@ -321,7 +342,7 @@ def _compared(outcomes, default, grounds, found):
                 "overturns": overturns,
                 "analytic_overturns": response.outcome == "overturns",
                 "scan": scan,
-                "distance": min(distances, default=math.inf),
+                "distance": _distance(found, point),
             }
         )
     return records

@@ -154,7 +154,20 @@ def test_failed_runs_are_no_outcomes_and_their_evidence_is_kept(tmp_path):
     (counts,) = (table for table in page.tables if "reason" in table.columns)
     shown = {(row[0], row[1]): int(row[2]) for row in counts.rows}
     assert shown == Counter((f"{row['engine']}, {row['variant']}", row["reason"]) for row in failures + undecided)
-    assert (result.arrays["points"][:, 6] == -1).sum() == len(failures) + len(undecided)
+    mains = result.settings["default_variants"].items()  # of which the points are
+    of_mains = [row for row in failures + undecided if (row["engine"], row["variant"]) in mains]
+    assert (result.arrays["points"][:, 6] == -1).sum() == len(of_mains)
+
+
+def test_the_scan_counts_who_errs_which_way(tmp_path):
+    """Pulses ten times as large add overturnings and miss none; a run that fails is counted apart."""
+    result, _ = study(tmp_path, shifted(-0.9, fails=lambda case: case.scene.motion.peak > 10))
+    scans = where(result.rows, part="scan")
+    assert len(scans) == 4  # two engines, tuned and as they come
+    for row in scans:
+        assert row["only_a"] == 0 < row["only_b"] and row["failed"] and row["interval"][0] > 0
+        counts = ("failed", "both_stand", "both_overturn", "only_a", "only_b")
+        assert row["runs"] == sum(row[key] for key in counts)
 
 
 def test_the_page_shows_every_boundary_and_every_level(tmp_path):
