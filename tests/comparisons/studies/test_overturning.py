@@ -161,7 +161,7 @@ def test_failed_runs_are_no_outcomes_and_their_evidence_is_kept(tmp_path):
 
 def test_the_scan_counts_who_errs_which_way(tmp_path):
     """Pulses ten times as large add overturnings and miss none; a run that fails is counted apart."""
-    result, _ = study(tmp_path, shifted(-0.9, fails=lambda case: case.scene.motion.peak > 10))
+    result, _ = study(tmp_path, shifted(-0.9, fails=lambda case: case.scene.motion.peak > 5))
     scans = where(result.rows, part="scan")
     assert len(scans) == 4  # two engines, tuned and as they come
     for row in scans:
