@@ -1,5 +1,5 @@
-"""The first screen: a recommendation, the answers of all studies side by side, what not to do; from results alone: the
-studies' stored ones, of which it also has what stands on the first page and on pages of their own.
+"""The answers of all studies side by side, and what not to do; from results alone: the studies' stored ones, of which
+it also has what stands on the first page and on pages of their own.
 """
 
 import math
@@ -13,7 +13,7 @@ from engines import ENGINES
 from ..running.age import age, by_engine, date_of, last_check
 from ..running.provenance import RESULTS, Result, ResultError
 from ..running.readable import readable
-from ..showing.parts import COST, RESTITUTION, Judgement, Mark, Section, number
+from ..showing.parts import COST, RESTITUTION, Glance, Judgement, Mark, Section, number
 from ..showing.wording import rating, with_counts
 from ..studies import StudyBroken, get_study, study_names
 from ..studies.rows import read_study
@@ -22,7 +22,7 @@ from ..studies.rows import read_study
 @dataclass(frozen=True)
 class Stored:
     """One result file. section: all of it; finding: its answer for the first page; judgements: its rows of the first
-    table.
+    table; glance: what the first screen has of it.
 
     wrong: why it cannot be shown, "" where it can. origin: machine, versions, date and commit in one line. variants:
     those it knows, as `setups_of` takes them.
@@ -32,6 +32,7 @@ class Stored:
     section: Section
     finding: Section | None = None
     judgements: tuple[Judgement, ...] = ()
+    glance: Glance | None = None
     origin: str = ""
     variants: tuple[Mapping[str, Any], ...] = ()
     wrong: str = ""
@@ -96,13 +97,13 @@ def _stored(file):
         return Stored.damaged(file.stem, f"Study {result.kind}", words, age=old, origin=origin)
     try:
         page = study.page(result)  # drawn once
-        judgements, variants = study.judgements(result), _variants(result.settings)
+        judgements, variants, glance = study.judgements(result), _variants(result.settings), study.glance(result)
         section, finding = replace(page.whole(), age=old), page.opening()
     except Exception as error:  # settings of another version, or another package's page: the report goes on
         words = f"{file.name} cannot be shown: its page fails ({readable(repr(error))}); --replot shows where."
         return Stored.damaged(file.stem, f"Study {result.kind}", words, age=old, origin=origin)
     finding = finding and replace(finding, age=old)
-    return Stored(file.stem, section, finding, judgements, origin, variants)
+    return Stored(file.stem, section, finding, judgements, glance, origin, variants)
 
 
 def _variants(settings):
@@ -118,7 +119,6 @@ def _variants(settings):
 # part: good in all that was tested, and something was not
 LEVELS = {"good": "✓ trust", "part": "✓ as far as tested", "fair": "~ with care", "bad": "✗ do not trust"}
 UNTESTED = Mark("not tested", "none")
-MOST_WORDS = 120  # of the paragraph that says the answer
 
 
 @dataclass(frozen=True)
@@ -191,7 +191,8 @@ def _rating(marks):
 def own_restitution(block: Result, outside: str = "") -> Judgement:
     """Restitution of the scenes' own block, from its free rocking; takes the place of the study's.
 
-    outside : as of `recommendation`; the error of the restitution then says little on the loss in an impact.
+    outside : the warning of a scene outside the range of a statue; the error of the restitution then says little on the
+    loss in an impact.
     """
     marks = {
         (row["engine"], row["variant"]): Mark(
@@ -204,56 +205,6 @@ def own_restitution(block: Result, outside: str = "") -> Judgement:
         if row["engine"] != "analytic"
     }
     return Judgement("restitution of this block, free: error, rms", marks, RESTITUTION)
-
-
-def best_of(setups: Sequence[Setup]) -> Setup | None:
-    """The cheapest that may be trusted and whose engine computes the impact itself; None where there is none."""
-    good = [one for one in setups if one.rating.level in ("good", "part") and not one.applies_impact]
-    return min(good, key=lambda one: (one.rating.level != "good", one.cost), default=None)
-
-
-def recommendation(
-    setups: Sequence[Setup], judgements: Sequence[Judgement], limits: str, outside: str = ""
-) -> list[str]:
-    """What to use, with error, cost and limits, the range in words, within which it was tested; list of str.
-
-    outside : the warning of a scene that lies outside that range, for which no engine is recommended.
-    """
-    words = ["One rigid block, planar, on sharp corners: use the analytic model. It is exact to the closed forms."]
-    if outside:
-        words.append(f"No engine is recommended here: {outside}.")
-        return words
-    best = best_of(setups)
-    if best is None:
-        words.append("No engine that was run here may be trusted in all that was tested.")
-        return words
-    errors = [best.marks[one.heading].words for one in judgements if one.key == RESTITUTION]
-    known = [f"restitution within {error}" for error in errors[:1]]
-    known += [f"{number(best.cost, 2)} times the analytic model's CPU time"] if math.isfinite(best.cost) else []
-    words.append(
-        f"Where it must be a multibody engine: {best.engine}, variant “{best.variant}”: {', at '.join(known)}."
-    )
-    words.append(f"Tested with one block, for {limits}; planar, no sliding, no jump.")
-    return words
-
-
-def paragraph(setups: Sequence[Setup], judgements: Sequence[Judgement]) -> str:
-    """The first table in words, at most `MOST_WORDS`: subject engines, tuned; and defaults for what rates them."""
-    sentences: list[str] = []
-    for tier, how in (("tuned", "Tuned"), ("defaults", "By default")):
-        columns = [one for one in setups if one.in_first_table and one.tier == tier]
-        words = []
-        for each in judgements:
-            marks = {one.engine: one.marks[each.heading] for one in columns}
-            tested = {engine: mark.short or mark.words for engine, mark in marks.items() if mark is not UNTESTED}
-            if each.says and tested and (tier == "tuned" or each.rates):
-                whose = f" ({', '.join(tested)})" if len(tested) < len(marks) else ""
-                words.append(each.says.format(" and ".join(tested.values()) + whose))
-        if words:
-            whose = " and ".join(one.engine for one in columns)
-            named = how if any(whose in sentence for sentence in sentences) else f"{how}, {whose}"
-            sentences.append(f"{named}: {'; '.join(words)}.")
-    return " ".join(sentences)
 
 
 def not_to_do(setups: Sequence[Setup], judgements: Sequence[Judgement]) -> list[str]:

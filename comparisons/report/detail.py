@@ -1,11 +1,14 @@
 """A page of its own: of one study's result, or of what else the report folds away."""
 
+import hashlib
 import re
+from base64 import b64encode
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from os import PathLike
 from pathlib import Path
+from typing import Any
 
 from jinja2 import Environment
 from markupsafe import Markup, escape
@@ -18,7 +21,7 @@ from ..running.readable import readable
 from ..showing import diagrams
 from ..showing.charts import STYLE, colour, key_of
 from ..showing.mathml import mathml
-from ..showing.parts import Section, number, signed, templates
+from ..showing.parts import Section, number, signed, templates, unbroken
 from ..showing.wording import indexed
 from ..studies.rows import read_study
 from . import equations
@@ -96,6 +99,7 @@ def environment() -> Environment:
         "math": lambda tex: Markup(mathml(tex, display=True)),
         "indexed": lambda text: Markup(indexed(str(escape(text)))),
         "glossed": glossed,
+        "unbroken": unbroken,
         "number": number,
         "signed": signed,
         "key": lambda who: Markup(key_of(who)),
@@ -104,12 +108,15 @@ def environment() -> Environment:
     return found
 
 
-def assets() -> dict[str, Markup]:
-    """Style and scripts, to stand on the page itself."""
-    return {
+def assets() -> dict[str, Any]:
+    """Style and scripts, to stand on the page itself, and a policy that lets no others run and nothing be loaded."""
+    found = {
         "style": Markup(
             "".join(file.read_text(encoding="utf-8") for file in (STYLE, diagrams.STYLE, HERE / "style.css"))
         ),
         "script": Markup((HERE / "page.js").read_text(encoding="utf-8")),
         "animation": Markup((HERE / "animation.js").read_text(encoding="utf-8")),
     }
+    digests = (hashlib.sha256(found[name].encode()).digest() for name in ("script", "animation"))
+    scripts = " ".join(f"'sha256-{b64encode(digest).decode()}'" for digest in digests)
+    return {**found, "policy": f"default-src 'none'; style-src 'unsafe-inline'; script-src {scripts}"}

@@ -1,12 +1,13 @@
-"""What the README shows of the studies' stored results, four small figures and what they found in words, and where
-each result comes from, for the README beside them.
+"""What the README shows of the studies' stored results, the report's first screen, and where each result comes from,
+for the README beside them.
 
 ``python -m comparisons.report.gallery`` makes all of it anew.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from textwrap import wrap
+from typing import Any
 from xml.etree import ElementTree
 
 from engines import ENGINES
@@ -16,34 +17,39 @@ from ..running.files import write, write_all
 from ..running.provenance import PROJECT_FOLDER, RESULTS, Result
 from ..showing.charts import alone
 from ..studies.rows import read_study
-from .answer import Stored, commit_of, paragraph, setups_of, stored_studies, variants_of
+from .answer import Stored, commit_of, setups_of, stored_studies, variants_of
+from .first import screen
 
 GALLERY, README = Path(__file__).with_name("gallery"), PROJECT_FOLDER / "README.md"
 RESULTS_README = RESULTS / "README.md"
 BEGIN, END = "<!-- findings of the stored studies -->", "<!-- end of findings -->"
-PANELS = {"restitution": 0, "overturning": -1, "sensitivity": 0, "speed-error": -1}  # study: which panel of its finding
+ALT = {"costs": "Error of peak tilt over CPU time of every solver", "endings": "Share of outcomes that differ"}
 
 
-def gallery(stored: Iterable[Stored]) -> dict[str, str]:
-    """{name of a file: SVG} of the findings of the studies in `PANELS`."""
+def gallery(first: Mapping[str, Any]) -> dict[str, str]:
+    """{name of a file: SVG} of the charts of the first screen, as `first.screen` gives it, for a wide page."""
+    charts = {name: first[name] for name in ("costs", "endings") if first[name]}
     made = {}
-    for one in stored:
-        if one.name in PANELS and one.finding is not None:
-            (picture,) = one.finding.figures
-            panels = ElementTree.fromstring(f"<panels>{picture.svg.decode()}</panels>")
-            made[f"{one.name}.svg"] = alone(ElementTree.tostring(panels[PANELS[one.name]], encoding="unicode"))
+    for name, picture in charts.items():
+        wide, *_ = ElementTree.fromstring(f"<both>{picture.svg.decode()}</both>")
+        made[f"{name}.svg"] = alone(ElementTree.tostring(wide[0], encoding="unicode"))
     return made
 
 
-def headlines(stored: Sequence[Stored]) -> str:
-    """The report's first table and its paragraph as Markdown."""
+def first_screen(stored: Sequence[Stored]) -> dict[str, Any]:
+    """The report's first screen from stored results alone."""
     judgements = [each for one in stored for each in one.judgements]
-    columns = [one for one in setups_of(variants_of(stored), judgements) if one.in_first_table]
-    rows = [["", *(f"{one.engine}, {one.tier}" for one in columns)], ["---"] + ["---:"] * len(columns)]
-    rows += [["rating", *(one.rating.words for one in columns)]]
-    rows += [[each.heading, *(one.marks[each.heading].words for one in columns)] for each in judgements]
-    lines = [f"| {' | '.join(row)} |" for row in rows]
-    return "\n".join((*lines, "", *wrap(paragraph(columns, judgements), 120)))
+    columns = setups_of(variants_of(stored), judgements)
+    return screen(columns, judgements, [one.glance for one in stored if one.glance])
+
+
+def headlines(first: Mapping[str, Any]) -> str:
+    """The first screen as Markdown: its lines, its charts, and the recommendation."""
+    advice = first["advice"]
+    rows = [advice.columns, ["---"] * len(advice.columns), *advice.rows] if advice else []
+    charts = " ".join(f"![{ALT[name]}](comparisons/report/gallery/{name}.svg)" for name in ALT if first[name])
+    told = [line for words in first["lines"] for line in (*wrap(words, 120), "")]
+    return "\n".join((*told, charts, "", *(f"| {' | '.join(row)} |" for row in rows)))
 
 
 def origins(results: Mapping[str, Result]) -> str:
@@ -76,6 +82,7 @@ if __name__ == "__main__":
     # one that cannot be read must not leave the README without its rows
     results = {file.stem: read_study(file) for file in sorted(RESULTS.glob("*.json"))}
     found = stored_studies()
-    for readme, words in ((README, headlines(found)), (RESULTS_README, origins(results))):
+    first = first_screen(found)
+    for readme, words in ((README, headlines(first)), (RESULTS_README, origins(results))):
         write(readme, with_findings(readme.read_text(encoding="utf-8"), words))
-    write_all(GALLERY, gallery(found))
+    write_all(GALLERY, gallery(first))

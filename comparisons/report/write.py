@@ -21,20 +21,10 @@ from ..showing import diagrams, modes
 from ..showing.parts import Section, Table
 from ..showing.wording import TRUSTED, USABLE
 from . import equations
-from .answer import (
-    Stored,
-    commit_of,
-    not_to_do,
-    origin_of,
-    own_restitution,
-    paragraph,
-    recommendation,
-    setups_of,
-    stored_studies,
-    variants_of,
-)
+from .answer import Stored, commit_of, not_to_do, origin_of, own_restitution, setups_of, stored_studies, variants_of
 from .detail import assets, detail, environment
 from .figures import animation
+from .first import screen
 from .runs import RESTITUTION, SCENES
 from .sections import earthquake, restitution_section, scene_sections, summary
 from .statue import card_of
@@ -44,6 +34,7 @@ if TYPE_CHECKING:
 
 PAGE, PAGES = "report.html", "pages"
 HERE = Path(__file__).parent
+CONTACT_OURS = "contact law: ours"  # so begins what such an adapter imposes
 # Short names of sections in the contents, by the study whose finding it is; studies of others follow.
 SHORT = {
     "restitution": "One impact",
@@ -154,17 +145,29 @@ def _answer(scenes: Result, block: Result | None, stored: list[Stored]) -> dict[
     ]
     setups = setups_of(variants_of(stored, *own_variants), judgements)
     return {
-        "recommendation": recommendation(setups, judgements, in_words(), outside) if setups else [],
+        **screen(setups, judgements, [one.glance for one in stored if one.glance]),
+        "outside": outside,
+        "own": _contact_ours(scenes),
+        "limits": in_words(),
         "summary": summary(scenes, block),
         "not_to_do": not_to_do(setups, judgements),
         "decision": setups,
-        "says": paragraph(setups, judgements),
         "headings": {each.heading: where[each.heading] for each in judgements},
         "trusted": f"{TRUSTED:g}",
         "usable": f"{USABLE:g}",
         "computed": _computed(scenes),
         "origin": origin_of(scenes),
         "stage": _stage(scenes),
+    }
+
+
+def _contact_ours(scenes: Result) -> set[tuple[str, str]]:
+    """(engine, variant) of those whose contact law is the adapter's."""
+    return {
+        (engine, variant)
+        for engine, variants in scenes.settings["variants"].items()
+        for variant, kind in variants.items()
+        if kind["imposes"].startswith(CONTACT_OURS)
     }
 
 

@@ -24,7 +24,7 @@ from .cases import SOLVERS, Case
 from .sweep import Row
 
 if TYPE_CHECKING:
-    from ..showing.parts import Judgement, Page
+    from ..showing.parts import Glance, Judgement, Page
     from .provenance import Result
 
 TIME_LIMIT = 300.0  # s, of one run
@@ -90,7 +90,8 @@ class Study:
     name: on the command line, of its files, and the kind of its result. question: one line, the command's help.
     plan: ``(request, **options)`` -> generator, see above; its keyword-only parameters, annotated as Typer wants them,
     are options of the command. shown_by: the module that shows it, imported only there: its ``page(result)`` gives the
-    `comparisons.showing.parts.Page`, and its ``judgements(result)``, if it has them, rows of the report's first table.
+    `comparisons.showing.parts.Page`; its ``judgements(result)``, if it has them, rows of the report's first table, and
+    its ``glance(result)`` what stands above them.
     problems: result -> sentences that end the command with status 1. all_engines: whether all that are installed
     take part where none is asked for. whole: why one engine's rows cannot be computed anew by themselves (`merge`); ""
     where they can. indexed: {array: its column that says of which engine a row is, by the place in the settings'
@@ -123,3 +124,7 @@ class Study:
     def judgements(self, result: Result) -> tuple[Judgement, ...]:
         """Rows of the report's first table; none of a study that judges no engine."""
         return getattr(import_module(self.shown_by), "judgements", lambda result: ())(result)
+
+    def glance(self, result: Result) -> Glance | None:
+        """What it gives to the report's first screen; None: nothing."""
+        return getattr(import_module(self.shown_by), "glance", lambda result: None)(result)

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from markupsafe import Markup
@@ -105,7 +105,10 @@ def log_axis(label: str, values: Iterable[float]) -> Axis:
 
 
 class Chart:
-    """One panel; says: a description for readers who cannot see it. left, right, head, foot: margins."""
+    """One panel; says: a description for readers who cannot see it. left, right, head, foot: margins.
+
+    width: `WIDTH`, or more of one that is not for a phone.
+    """
 
     def __init__(
         self,
@@ -119,9 +122,10 @@ class Chart:
         foot: int | None = None,
         head: int = 0,
         title: str = "",
+        width: int = WIDTH,
     ) -> None:
-        self.x, self.y, self.says, self.title = x, y, says, title
-        self.left, self.right = left, WIDTH - right
+        self.x, self.y, self.says, self.title, self.width = x, y, says, title, width
+        self.left, self.right = left, width - right
         self.top, self.bottom = (30 if title else 12) + head, height - (foot or (46 if x.label else 28))
         self.height, self.parts, self.over = height, list[str](), list[str]()
         self.ends: list[tuple[float, str, str]] = []
@@ -141,6 +145,7 @@ class Chart:
         grey: bool = False,
         tone: str = "",
         look: Look | None = None,
+        thin: bool = False,
     ) -> None:
         """A line of one solver, or in a colour `tone`; look: of one curve of several. Points not finite part it."""
         places = self.at(xs, ys).round(1)
@@ -150,7 +155,7 @@ class Chart:
         begins = sound & ~np.append(False, sound)[:-1]
         pairs = zip(places[sound], begins[sound], strict=True)
         path = "".join(f"{'M' if begin else 'L'}{x:g} {y:g}" for (x, y), begin in pairs)
-        self.parts.append(f'{_group(who, grey, tone, look)}<path class="line" d="{path}"/></g>')
+        self.parts.append(f'{_group(who, grey, tone, look)}<path class="line{" thin" * thin}" d="{path}"/></g>')
 
     def dots(
         self,
@@ -217,10 +222,22 @@ class Chart:
             f'<text x="{place:.1f}" y="{height}" class="soft" text-anchor="{anchor}">{escape(words)}</text>'
         )
 
-    def beside(self, x: float, y: float, words: str) -> None:
-        """Words to the right of a point."""
-        ((across, up),) = self.at([x], [y])
-        self.over.append(f'<text x="{across + 6:.1f}" y="{up + 4.5:.1f}" class="soft">{escape(words)}</text>')
+    def beside(self, x: float, y: float, words: str, **how: Any) -> None:
+        """Words beside a point; how: as `named` takes it."""
+        self.named(self.at([x], [y])[0], words, **how)
+
+    def named(self, place: Sequence[float], words: str, who: str = "", *, aside: tuple[float, float] = (6, 4.5),
+              anchor: str = "start", kind: str = "soft") -> None:  # fmt: skip
+        """Words beside a place, in a solver's colour; aside: where they begin, end or have their middle (`anchor`)."""
+        x, y = place[0] + aside[0], place[1] + aside[1]
+        text = f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}" class="{kind}">{escape(words)}</text>'
+        self.over.append(f"{_group(who, False)}{text}</g>" if who else text)
+
+    def bar(self, low: float, high: float, place: float, who: str, kind: str, says: str = "") -> None:
+        """A bar along x at a place on y, of a class."""
+        (x0, y), (x1, _) = self.at([low, high], [place, place])
+        shape = f'<rect class="{kind}" x="{x0:.1f}" y="{y - 5.5:.1f}" width="{x1 - x0:.1f}" height="11"{_told(says)}/>'
+        self.over.append(f"{_group(who, False)}{shape}</g>")
 
     def label(self, y: float, text: str, who: str = "", tone: str = "", look: Look | None = None) -> None:
         """Name of a line, in the right margin at the height where it ends."""
@@ -262,7 +279,6 @@ class Chart:
         ys = self.at([self.x.low] * len(up), [value for value, _ in up])[:, 1].round(1).tolist()
         return DRAWN.render(
             chart=self,
-            width=WIDTH,
             read=json.dumps(read, ensure_ascii=False),
             across=[(x, word) for x, (_, word) in zip(xs, across, strict=True)],
             up=[(y, word) for y, (_, word) in zip(ys, up, strict=True)],

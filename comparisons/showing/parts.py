@@ -47,21 +47,78 @@ class Figure:
     def element(self) -> Markup:
         return Markup(self.svg.decode())
 
+    @property
+    def panels(self) -> int:
+        """How many charts it has."""
+        return max(1, self.svg.count(b'<svg class="chart"'))
+
 
 @dataclass(frozen=True)
 class Mark:
     """What a study says of one solver: in words, and as "good", "fair" or "bad"; "part" where so little was tested that
     it cannot be said; or "none", which is of no rating: a row of such alone has no say.
 
-    note: the number of runs or scenes behind it, and what else the words leave out. value: the number itself. short:
-    the words as they stand in a sentence, where they are shorter there.
+    note: the number of runs or scenes behind it, and what else the words leave out. value: the number itself.
     """
 
     words: str
     level: str
     note: str = ""
     value: float | None = None
-    short: str = ""
+
+
+@dataclass(frozen=True)
+class Endings:
+    """How many runs of a variant end otherwise than the model's, under one kind of motion.
+
+    tier: the variant's kind. runs: those judged; of these failed; missed: overturn in the model alone; added: in the
+    engine alone; other: end, or fall, otherwise in another way. interval: 95 % of the share of all four.
+    """
+
+    motions: str
+    engine: str
+    variant: str
+    tier: str
+    runs: int
+    failed: int
+    missed: int
+    added: int
+    other: int
+    interval: tuple[float, float]
+
+    @property
+    def differing(self) -> int:
+        return self.failed + self.missed + self.added + self.other
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Error over cost of a solver. who: engine and variant; name: shorter. kind: "defaults", "tuned", or "model" of
+    the equations themselves; subject: whether it is an engine in question.
+
+    points: (CPU time [s/s], error [-], whether it missed nothing, what it is in words), from coarse to fine.
+    """
+
+    who: str
+    name: str
+    kind: str
+    subject: bool
+    points: tuple[tuple[float, float, bool, str], ...]
+
+
+@dataclass(frozen=True)
+class Glance:
+    """What a study gives to the report's first screen.
+
+    says: {place in the answer: a sentence}. endings: of variants. curves: of solvers, in the scene that is called
+    `scene`. advice: the recommendation by accuracy.
+    """
+
+    says: Mapping[str, str] = field(default_factory=dict)
+    endings: tuple[Endings, ...] = ()
+    curves: tuple[Curve, ...] = ()
+    scene: str = ""
+    advice: Table | None = None
 
 
 RESTITUTION, COST = "restitution", "cost"  # keys of judgements that the report's first screen takes numbers of
@@ -72,13 +129,12 @@ class Judgement:
     """A row of the report's first table. heading: with unit. marks: {(engine, variant): `Mark`}; variant "" is the
     default one.
 
-    key: by which others find it. says: how a mark's words stand in a sentence, with {} in their place; "": in none.
+    key: by which others find it.
     """
 
     heading: str
     marks: dict
     key: str = ""
-    says: str = ""
 
     @property
     def rates(self) -> bool:
@@ -182,6 +238,11 @@ def short(value: float | None) -> str:
     digits, point, power = number(value).partition("·")
     digits = digits.rstrip("0").rstrip(".") if "." in digits else digits
     return power if point and digits == "1" else digits + point + power
+
+
+def unbroken(text: str) -> str:
+    """The text with no line break between a number and its unit, or the count that it is of."""
+    return re.sub(r"(?<=\d) (?=(?:%|×|ms|s|of)\b|[%×])|(?<=\bof) (?=\d)", "\u00a0", text)
 
 
 def typeset(text: str) -> str:

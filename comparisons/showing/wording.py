@@ -7,7 +7,7 @@ from typing import Any
 from analytic.response import COMPARED, EDGE, UNCOMPARED, Difference
 
 from ..measuring.statistics import EQUAL, equality
-from .parts import Mark, percent
+from .parts import Endings, Mark, grouped, percent
 
 # Root mean square error of restitution: measured restitution of stone scatters by some per cent.
 TRUSTED, USABLE = 1e-3, 1e-2
@@ -78,7 +78,23 @@ def equal_mark(found: Mapping[str, Any]) -> Mark:
     levels = {"yes": "good", "no": "bad" if low > EQUAL else "fair"}
     words, most = f"{found['differing']} of {found['runs']}", percent(high)
     note = {"yes": "equal", "no": "not shown to be equal"}.get(equal, equal) + f"; {found['failed']} failed"
-    return Mark(f"{words} (at most {most})", levels.get(equal, "part"), note, found["share"], f"{words} (≤ {most})")
+    return Mark(f"{words} (at most {most})", levels.get(equal, "part"), note, found["share"])
+
+
+def counted(motions: str, rows: Iterable[Mapping[str, Any]]) -> tuple[Endings, ...]:
+    """The `Endings` of every variant from its judged runs, each with: engine, variant, tier; class "right", "differs"
+    or "failed"; falls and model_falls, whether the block overturns; group: runs of one count as one in the interval.
+    """
+    found = []
+    for (engine, variant, tier), runs in grouped(rows, "engine", "variant", "tier").items():
+        wrong = [row for row in runs if row["class"] == "differs"]
+        ways = [(row["model_falls"], row["falls"]) for row in wrong]
+        missed, added = ways.count((True, False)), ways.count((False, True))
+        failed = sum(row["class"] == "failed" for row in runs)
+        _, interval = equality([row["class"] != "right" for row in runs], [row["group"] for row in runs])
+        counts = len(runs), failed, missed, added, len(wrong) - missed - added
+        found.append(Endings(motions, engine, variant, tier, *counts, interval))
+    return tuple(found)
 
 
 def differing(comparable: str, differences: Iterable[Difference]) -> list[str]:

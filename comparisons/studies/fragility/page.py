@@ -9,8 +9,8 @@ from ...measuring.statistics import EQUAL, TOO_FEW
 from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure
 from ...showing.figures import ranks, shades
-from ...showing.parts import NAME, Column, Head, Judgement, Page, grouped, number, percent, short, table, where
-from ...showing.wording import equal_mark, tally
+from ...showing.parts import NAME, Column, Glance, Head, Judgement, Page, grouped, number, percent, short, table, where
+from ...showing.wording import counted, equal_mark, tally
 
 LEVEL = 0.05  # of the test between an engine and the model, and least p of a curve that is shown
 OVERTURNING = "overturning"
@@ -166,6 +166,22 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
     """Whether the outcomes are equal to the model's, by (engine, variant)."""
     marks = {(row["engine"], row["variant"]): equal_mark(row) for row in tallies(result) if row["runs"]}
     return (Judgement("outcomes that differ under synthetic motions", marks),)
+
+
+def glance(result: Result) -> Glance:
+    tiers = {NAME.of(one): one["tier"] for one in result.settings["variants"]}
+    runs = [
+        {
+            **row,
+            "tier": tiers[NAME.of(row)],
+            "model_falls": row["model_overturns"],
+            "falls": row["overturns"],
+            "group": row["seed"],
+        }
+        for row in where(result.rows, part="run")
+        if row["class"] != "left out"
+    ]
+    return Glance(endings=counted("synthetic motions", runs))
 
 
 def _title(found):

@@ -12,6 +12,8 @@ from ...showing.figures import MOVED, lines
 from ...showing.parts import (
     NAME,
     Column,
+    Endings,
+    Glance,
     Head,
     Judgement,
     Mark,
@@ -152,17 +154,28 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
     for row in _rated(result):
         every = row["of"] + row["beyond"]
         words = f"{percent(row['largest'])} ({row['found']} of {every} boundaries)"
-        short = f"{percent(row['largest'])} ({row['found']}/{every})"
         note = f"median {percent(row['median'])}; {row['of'] - row['found']} not found"
         if row["beyond"]:
             note += f"; {row['beyond']} with N < 0 do not count, found {row['beyond_found']}"
             note += f", {percent(row['beyond_largest'])}" if row["beyond_found"] else ""
         if row["largest"] is None:
-            words = short = "none found"
-        marks[row["engine"], row["variant"]] = Mark(words, row["rating"], note, row["largest"], short)
-    return (
-        Judgement("overturning boundary under pulses: shift, worst", marks, says="overturning boundaries by up to {}"),
-    )
+            words = "none found"
+        marks[row["engine"], row["variant"]] = Mark(words, row["rating"], note, row["largest"])
+    return (Judgement("overturning boundary under pulses: shift, worst", marks),)
+
+
+def glance(result: Result) -> Glance:
+    """Of the coarse scan, away from the boundaries."""
+    tiers = {NAME.of(one): one["tier"] for one in result.settings["variants"]}
+    return Glance(
+        endings=tuple(
+            Endings(
+                "pulses", row["engine"], row["variant"], tiers[NAME.of(row)], row["runs"], row["failed"], row["only_a"],
+                row["only_b"], 0, tuple(row["interval"])
+            )
+            for row in where(result.rows, part="scan")
+        )
+    )  # fmt: skip
 
 
 def _place(row):

@@ -15,6 +15,7 @@ from ...showing.parts import (
     NAME,
     Column,
     Figure,
+    Glance,
     Judgement,
     Mark,
     Page,
@@ -26,9 +27,10 @@ from ...showing.parts import (
     typeset,
     where,
 )
-from ...showing.wording import NOT_COMPARED, equal_mark, tally
+from ...showing.wording import NOT_COMPARED, counted, equal_mark, tally
 from .study import ERRORS
 
+MANY = 0.95  # share of the runs whose error a quantile tells
 BOTH = "both"  # of the column "configuration": free-standing and isolated together
 LEAST, FALLEN, MOST = 0.01, 4.0, 6.0  # tilt over slenderness: the axes begin, "overturns" stands, and they end
 TICKS = ((0.01, "≤ 0.01"), (0.1, "0.1"), (1.0, "1"), (FALLEN, "overturns"))
@@ -88,8 +90,8 @@ def page(result: Result) -> Page:
                 *COUNTS,
             ),
             table(
-                "Relative errors of peaks, run by run: median, largest, number of runs; up to the horizon common to "
-                "all engines, and up to the engine’s own",
+                "Relative errors of peaks, run by run: median, largest, number of runs, 95 % quantile; up to the "
+                "horizon common to all engines, and up to the engine’s own",
                 summaries,
                 NAME,
                 CONFIGURATION,
@@ -127,26 +129,35 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
     runs = grouped(where(result.rows, part="run"), "engine", "variant")
     rows = {pair: where(summary(members), configuration=BOTH)[0] for pair, members in runs.items()}
     return (
-        Judgement(
-            "outcomes that differ under recorded motions",
-            {name: equal_mark(row) for name, row in rows.items()},
-            says="outcomes under records differ in {}",
-        ),
+        Judgement("outcomes that differ under recorded motions", {name: equal_mark(row) for name, row in rows.items()}),
         *(
             Judgement(
                 f"{words} under recorded motions: error, median",
                 {name: _peak_mark(row[f"{key}_error"]) for name, row in rows.items()},
-                says="median peak tilts by {}" if key == "tilt" else "",
             )
             for key, words in PEAKS.items()
         ),
     )
 
 
+def glance(result: Result) -> Glance:
+    runs = [
+        {
+            **row,
+            "model_falls": row["model_outcome"] == "overturns",
+            "falls": row["outcome"] == "overturns",
+            "group": row["record"],
+        }
+        for row in where(result.rows, part="run")
+        if row["class"] != "left out"
+    ]
+    return Glance(endings=counted("recorded motions", runs))
+
+
 def summary(rows: Sequence[dict[str, Any]]) -> Iterator[dict[str, Any]]:
     """Rows of a variant from its runs, one for each configuration and one for both together: their `tally`, the
-    components and configurations of a record taken as one. Each of `ERRORS`: [median, largest, number] of its absolute
-    values.
+    components and configurations of a record taken as one. Each of `ERRORS`: [median, largest, number, 95 % quantile]
+    of its absolute values.
     """
     for configuration in (*dict.fromkeys(row["configuration"] for row in rows), BOTH) if rows else ():
         mine = [row for row in rows if configuration in (row["configuration"], BOTH)]
@@ -157,14 +168,16 @@ def summary(rows: Sequence[dict[str, Any]]) -> Iterator[dict[str, Any]]:
 
 def _spread(errors: Sequence[float | None]) -> list[float | int] | None:
     known = np.abs([error for error in errors if error is not None])
-    return [float(np.median(known)), float(known.max()), len(known)] if len(known) else None
+    high = float(np.quantile(known, MANY, method="higher")) if len(known) else None
+    return [float(np.median(known)), float(known.max()), len(known), high] if len(known) else None
 
 
 def _peak_mark(errors):
     if errors is None:
         return Mark("not compared", "none")
-    median, most, count = errors
-    return Mark(percent(median), "none", f"{count} runs, worst {percent(most)}", median)
+    median, most, count, high = errors
+    note = f"{count} runs, {100 * MANY:g} % of them below {percent(high)}, worst {percent(most)}"
+    return Mark(percent(median), "none", note, median)
 
 
 def _title(both: list[dict[str, Any]], equal: str) -> str:

@@ -138,12 +138,10 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
             "restitution at impacts, free rocking: error, rms",
             {(row["engine"], row["variant"]): _free_mark(row) for row in rows},
             RESTITUTION,
-            says="restitution errs by {} free",
         ),
         Judgement(
             "restitution at impacts, on bearings: error, rms",
             {(row["engine"], row["variant"]): _mark(row, "rms_state", "worst_state") for row in borne},
-            says="by {} on bearings",
         ),
         Judgement(
             "base velocity jump on bearings: relative error, rms",

@@ -9,7 +9,22 @@ from ...measuring.statistics import EQUAL, TOO_FEW, wilson
 from ...running.provenance import Result
 from ...showing.charts import Axis
 from ...showing.figures import ranks
-from ...showing.parts import NAME, Column, Figure, Head, Judgement, Page, Table, grouped, number, percent, table, where
+from ...showing.parts import (
+    NAME,
+    Column,
+    Endings,
+    Figure,
+    Glance,
+    Head,
+    Judgement,
+    Page,
+    Table,
+    grouped,
+    number,
+    percent,
+    table,
+    where,
+)
 from ...showing.wording import equal_mark
 from . import at_hand
 from .campaign import outcomes_of
@@ -17,7 +32,7 @@ from .drawn import agreement, plane, reliabilities
 from .judging import AS_IT_IS, AUTHORS, BEYOND, BY_RECORD, CURVE, FREQUENT, IN_SAMPLE, MODEL, ONE, THRESHOLD
 from .measures import TABLE
 from .runs import ALL, ANSWERS, counted
-from .words import apart, bounds, how, more_right, name_of, not_shown, sentence, title
+from .words import apart, at_a_glance, bounds, how, more_right, name_of, not_shown, sentence, title
 
 APART = 0.15  # between what was observed and what was predicted, of cells that are listed
 FORECAST, CHANGE = Column("predicted by", "forecast"), Column("change of the model", "change")
@@ -117,6 +132,20 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
         (row["engine"], row["variant"]): equal_mark(tally_of(row)) for row in rows if row["specimen"] == ALL or alone
     }
     return (Judgement("outcomes that differ under motions of a shake table", marks),) if marks else ()
+
+
+def glance(result: Result) -> Glance:
+    rows = where(result.rows, part="engine")
+    alone = len({row["specimen"] for row in rows}) == 1
+    endings = tuple(
+        Endings(
+            "shake table", row["engine"], row["variant"], row["tier"], row["size"], row["failed"], row["only_a"],
+            row["only_b"], 0, tuple(row["interval"])
+        )
+        for row in rows
+        if row["specimen"] == ALL or alone
+    )  # fmt: skip
+    return Glance(says={"real": words} if (words := at_a_glance(result)) else {}, endings=endings)
 
 
 def tally_of(row: dict[str, Any]) -> dict[str, Any]:

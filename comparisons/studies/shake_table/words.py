@@ -44,6 +44,15 @@ def sentence(result: Result, engines: Sequence[dict[str, Any]]) -> str:
     return " ".join(words)
 
 
+def at_a_glance(result: Result) -> str:
+    """How often the model is right about real blocks; "" where it was not judged."""
+    rows = where(result.rows, part="score", judged=BY_RECORD, forecast=MODEL)
+    if not rows:
+        return ""
+    right, names = (listed([str(row[key]) for row in rows]) for key in ("right", "specimen"))
+    return f"On a shake table the model predicts {right} of {rows[0]['size']} outcomes of real blocks ({names})."
+
+
 def _unsafe(row):
     return row["only_a"] > row["only_b"] and row["p_records"] is not None and row["p_records"] < 0.05
 

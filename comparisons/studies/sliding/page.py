@@ -17,6 +17,7 @@ from ...showing.parts import (
     NAME,
     Column,
     Figure,
+    Glance,
     Judgement,
     Mark,
     Page,
@@ -28,7 +29,7 @@ from ...showing.parts import (
     typeset,
     where,
 )
-from ...showing.wording import NOT_COMPARED
+from ...showing.wording import NOT_COMPARED, counted
 
 TRUSTED = 0.95  # share of right runs, of those not left out
 APART = 0.008  # of friction: marks at one place stand side by side
@@ -159,6 +160,24 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
             note = f"outcome right in {row['alike']}; {row['differs']} differ, {row['failed']} failed"
             marks[row["engine"], row["variant"]] = Mark(f"{row['right']} of {row['judged']}", level, note, share)
     return (Judgement("sliding scenes right", marks),)
+
+
+def glance(result: Result) -> Glance:
+    runs = [
+        {
+            **row,
+            "class": "failed"
+            if row.get("failure")
+            else "differs"
+            if row["outcome"] != row["model_outcome"]
+            else "right",
+            "model_falls": row["model_outcome"] == "overturns",
+            "falls": row["outcome"] == "overturns",
+            "group": row["index"],
+        }
+        for row in judged(result)
+    ]
+    return Glance(endings=counted("sliding blocks", runs))
 
 
 def summed(cells: Iterable[Mapping[str, Any]], key: Any) -> list[dict[str, Any]]:

@@ -1,91 +1,80 @@
 """What is shown of the speed-error study."""
 
 import statistics
-from collections.abc import Iterable
-from typing import Any
 
 import numpy as np
 
-from engines import ENGINES
+from engines import ENGINES, get_engine
 
 from ...running.provenance import Result
 from ...showing.figures import beside, lines
-from ...showing.parts import (
-    COST,
-    Column,
-    Head,
-    Judgement,
-    Mark,
-    Page,
-    Row,
-    cheapest,
-    grouped,
-    number,
-    percent,
-    short,
-    table,
-    where,
-)
 from ...showing.parts import NAME as SOLVER
+from ...showing.parts import Column, Head, Page, grouped, number, percent, short, table, where
 from .cases import NEEDED, PLAIN
+from .costs import (
+    ASKED,
+    CPU,
+    FINE,
+    FINE_LEVELS,
+    FINEST,
+    KERNEL,
+    MEASURES,
+    as_needed,
+    equal_cost_tables,
+    glance,
+    judgements,
+    level_words,
+    levels_run,
+    measures_of,
+    passing,
+    ratios,
+)
 from .growth import fit
 
-FIRST = ("free-sliding", PLAIN)  # scenes of the report's first page
+__all__ = ["glance", "judgements", "page"]
 LEVELS = (1e-2, 1e-3, 1e-4, 1e-5)  # of an error
-FINE, FINE_LEVELS, FINEST = "horizon_tilt", (1e-6, 1e-9, 1e-12), 1e-16  # of integrators alone; the last is drawn
-ASKED = 1e-3
 USUAL = 1e-8  # tolerance of the kernel in comparisons with engines at default levels; its own default takes longer
 DRAWN, ROUNDING = 1e-9, 1e-13  # errors below the first are drawn there, those below the second tell no order
 NOISE = 95  # percentile of the spread of costs over the rounds, below which two costs are not distinguished
-KERNEL = "analytic, kernel"
-# What is shown of a scene: the errors of one line that it has, of the first line of which it has any. All are numbers
-# without a unit.
-SHOWN = (("boundary_shift",), ("restitution", "peak_tilt"), ("peak_displacement",), (FINE,))
-MEASURES = {
-    "restitution": "error of restitution, rms [-]",
-    "peak_tilt": "error of peak tilt over slenderness [-]",
-    "peak_displacement": "error of peak displacement [-]",
-    "boundary_shift": "error of overturning boundary [-]",
-    FINE: "error of |tilt| at the horizon over slenderness [-]",
-}
 AGAINST = {"duration": "duration [s]", "samples": "record samples per second [1/s]"}
 MIB = 2**20
+# (scene, error) of the figure of the report's page; the first screen has that of the peak tilt
+FIRST = (("free-rigid", "restitution"), (PLAIN, "restitution"), ("near-overturning", "boundary_shift"),
+         ("near-overturning-jump", "boundary_shift"))  # fmt: skip
+PANELS = {"restitution": "restitution", "peak_tilt": "peak tilt", "peak_displacement": "displacement",
+          "boundary_shift": "amplitude", FINE: "tilt"}  # fmt: skip
 
 NAME = Column("solver", "name")
 SCENE = Column("scene", "title")
-CPU = Column("CPU time of a run [s]", "cpu_seconds")
 
 
 def page(result: Result) -> Page:
     shown = levels_run(result)
-    every = where(shown, principal=True)
-    rows = [row for row in where(shown, model=NEEDED) if row["law"] != "bouc-wen"]
+    every, rows = where(shown, principal=True), as_needed(result)
     errors = grouped(rows, "scene", "measure")
-    first = [key for key in errors if key[0] in FIRST] or list(errors)[-1:]
-    shown_scene = next((key for key in first if key[0] == PLAIN), first[-1])
-    top = [key for key in first if key[0] == shown_scene[0]]
+    first = [key for key in errors if key in FIRST] or list(errors)[-1:]
     others = [key for key in errors if key not in first]
-    growth = where(result.rows, part="growth", failure=None)
+    coarse, asked, fine = equal_cost_tables(result)
     return Page(
-        _title(result, errors[shown_scene], _noise(every)),
+        _title(result),
         (
             "Every solver runs through levels of its accuracy parameter; error and CPU time come from the same runs. "
-            "Cheapest is the cheapest level at which it and all finer ones keep the error: none counts by chance.",
-            "In brackets: CPU time over the analytic model's; level of the accuracy parameter. Assisted: the adapter "
-            f"applies the impact. Costs within a factor of {number(_noise(every), 3)} are of one rank: the cost of "
-            "one level differs as much between rounds.",
+            "Costs are compared at an equal error, interpolated between levels, and only where all finer levels keep "
+            f"it, too. Costs within a factor of {number(_noise(every), 3)} are not distinguished.",
         ),
-        first=(
-            _figure([row for key in first for row in errors[key]], CPU, CAPTION, rows),
-            *(_costs(result, errors[key]) for key in top),
-            _defaults_table(result),
-        ),
+        first=(_figure([row for key in first for row in errors[key]], CPU, CAPTION, rows), asked),
         more=(
+            coarse,
+            fine,
             Head("The other scenes"),
             _figure([row for key in others if key[1] != FINE for row in errors[key]], CPU, CAPTION, rows),
             _figure([row for key in others if key[1] == FINE for row in errors[key]], CPU, FINE_CAPTION, rows),
-            *(_costs(result, some) for key, some in errors.items() if key not in top),
+            Head("The cheapest level of each solver"),
+            *(_costs(result, some) for some in errors.values()),
             _without_error(every),
+            Head("First runs, and who does the work"),
+            _first_runs(result),
+            _shares(result),
             Head("Step and order"),
             _figure(rows, Column("mean step [s]", "step"), "Mean step: simulated time over steps.", rows),
             *(
@@ -100,12 +89,12 @@ def page(result: Result) -> Page:
                 Column("CPU time per step [µs]", lambda row: _range(row["rows"], "cpu_per_step", 1e6)),
             ),
             *_more_than_needed(result, every),
-            *_growth(growth),
+            *_growth(where(result.rows, part="growth", failure=None)),
         ),
         how=_how(result, every),
         evidence=tuple(
             (
-                f"{row['name']} at {_level(row)}, {row['title']}: {row['failure']['reason']}",
+                f"{row['name']} at {level_words(row)}, {row['title']}: {row['failure']['reason']}",
                 row["failure"].get("message", ""),
             )
             for row in every
@@ -114,57 +103,23 @@ def page(result: Result) -> Page:
     )
 
 
-def judgements(result: Result) -> tuple[Judgement, ...]:
-    """CPU time at the default levels over the analytic model's, by (engine, variant); none without that scene."""
-    marks = {
-        (row["engine"], row["variant"]): Mark(
-            f"{RATIO.text(row)} ×",
-            "none",
-            f"error of restitution {number(row['restitution'], 2)}"
-            + (f"; {SHARE.head} {SHARE.text(row)}" if row["share"] is not None else "")
-            + (f"; {row['lost']} impacts missed" if row["lost"] else ""),
-            RATIO.of(row),
-        )
-        for row in _defaults(result)
-    }
-    heading = "CPU time over the analytic model's, isolated rocking"
-    return (Judgement(heading, marks, COST, says="{} the model's CPU time"),) if marks else ()
-
-
-RATIO = Column("CPU time over the analytic model's [-]", "ratio")
-SHARE = Column("engine's own share", lambda row: "not measured" if row["share"] is None else percent(row["share"]))
-
-
-def _defaults(result):
-    """A row for each variant at its default level in the scene `PLAIN`, with ratio and share; cheapest first."""
-    rows = [row for row in where(levels_run(result), scene=PLAIN, model=NEEDED, principal=True) if "cpu_seconds" in row]
-    kernel = where(rows, name=KERNEL, level=USUAL)
-    shares = {SOLVER.of(row): row["share"] for row in where(result.rows, part="share", failure=None)}
-    defaults = {SOLVER.of(variant): variant["default"] for variant in result.settings["variants"]}
-    found = [
-        {
-            **row,
-            **dict.fromkeys(SHOWN[1]),
-            **row["errors"],
-            "ratio": CPU.of(row) / CPU.of(kernel[0]),
-            "share": shares.get(row["name"]),
-        }
-        for row in rows
-        if kernel and row["level"] == defaults.get(row["name"])
-    ]
-    return sorted(found, key=CPU.of)
-
-
-def _defaults_table(result):
+def _first_runs(result):
     return table(
-        f"Isolated, rocking, default levels; the analytic model at a tolerance of {short(USUAL)}. Own share: CPU "
-        "time inside the engine's compiled functions over that of the run; the rest is Python, mostly the adapter's",
-        _defaults(result),
-        NAME,
-        RATIO,
-        SHARE,
-        *(Column(MEASURES[key], key) for key in SHOWN[1]),
-        Column("impacts missed [-]", "lost"),
+        "CPU time of a first run, in a process of its own from its start to the answer; isolated, rocking",
+        where(result.rows, part="first run", failure=None),
+        SOLVER,
+        Column("the analytic model's code", "code"),
+        Column("CPU time [s]", "cpu_seconds", digits=3),
+    )
+
+
+def _shares(result):
+    return table(
+        "CPU time inside the engine's compiled functions over that of the run, default levels; the rest is Python, "
+        "mostly the adapter's; isolated, rocking",
+        where(result.rows, part="share", failure=None),
+        SOLVER,
+        Column("engine's own share", "share", percent=True),
     )
 
 
@@ -181,59 +136,29 @@ FINE_CAPTION = (
 )
 
 
-def levels_run(result: Result) -> list[dict[str, Any]]:
-    """The rows of all solvers at their levels, one for each error shown: with name, title of the scene, measure, error.
-
-    The error is None where the run failed, missed impacts or found no boundary. principal: it is the scene's first.
-    """
-    scenes = result.settings["scenes"]
-    return [
-        {
-            **row,
-            "name": SOLVER.of(row) + (", Bouc-Wen" if row["law"] == "bouc-wen" else ""),
-            "title": scenes[row["scene"]]["title"],
-            "measure": measure,
-            "principal": not place,
-            "error": None if row["failure"] or row["lost"] else row["errors"].get(measure),
-        }
-        for row in where(result.rows, part="work-precision")
-        for place, measure in enumerate(_measures(scenes[row["scene"]]))
-    ]
-
-
-def _measures(scene):
-    return next(found for line in SHOWN if (found := [measure for measure in line if measure in scene["measures"]]))
-
-
-def passing(rows: Iterable[dict[str, Any]], level: float) -> dict[str, Row]:
-    """{name: the cheapest of its rows at which it and all finer ones keep an error}, cheapest first; of one scene and
-    one measure."""
-    return cheapest(rows, "name", lambda row: row["error"] is not None and row["error"] <= level, CPU.of)
-
-
 def _assisted(result):
     """Names of variants whose adapter applies the impact."""
     return {SOLVER.of(variant) for variant in where(result.settings["variants"], applies_impact=True)}
 
 
-def _level(row):
-    return f"{row['parameter'].replace('_', ' ')} {short(row['level'])}" if row["parameter"] else "as written"
+def _title(result):
+    found = {one["engine"]: ratio for one, ratio in _ratios_of_subjects(result)}
+    place = f"Cost against error: {percent(ASKED, 1)} of peak tilt"
+    if not found:
+        return f"{place} is reached by no engine in question"
+    least, most = min(found.values()), max(found.values())
+    whose = " and ".join(found)
+    times = " to ".join(dict.fromkeys((number(least, 2), number(most, 2))))
+    return f"{place} costs {whose} {times} times the analytic model's CPU time"
 
 
-def _title(result, rows, noise):
-    found = passing(rows, ASKED)
-    assisted = _assisted(result)
-    own = {name: CPU.of(row) for name, row in found.items() if row["engine"] in ENGINES and name not in assisted}
-    place = f"Cost against error: {rows[0]['title']}, {MEASURES[rows[0]['measure']]} at most {ASKED:g}"
-    if not own or KERNEL not in found:
-        return f"{place}: no engine reaches it by its own contact"
-    least = min(own.values())
-    ranked = [name for name, cpu in own.items() if cpu <= noise * least]
-    ratios = [number(own[name] / CPU.of(found[KERNEL]), 2) for name in (ranked[0], ranked[-1])]
-    times = f"{' to '.join(dict.fromkeys(ratios))} times the analytic model's CPU time"
-    if len(ranked) > 1:
-        return f"{place}: {' and '.join(ranked)}, of one rank, at {times}, are the cheapest engines"
-    return f"{place}: {ranked[0]}, at {times}, is the cheapest engine"
+def _ratios_of_subjects(result):
+    """(variant, ratio) of the main variants of the engines in question that reach the error asked."""
+    found = ratios(result)
+    for one in result.settings["variants"]:
+        own = one["tier"] == "tuned" and not one["applies_impact"] and ENGINES[one["engine"]].subject
+        if own and get_engine(one["engine"]).default_variant == one["variant"] and found.get(SOLVER.of(one)):
+            yield one, found[SOLVER.of(one)]
 
 
 def _noise(rows):
@@ -241,6 +166,11 @@ def _noise(rows):
     return float(
         np.percentile([row["cpu_high"] / row["cpu_low"] for row in rows if "cpu_seconds" in row] or [1], NOISE)
     )
+
+
+def _panel(row):
+    """The title of a panel: no two have one."""
+    return f"{row['title'].replace(' boundary', '')}: {PANELS.get(row['measure'], row['measure'])}"
 
 
 def _figure(rows, x, caption, like):
@@ -252,10 +182,10 @@ def _figure(rows, x, caption, like):
             x,
             Column(MEASURES[measure], lambda row: max(row["error"], FINEST if row["measure"] == FINE else DRAWN)),
             caption,
-            panel="title",
+            panel=_panel,
             grey=lambda row: (row["scene"], row["measure"], row["name"]) not in kept,
             log="xy",
-            says=lambda row: f"{row['name']}, {_level(row)}: {number(row['error'], 2)} in {CPU.text(row)} s",
+            says=lambda row: f"{row['name']}, {level_words(row)}: {number(row['error'], 2)} in {CPU.text(row)} s",
             like=like,
         )
         for (measure,), some in grouped(rows, "measure").items()
@@ -275,7 +205,7 @@ def _costs(result, rows):
             if (best := kept.get(row["name"])) is None:
                 return None
             ratio = f"{number(CPU.of(best) / CPU.of(kept[KERNEL]), 2)} ×; " if KERNEL in kept else ""
-            return f"{number(1e3 * CPU.of(best), 2)} ({ratio}{_level(best)})"
+            return f"{number(1e3 * CPU.of(best), 2)} ({ratio}{level_words(best)})"
 
         return Column(f"≤ {short(level)}", text)
 
@@ -366,7 +296,7 @@ def _more_than_needed(result, every):
         [row for row in pairs if row["model"] != NEEDED],
         Column("modelled", "model"),
         NAME,
-        Column("level", _level),
+        Column("level", level_words),
         SCENE,
         Column("CPU time ratio [-]", "ratio", digits=3),
         Column("error of the model needed", lambda row: error(row["plain"])),
@@ -428,7 +358,7 @@ def _how(result, every):
     same = sum(row["repeatable"] for row in every)
     differing = sorted({row["name"] for row in every if not row["repeatable"]})
     scenes = result.settings["scenes"].values()
-    differences = [scene["reference_difference"].get(measure, 0.0) for scene in scenes for measure in _measures(scene)]
+    differences = [one["reference_difference"].get(measure, 0.0) for one in scenes for measure in measures_of(one)]
     return (
         f"{result.settings['rounds']} fresh processes one after the other; in each, every solver has its turn after a "
         "warm-up. CPU times are medians, of the simulation without import, compilation and building of the scene. The "

@@ -1,0 +1,95 @@
+"""The first screen: what was found in three lines, two charts, and the one recommendation; from the studies alone."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from ..showing.glance import WAYS, costs, endings, swatches
+from ..showing.parts import RESTITUTION, Endings, Glance, Judgement, number
+from ..showing.wording import listed
+from .answer import Setup
+
+QUESTION = "How far can a multibody engine be trusted with a rocking body, and at what cost?"
+TUNED, DEFAULTS = "tuned", "defaults"
+HOW = ((TUNED, "when tuned"), (DEFAULTS, "as it comes"))
+
+
+def screen(setups: Sequence[Setup], judgements: Sequence[Judgement], glances: Iterable[Glance]) -> dict[str, Any]:
+    """What the page's template is given: title, lines, charts and advice; charts and advice None where no study has
+    them."""
+    found = list(glances)
+    curves = next((one for one in found if one.curves), None)
+    shares = shown([one for glance in found for one in glance.endings], setups)
+    says = {key: words for glance in found for key, words in glance.says.items()}
+    return {
+        "title": title(setups),
+        "lines": lines(setups, judgements, shares, says),
+        "scene": curves and curves.scene,
+        "costs": curves and costs(curves.curves),
+        "endings": endings(shares) if shares else None,
+        "swatches": [one for one in swatches() if any(getattr(share, way_of(one[1])) for share in shares)],
+        "advice": next((one.advice for one in found if one.advice), None),
+    }
+
+
+def way_of(words: str) -> str:
+    """The field of `Endings` that a swatch is of."""
+    return next(way for way, other in WAYS.items() if other == words)
+
+
+def shown(found: Sequence[Endings], setups: Sequence[Setup]) -> list[Endings]:
+    """Those of the engines in question, tuned and as they come, in the order of the first table: defaults first."""
+    columns = {(one.engine, one.variant): place for place, one in enumerate(setups) if one.in_first_table}
+    kept = [one for one in found if (one.engine, one.variant) in columns]
+    motions = list(dict.fromkeys(one.motions for one in kept))
+    return sorted(
+        kept, key=lambda one: (motions.index(one.motions), one.tier == TUNED, columns[one.engine, one.variant])
+    )
+
+
+def title(setups: Sequence[Setup]) -> str:
+    """The answer in a sentence, where it is as clear as that; else the question."""
+    levels = {tier: {one.rating.level for one in _columns(setups, tier)} for tier in (TUNED, DEFAULTS)}
+    if levels[TUNED] and levels[DEFAULTS] == {"bad"} and "bad" not in levels[TUNED]:
+        return "An engine as it comes misjudges a rocking block; tuned, it seldom does."
+    return QUESTION
+
+
+def lines(
+    setups: Sequence[Setup], judgements: Sequence[Judgement], shares: Sequence[Endings], says: Mapping[str, str]
+) -> list[str]:
+    """Restitution; outcomes; cost, and real blocks. Those of which no study tells are left out."""
+    found = [
+        _restitution(setups, judgements),
+        _outcomes(shares),
+        " ".join(filter(None, map(says.get, ("cost", "real")))),
+    ]
+    return [line for line in found if line]
+
+
+def _columns(setups, tier):
+    return [one for one in setups if one.in_first_table and one.tier == tier]
+
+
+def _restitution(setups, judgements):
+    """How far the restitution is off, in the first study that tells it."""
+    head = next((one.heading for one in judgements if one.key == RESTITUTION), None)
+    parts = []
+    for tier, how in HOW if head else ():
+        marks = {one.engine: one.marks[head] for one in _columns(setups, tier)}
+        told = [f"{number(mark.value, 2)} in {engine}" for engine, mark in marks.items() if mark.value is not None]
+        missed = any("missed" in mark.words for mark in marks.values())
+        if told:
+            parts.append(f"{listed(told)} {how}{', and impacts are missed' if missed else ''}")
+    return f"Restitution at an impact is off by {'; by '.join(parts)}." if parts else ""
+
+
+def _outcomes(shares):
+    """How many runs end otherwise under recorded motions, or under the first others that were run."""
+    motions = next((one.motions for one in shares if "record" in one.motions), shares[0].motions if shares else "")
+    parts = []
+    for tier, how in HOW:
+        some = [one for one in shares if one.motions == motions and one.tier == tier]
+        told = [f"{one.differing} of {one.runs} in {one.engine}" for one in some]
+        if told:
+            parts.append(f"{listed(told)} {how}")
+    return f"The outcome under {motions} differs in {'; in '.join(parts)}." if parts else ""

@@ -1,0 +1,203 @@
+"""The two charts of the report's first screen: error against cost, and how runs end; each once for a wide page and once
+for a phone, of which a style shows one.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import NamedTuple
+
+from markupsafe import Markup
+
+from .charts import LETTER, WIDTH, Axis, Chart
+from .parts import Curve, Endings, Figure, grouped, percent, power_of_ten
+
+WIDE = 590
+FINEST, WORST = 1e-11, 1.0  # of errors; what lies beyond stands at the frame
+TICKS = (
+    *((10.0**power, power_of_ten(10.0**power)) for power in (-10, -8, -6)),
+    (1e-4, "0.01 %"),
+    (1e-2, "1 %"),
+    (1.0, "100 %"),
+)
+SPEEDS = tuple(
+    (10.0**power, words)
+    for power, words in enumerate(("0.01 ms", "0.1 ms", "1 ms", "10 ms", "0.1 s", "1 s", "10 s"), -5)
+)
+LINE = 16  # height of a row of the second chart
+COLUMNS: tuple[tuple[int, str, Callable[[Endings], str]], ...] = (
+    (78, "differ", lambda one: f"{one.differing} of {one.runs}"),
+    (128, "missed", lambda one: _count(one.missed)),
+    (174, "added", lambda one: _count(one.added)),
+    (218, "failed", lambda one: _count(one.failed)),
+)  # beside the bars: where a column ends, its head, its words
+WAYS = {
+    "missed": "misses the overturning",
+    "added": "adds an overturning",
+    "other": "ends otherwise",
+    "failed": "fails",
+}
+CLASSES = {"missed": "missed", "added": "added", "other": "other", "failed": "lost-run"}
+
+
+class Box(NamedTuple):
+    """Where a name stands in a chart."""
+
+    left: float
+    top: float
+    right: float
+    bottom: float
+
+    def holds(self, x: float, y: float) -> bool:
+        return self.left - 3 < x < self.right + 3 and self.top - 3 < y < self.bottom + 3
+
+    def meets(self, other: "Box") -> bool:
+        apart = self.right < other.left or other.right < self.left or self.bottom < other.top or other.bottom < self.top
+        return not apart
+
+
+def costs(curves: Sequence[Curve]) -> Figure:
+    """Error over cost of every solver, its levels joined, its name beside it."""
+    caption = (
+        "A mark for each level; open: as the engine comes; a cross: impacts missed; at the frame: beyond it. Left and "
+        "low is better."
+    )
+    return _both([_costs(curves, width) for width in (WIDE, WIDTH)], caption)
+
+
+def _costs(curves: Sequence[Curve], width: int) -> Chart:
+    shown = [one for one in curves if one.points]
+    values = [cpu for one in shown for cpu, *_ in one.points]
+    low, high = max(t for t, _ in SPEEDS if t <= min(values)), min(t for t, _ in SPEEDS if t >= max(values))
+    x = Axis("CPU time per simulated second", low, high, "log", tuple(t for t in SPEEDS if low <= t[0] <= high))
+    y = Axis("error of peak tilt over the slenderness", FINEST, WORST * 1.0001, "log", TICKS)
+    says = f"Error of peak tilt over CPU time of {', '.join(one.who for one in shown)}."
+    chart = Chart(x, y, says, height=400 if width == WIDE else 420, width=width, left=66, right=16)
+    places = {}
+    for one in sorted(shown, key=lambda one: one.subject):
+        cpu, errors, sound, told = zip(*one.points, strict=True)
+        errors = tuple(min(max(error, FINEST), WORST) for error in errors)
+        chart.line(cpu, errors, one.who, thin=not one.subject)
+        for whole in (True, False):
+            some = [k for k in range(len(cpu)) if sound[k] == whole]
+            chart.dots(
+                [cpu[k] for k in some],
+                [errors[k] for k in some],
+                one.who,
+                filled=one.kind != "defaults",
+                small=not one.subject and one.kind != "model",
+                says=[told[k] for k in some],
+                mark=None if whole else "x",
+            )
+        places[one.who] = chart.at(cpu, errors)
+    _name(chart, sorted(shown, key=lambda one: not one.subject), places)
+    return chart
+
+
+def _name(chart, curves, places):
+    """The name of each curve where it covers least: no other name, and no mark."""
+    taken: list[Box] = []
+    marks = [tuple(place) for some in places.values() for place in _dense(some)]
+    for one in curves:
+        best = min(
+            ((box, at, aside, anchor) for box, at, aside, anchor in _beside(one.name, places[one.who])),
+            key=lambda found: _cover(chart, found[0], taken, marks),
+        )
+        box, place, aside, anchor = best
+        taken.append(box)
+        chart.named(place, one.name, one.who, aside=aside, anchor=anchor, kind="soft" if one.subject else "soft plain")
+
+
+def _beside(name, places):
+    """Where a name may stand: beside its last mark, its first, then any."""
+    long = len(name) * LETTER * 0.53
+    for at in dict.fromkeys([len(places) - 1, 0, *range(len(places))]):
+        x, y = places[at]
+        for aside, anchor, left in (
+            ((8, 4.5), "start", x + 8),
+            ((0, -9), "middle", x - long / 2),
+            ((0, 18), "middle", x - long / 2),
+            ((-8, 4.5), "end", x - 8 - long),
+            ((6, -8), "start", x + 6),
+            ((6, 17), "start", x + 6),
+            ((-6, -8), "end", x - 6 - long),
+            ((-6, 17), "end", x - 6 - long),
+        ):
+            yield Box(left, y + aside[1] - 11, left + long, y + aside[1] + 3), (x, y), aside, anchor
+
+
+def _cover(chart, box, taken, marks):
+    outside = box.left < chart.left or box.right > chart.right or box.top < chart.top or box.bottom > chart.bottom
+    return 1000 * outside + 100 * sum(box.meets(other) for other in taken) + sum(box.holds(*mark) for mark in marks)
+
+
+def _dense(places):
+    """The marks of a curve and points between them, as its line must not be covered either."""
+    for one, other in zip(places, places[1:], strict=False):
+        for k in range(5):
+            yield tuple(one + (other - one) * k / 5)
+    yield tuple(places[-1])
+
+
+def endings(found: Iterable[Endings]) -> Figure:
+    """Shares of runs that end otherwise than the model's, motion by motion."""
+    rows = list(found)
+    caption = (
+        "Share of runs that end otherwise than the model's, with 95 % intervals; a failed run counts as differing."
+    )
+    return _both([_endings(rows, width) for width in (WIDE, WIDTH)], caption)
+
+
+def _endings(rows: Sequence[Endings], width: int) -> Chart:
+    lines: list[Endings | str] = []
+    for (motions,), members in grouped(rows, lambda one: one.motions).items():
+        lines += [motions, *members]
+    shown = COLUMNS if width == WIDE else COLUMNS[:1]
+    chart = Chart(
+        Axis("", 0, 1, ticks=((0, "0"), (0.25, "25 %"), (0.5, "50 %"), (0.75, "75 %"), (1, "100 %"))),
+        Axis("", len(lines) - 0.4, -0.6, ticks=()),
+        f"Share of runs that end otherwise than the model's: {'; '.join(map(_told, rows))}.",
+        height=52 + LINE * len(lines),
+        width=width,
+        left=12 + round(LETTER * 0.53 * max(len(f"{one.engine}, {one.tier}") for one in rows)),
+        right=shown[-1][0] + 12,
+        head=12,
+    )
+    for aside, heading, _ in shown:
+        chart.beside(1, -0.6, heading, aside=(aside, -5), anchor="end")
+    for place, one in enumerate(lines):
+        if isinstance(one, str):
+            chart.beside(0, place, one, aside=(4 - chart.left, 4.5), kind="title")
+            continue
+        who = f"{one.engine}, {one.variant}"
+        chart.beside(0, place, f"{one.engine}, {one.tier}", who=who, aside=(-6, 4.5), anchor="end")
+        at = 0.0
+        for way, kind in CLASSES.items():
+            if count := getattr(one, way):
+                chart.bar(at, at + count / one.runs, place, who, kind, f"{count} of {one.runs}: {WAYS[way]}")
+                at += count / one.runs
+        chart.reach([at], [place], [one.interval[0]], [one.interval[1]], along="x")
+        for aside, _, text in shown:
+            chart.beside(1, place, text(one), aside=(aside, 4.5), anchor="end")
+    return chart
+
+
+def _count(number: int) -> str:
+    return str(number) if number else "–"
+
+
+def _told(one: Endings) -> str:
+    share, ways = percent(one.differing / one.runs), (f"{getattr(one, way)} {words}" for way, words in WAYS.items())
+    return f"{one.motions}, {one.engine}, {one.tier}: {share} of {one.runs}; {', '.join(ways)}"
+
+
+def _both(charts: Sequence[Chart], caption: str) -> Figure:
+    wide, narrow = (
+        f'<div class="{kind}">{chart.svg()}</div>' for kind, chart in zip(("wide", "narrow"), charts, strict=True)
+    )
+    return Figure(f"{wide}{narrow}".encode(), charts[0].says, caption)
+
+
+def swatches() -> list[tuple[Markup, str]]:
+    """(picture, words) of the parts of a bar."""
+    shape = '<rect class="{}" width="31" height="12" x=".5" y="1"/></svg>'
+    picture = f'<svg class="chart mini" viewBox="0 0 32 14" aria-hidden="true" style="--c:var(--soft)">{shape}'
+    return [(Markup(picture.format(CLASSES[way])), words) for way, words in WAYS.items()]

@@ -1,0 +1,268 @@
+"""What an error costs: the levels that were run as one row for each error, the cost at an equal error, and what the
+report's first screen says of it.
+"""
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from engines import ENGINES, get_engine
+
+from ...measuring.scripts import NAME as SCRIPT
+from ...running.provenance import Result
+from ...showing.parts import (
+    COST,
+    NAME,
+    UNITS,
+    Column,
+    Curve,
+    Glance,
+    Judgement,
+    Mark,
+    Row,
+    Table,
+    cheapest,
+    grouped,
+    number,
+    percent,
+    short,
+    table,
+    where,
+)
+from .cases import NEEDED, PLAIN
+
+FINE, FINE_LEVELS, FINEST = "horizon_tilt", (1e-6, 1e-9, 1e-12), 1e-16  # of integrators alone; the last is drawn
+KERNEL = "analytic, kernel"
+# What is shown of a scene: the errors of one line that it has, of the first line of which it has any. All are numbers
+# without a unit.
+SHOWN = (("boundary_shift",), ("restitution", "peak_tilt"), ("peak_displacement",), (FINE,))
+MEASURES = {
+    "restitution": "error of restitution, rms [-]",
+    "peak_tilt": "error of peak tilt over slenderness [-]",
+    "peak_displacement": "error of peak displacement [-]",
+    "boundary_shift": "error of overturning boundary [-]",
+    FINE: "error of |tilt| at the horizon over slenderness [-]",
+}
+WANTED = (1e-2, 1e-3, 1e-4)  # errors at which costs are compared
+ASKED = 1e-3
+JUDGED = ("peak_tilt", "boundary_shift")  # errors by which a level is recommended
+CPU = Column("CPU time of a run [s]", "cpu_seconds")
+SHORT = {KERNEL: "analytic model", "time-stepping": "time stepping"}
+
+
+def levels_run(result: Result) -> list[dict[str, Any]]:
+    """The rows of all solvers at their levels, one for each error shown: with name, title of the scene, measure, error.
+
+    The error is None where the run failed, missed impacts or found no boundary. principal: it is the scene's first.
+    """
+    scenes = result.settings["scenes"]
+    return [
+        {
+            **row,
+            "name": NAME.of(row) + (", Bouc-Wen" if row["law"] == "bouc-wen" else ""),
+            "title": scenes[row["scene"]]["title"],
+            "measure": measure,
+            "principal": not place,
+            "error": None if row["failure"] or row["lost"] else row["errors"].get(measure),
+        }
+        for row in where(result.rows, part="work-precision")
+        for place, measure in enumerate(measures_of(scenes[row["scene"]]))
+    ]
+
+
+def measures_of(scene: dict[str, Any]) -> list[str]:
+    """The errors shown of a scene."""
+    return next(found for line in SHOWN if (found := [measure for measure in line if measure in scene["measures"]]))
+
+
+def as_needed(result: Result) -> list[dict[str, Any]]:
+    """Those of `levels_run` in which no more is modelled than the scene needs."""
+    return [row for row in where(levels_run(result), model=NEEDED) if row["law"] != "bouc-wen"]
+
+
+def passing(rows: Iterable[dict[str, Any]], level: float) -> dict[str, Row]:
+    """{name: the cheapest of its rows at which it and all finer ones keep an error}, cheapest first; of one scene and
+    one measure."""
+    return cheapest(rows, "name", lambda row: row["error"] is not None and row["error"] <= level, CPU.of)
+
+
+def cost_at(rows: Sequence[dict[str, Any]], error: float) -> float | None:
+    """CPU time [s/s] at which a solver has an error, between its levels (logarithmic): `rows`, from coarse to fine.
+
+    Between the coarsest level from which on all keep the error and the one before it, if that has an error; that of the
+    coarsest level itself where it is the first. None: not reached.
+    """
+    bad = [k for k, row in enumerate(rows) if row["error"] is None or row["error"] > error]
+    first = bad[-1] + 1 if bad else 0
+    if first == len(rows):
+        return None
+    fine = rows[first]
+    if not first or rows[first - 1]["error"] is None:
+        return fine["cpu_per_second"]
+    coarse, least = rows[first - 1], 1e-17
+    logs = [math.log(max(one, least)) for one in (coarse["error"], fine["error"], error)]
+    share = (logs[0] - logs[2]) / (logs[0] - logs[1])
+    return coarse["cpu_per_second"] ** (1 - share) * fine["cpu_per_second"] ** share
+
+
+def equal_costs(result: Result) -> dict[str, dict[tuple[str, str], dict[float, float | None]]]:
+    """{solver: {(scene, measure): {error: `cost_at` it}}} for the errors `WANTED`, of all scenes but the problems."""
+    found: dict[str, dict[tuple[str, str], dict[float, float | None]]] = {}
+    for (name, scene, measure), rows in grouped(as_needed(result), "name", "scene", "measure").items():
+        if measure != FINE:
+            found.setdefault(name, {})[scene, measure] = {error: cost_at(rows, error) for error in WANTED}
+    return found
+
+
+def equal_cost_tables(result: Result) -> list[Table | None]:
+    """A table for each error: what it costs every solver in every scene."""
+    costs, scenes = equal_costs(result), result.settings["scenes"]
+    places = list(dict.fromkeys(place for some in costs.values() for place in some))
+
+    def cell(place, error):
+        def text(row):
+            if place not in row["costs"]:
+                return "–"
+            cost = row["costs"][place][error]
+            return "not reached" if cost is None else number(1e3 * cost, 2)
+
+        return Column(f"{scenes[place[0]]['title']}: {MEASURES[place[1]].removesuffix(' [-]')}", text)
+
+    return [
+        table(
+            f"CPU time per simulated second [ms] at an error of {percent(error, 1)}, between levels; “not reached” at "
+            "any level",
+            [{"name": name, "costs": some} for name, some in costs.items()],
+            Column("solver", "name"),
+            *(cell(place, error) for place in places),
+        )
+        for error in WANTED
+    ]
+
+
+def ratios(result: Result, error: float = ASKED) -> dict[str, float | None]:
+    """{solver: CPU time over the analytic model's at an error of the peak tilt in `PLAIN`}; None: not reached."""
+    place, costs = (PLAIN, "peak_tilt"), equal_costs(result)
+    at = {name: some[place][error] for name, some in costs.items() if place in some}
+    model = at.get(KERNEL)
+    return {name: None if cost is None else cost / model for name, cost in at.items()} if model else {}
+
+
+def judgements(result: Result) -> tuple[Judgement, ...]:
+    """CPU time over the analytic model's at an equal error, by (engine, variant); none without that scene."""
+    pairs = {NAME.of(one): (one["engine"], one["variant"]) for one in result.settings["variants"]}
+    marks = {
+        pairs[name]: Mark("not reached", "none")
+        if ratio is None
+        else Mark(f"{number(ratio, 2)} ×", "none", value=ratio)
+        for name, ratio in ratios(result).items()
+        if name in pairs
+    }
+    heading = f"CPU time over the analytic model's at {percent(ASKED, 1)} of peak tilt, isolated rocking"
+    return (Judgement(heading, marks, COST),) if marks else ()
+
+
+def level_words(row: Row) -> str:
+    return f"{row['parameter'].replace('_', ' ')} {short(row['level'])}" if row["parameter"] else "as written"
+
+
+def glance(result: Result) -> Glance | None:
+    """The curves of the first screen's chart of costs, and the recommendation by accuracy; None without the scene."""
+    rows = where(as_needed(result), scene=PLAIN, measure="peak_tilt")
+    if not rows:
+        return None
+    return Glance(
+        says={"cost": words} if (words := _words(result)) else {},
+        curves=tuple(_curves(result, rows)),
+        scene=rows[0]["title"].capitalize(),
+        advice=advice(result),
+    )
+
+
+def _curves(result, rows):
+    """Of every solver once: engines' main variants and those as they come, scripts, and the other solvers."""
+    listed = {NAME.of(one): one for one in result.settings["variants"]}
+    for (who, engine, variant), some in grouped(rows, "name", "engine", "variant").items():
+        tier = listed[who]["tier"] if who in listed else ""
+        if who in listed and tier != "defaults" and get_engine(engine).default_variant != variant:
+            continue
+        known = {"tuned": f"{engine}, tuned", "defaults": f"{engine}, defaults"}
+        name = known.get(tier, f"{engine}, script" if variant == SCRIPT else who)
+        points = tuple(
+            (row["cpu_per_second"], row["errors"]["peak_tilt"], not row["lost"], _says(row))
+            for row in some
+            if not row["failure"] and "peak_tilt" in row["errors"]
+        )
+        kind = tier or ("tuned" if engine in ENGINES else "model")
+        yield Curve(who, SHORT.get(name, name), kind, engine in ENGINES and ENGINES[engine].subject, points)
+
+
+def _says(row):
+    lost = f", {row['lost']} impacts missed" if row["lost"] else ""
+    error, cost = number(row["errors"]["peak_tilt"], 2), number(1e3 * row["cpu_per_second"], 2)
+    return f"{row['name']}, {level_words(row)}: {error} in {cost} ms{lost}"
+
+
+def advised(result: Result, error: float) -> dict[str, Row]:
+    """{variant: the row in `PLAIN` of the cheapest level that keeps an error}, cheapest first: tuned variants, whose
+    engine computes the impact; the error is that of the peak tilt there and of the overturning boundaries."""
+    kinds = {NAME.of(one): one for one in result.settings["variants"]}
+    able = {name for name, one in kinds.items() if one["tier"] == "tuned" and not one["applies_impact"]}
+    rows = [
+        row for row in as_needed(result) if row["name"] in able and row["measure"] in ("peak_tilt", "boundary_shift")
+    ]
+    found = {}
+    for (name,), some in grouped(rows, "name").items():
+        by_scene = grouped(some, "scene")
+        plain = by_scene.get((PLAIN,), ())
+        kept = [_kept(members, error) for members in by_scene.values()]
+        levels = [row for row in plain if all(row["level"] in levels for levels in kept)]
+        if levels:
+            found[name] = min(levels, key=lambda row: row["cpu_per_second"])
+    return dict(sorted(found.items(), key=lambda item: item[1]["cpu_per_second"]))
+
+
+def _kept(rows, error):
+    """Levels from which on all keep an error."""
+    bad = [k for k, row in enumerate(rows) if row["error"] is None or row["error"] > error]
+    return {row["level"] for row in rows[bad[-1] + 1 if bad else 0 :]}
+
+
+def advice(result: Result) -> Table | None:
+    """The recommendation: for each accuracy the cheapest of the engines in question, and of the others if cheaper."""
+    rows = []
+    for error in WANTED:
+        found = advised(result, error)
+        subjects = {name: row for name, row in found.items() if ENGINES[row["engine"]].subject}
+        for name, row in list(subjects.items())[:1] or [("", None)]:
+            rows.append([f"{percent(error, 1)}", *_advised(name, row, found)])
+    heads = ("accuracy", "engine, variant", "level", "CPU time per simulated second", "cheaper", "its script")
+    caption = (
+        "What to use: the cheapest engine in question whose peak tilt (record) and overturning amplitude (pulses) have "
+        "the accuracy"
+    )
+    return Table(caption, heads, rows)
+
+
+def _advised(name, row, found):
+    if row is None:
+        return ["not reached", "–", "–", "–", "–"]
+    cheaper = next(iter(found.items()))
+    other = "none" if cheaper[0] == name else f"{cheaper[0]}, {number(1e3 * cheaper[1]['cpu_per_second'], 2)} ms"
+    script = f"rocking script {row['engine']} SCENE" if ENGINES[row["engine"]].script else "–"
+    unit = UNITS.get(row["parameter"], "")
+    level = f"{row['parameter'].replace('_', ' ')} {short(row['level'])} {unit}".strip()
+    return [name, level, f"{number(1e3 * row['cpu_per_second'], 2)} ms", other, script]
+
+
+def _words(result):
+    """The sentence on cost: what the accuracy `ASKED` costs the engines in question, and the model."""
+    found = {name: row for name, row in advised(result, ASKED).items() if ENGINES[row["engine"]].subject}
+    costs = equal_costs(result).get(KERNEL, {}).get((PLAIN, "peak_tilt"))
+    if not found or not costs or costs[ASKED] is None:
+        return ""
+    own = " and ".join(f"{number(1e3 * row['cpu_per_second'], 2)} ms in {row['engine']}" for row in found.values())
+    return (
+        f"A peak tilt to {percent(ASKED, 1)} costs {own} of CPU time per simulated second; in the analytic model, "
+        f"{number(1e3 * costs[ASKED], 2)} ms."
+    )
