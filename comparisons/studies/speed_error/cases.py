@@ -102,6 +102,7 @@ BRACKET = (1.35, 1.45)  # amplitude / g tan(slenderness) around its boundary
 
 TRANSPARENT = ("free-rigid", "near-overturning")  # scenes without base or record
 SAMPLED = ("isolated-standing", "isolated-rocking")
+PEER = "comparisons.studies.speed_error.taylor:simulate_heyoka"
 PLAIN = "isolated-rocking"  # the scene in which engines are compared at their defaults
 
 NEEDED = "as needed"
@@ -227,6 +228,8 @@ SCIPY_SAMPLED = {
     "LSODA": (powers(-6), ()),
     "Radau": (powers(-3), ()),
 }
+# of heyoka; between the samples of a record a step is far finer than asked for
+TAYLOR = (powers(-3, -6, -9, -12, -15), powers(-6, -12))
 
 
 def refined(levels: Sequence[float]) -> list[float]:
@@ -253,6 +256,7 @@ def _ladders(trial: Trial, engines: Sequence[str], quick: bool) -> Iterator[list
         yield from _integrators(trial, quick)
         return
     yield from _models(trial, SCIPY_SAMPLED if trial.name in SAMPLED else SCIPY, quick)
+    yield from _peers(trial, quick)
     for name in engines:
         for variant, kind in get_engine(name).variants.items():
             yield [Entry(trial, name, variant, kind.accuracy_parameter, level) for level in levels_of(kind, quick)]
@@ -276,6 +280,13 @@ def _models(trial, methods, quick):
     for method, levels in methods.items():
         settings = {"energy": False, "method": method}
         yield [Entry(trial, "scipy", method, "rtol", level, "twin", settings) for level in levels[quick]]
+
+
+def _peers(trial, quick):
+    """heyoka in both its variants, where it is installed."""
+    for (engine, variant), version in integrators.installed().items():
+        settings = {"callback": integrators.TAYLOR[variant], "version": version}
+        yield [Entry(trial, engine, variant, "tolerance", level, PEER, settings) for level in TAYLOR[quick]]
 
 
 def _integrators(trial, quick):
