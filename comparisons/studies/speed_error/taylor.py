@@ -29,6 +29,9 @@ from analytic.types import GroundFunction
 from .integrators import COOLDOWN, TAYLOR
 from .systems import System, compiled
 
+# rad, rad/s, m/s: far below rounding of the motion, far above what rounding of an acceleration of 0 makes of 0. Where a
+# step begins with an event function of exactly 0, heyoka takes that for the root, and may miss the next.
+NUDGE = 1e-20
 travel_of, force_of = algebraic.virtual_travel.py_func, algebraic.on_branch.py_func
 
 
@@ -191,7 +194,7 @@ class Run:
         system.run, system.adaptive.time = self, self.t
         if system.handlers:
             system.adaptive.reset_cooldowns()
-        system.state[:] = self.y[system.shown]
+        system.state[:] = self.nudged()[system.shown]
         if system.rocking:
             system.pars[0] = self.side
         if len(system.path):
@@ -211,6 +214,11 @@ class Run:
         if not np.isfinite(self.y).all():
             return Failure("the state is not finite", "", self.state())
         return None
+
+    def nudged(self) -> list[float]:
+        """y without the zeros that are the root of an event."""
+        tilt, rate, x, v = self.y
+        return [tilt or self.side * NUDGE, rate or self.side * NUDGE, x, v or (self.path[0] or 1.0) * NUDGE]
 
     def reach(self, system: System, end: float) -> bool:
         """Whether the system reaches `end` [s]; else it is left at what changes it."""
