@@ -16,7 +16,7 @@ SIDE, LINE, PATH = ("side",), ("value", "slope", "begin"), ("direction", "travel
 
 
 class System:
-    """A compiled system, used by one `taylor.Run` after the other, `run`; handlers: its methods for the terminal events.
+    """A compiled system, used by one `taylor.Run` after the other, `run`; handlers: its methods for terminal events.
 
     state, pars: heyoka's own arrays. line, path: the parameters of ground and bearings. shown: of [phi, w, x, v], its
     state.

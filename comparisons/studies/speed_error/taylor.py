@@ -139,10 +139,12 @@ class Run:
             for rocking in ((True, False) if model.on_base else (True,))
             for shaken in ((True, False) if pulse else (False,))
         }
+        self.wait()
         self.path = (0.0, 0.0, 0.0)
-        if self.law.count:
+        if model.on_base:
             z = self.law.start(start.base_displacement)
-            self.remember(start.base_displacement, z, self.first_direction(z))
+            direction = self.first_direction(z)
+            self.path = direction, travel_of(direction, z, self.constants) if self.law.count else 0.0, self.y[2]
 
     def go(self) -> Failure | None:
         """Run to the end or to overturning; a Failure, or None."""
@@ -155,6 +157,14 @@ class Run:
                 return failure
         self.peak_tilt, self.peak_x = max(self.peak_tilt, abs(self.y[0])), max(self.peak_x, abs(self.y[2]))
         return None
+
+    def wait(self) -> None:
+        """At rest until the ground moves: in an integration rounding would move the base, one way or the other."""
+        while self.t < self.scene.end and not any(self.y):
+            begin, end, ground = self.stretches[self.place]
+            if ground(begin) or ground(end):
+                break
+            self.t, self.place = end, self.place + 1
 
     def ground(self, t: float) -> float:
         return self.stretches[self.place][2](t)
@@ -218,7 +228,7 @@ class Run:
     def nudged(self) -> list[float]:
         """y without the zeros that are the root of an event."""
         tilt, rate, x, v = self.y
-        return [tilt or self.side * NUDGE, rate or self.side * NUDGE, x, v or (self.path[0] or 1.0) * NUDGE]
+        return [tilt or self.side * NUDGE, rate or self.side * NUDGE, x, v or self.path[0] * NUDGE]
 
     def reach(self, system: System, end: float) -> bool:
         """Whether the system reaches `end` [s]; else it is left at what changes it."""
@@ -307,13 +317,9 @@ class Run:
         return force_of(direction, travel + direction * (x - origin), self.constants)
 
     def turn_to(self, system: System, x: float, direction: float) -> None:
-        """The base goes on from x in a direction."""
-        self.remember(x, self.hysteretic(x), direction)
+        """A path of one direction begins at x: the memory of the bearing."""
+        self.path = direction, travel_of(direction, self.hysteretic(x), self.constants), x
         system.path[:] = self.path
-
-    def remember(self, x: float, z: float, direction: float) -> None:
-        """The point where a path of one direction begins, the memory of the bearing."""
-        self.path = direction, travel_of(direction, z, self.constants), x
 
     def force(self, x: float, v: float) -> float:
         """Of all bearings [N]."""
@@ -324,9 +330,11 @@ class Run:
         tilt, rate, x, v = self.y
         if v:
             return math.copysign(1.0, v)
-        _, end, ground = self.stretches[0]
+        if self.t == self.scene.end:
+            return 1.0
+        _, end, ground = self.stretches[self.place]
         force = self.law.force(x, z, v)
-        for t in (0.0, 1e-3 * end):
+        for t in (self.t, self.t + 1e-3 * (end - self.t)):
             push = self.model.contact_acceleration(force) - ground(t)
             if self.side:
                 push = self.model.accelerations(self.side, tilt, rate, ground(t), force)[1]
