@@ -15,7 +15,7 @@ from importlib import metadata
 import numpy as np
 from scipy.optimize import brentq
 
-from analytic import Impact, Response, Scene, SceneError, State
+from analytic import Impact, Response, Scene, SceneError, SettingError, State
 from analytic.laws import algebraic
 from analytic.motion import PulseMotion
 from analytic.response import Failure
@@ -49,7 +49,7 @@ def simulate_heyoka(
     callback : bool
         Whether impacts and reversals are a callback; else heyoka stops at them.
     history : bool
-        There is none.
+        There is none: has to be False.
     version : str, optional
         heyoka's: part of what a stored run is known by.
 
@@ -58,6 +58,11 @@ def simulate_heyoka(
     Response
         Outcome, impacts, uplifts, rests, end, peaks of tilt and base displacement (not of one that overturns on a
         base); other numbers are NaN.
+
+    Raises
+    ------
+    SceneError, SettingError
+        What is not set up here: another law, a vertical motion, a friction, no duration; a history.
     """
     _check(scene, history)
     run = Run(scene, tolerance, callback)
@@ -99,8 +104,10 @@ def _check(scene: Scene, history: bool) -> None:
     for key, value in (("motion.vertical", getattr(scene.motion, "vertical", None)), ("friction", scene.friction)):
         if value is not None:
             raise SceneError(key, value, "not set up in heyoka", "leave it out")
-    if scene.duration is None or history:
-        raise SceneError("run.duration", scene.duration, "heyoka runs for a duration, without a history", "give one")
+    if scene.duration is None:
+        raise SceneError("run.duration", None, "heyoka has to know its end", "give one")
+    if history:
+        raise SettingError("history = True: heyoka keeps none here")
 
 
 def _line(begin: float, end: float, ground: GroundFunction) -> tuple[float, float, float]:
@@ -139,7 +146,6 @@ class Run:
             for rocking in ((True, False) if model.on_base else (True,))
             for shaken in ((True, False) if pulse else (False,))
         }
-        self.wait()
         self.path = (0.0, 0.0, 0.0)
         if model.on_base:
             z = self.law.start(start.base_displacement)
@@ -157,14 +163,6 @@ class Run:
                 return failure
         self.peak_tilt, self.peak_x = max(self.peak_tilt, abs(self.y[0])), max(self.peak_x, abs(self.y[2]))
         return None
-
-    def wait(self) -> None:
-        """At rest until the ground moves: in an integration rounding would move the base, one way or the other."""
-        while self.t < self.scene.end and not any(self.y):
-            begin, end, ground = self.stretches[self.place]
-            if ground(begin) or ground(end):
-                break
-            self.t, self.place = end, self.place + 1
 
     def ground(self, t: float) -> float:
         return self.stretches[self.place][2](t)
@@ -330,11 +328,9 @@ class Run:
         tilt, rate, x, v = self.y
         if v:
             return math.copysign(1.0, v)
-        if self.t == self.scene.end:
-            return 1.0
-        _, end, ground = self.stretches[self.place]
+        _, end, ground = self.stretches[0]
         force = self.law.force(x, z, v)
-        for t in (self.t, self.t + 1e-3 * (end - self.t)):
+        for t in (0.0, 1e-3 * end):  # at the start of a motion a_g may still be 0
             push = self.model.contact_acceleration(force) - ground(t)
             if self.side:
                 push = self.model.accelerations(self.side, tilt, rate, ground(t), force)[1]
