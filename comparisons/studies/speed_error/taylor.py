@@ -324,18 +324,16 @@ class Run:
         return self.law.force(x, self.hysteretic(x), v) if self.law.count else 0.0
 
     def first_direction(self, z: float) -> float:
-        """Sign of the base velocity at the start; where it stands, of its acceleration then or soon after."""
+        """Sign of the base velocity at the start; where it stands, of its first acceleration."""
         tilt, rate, x, v = self.y
-        if v:
-            return math.copysign(1.0, v)
-        _, end, ground = self.stretches[0]
         force = self.law.force(x, z, v)
-        for t in (0.0, 1e-3 * end):  # at the start of a motion a_g may still be 0
-            push = self.model.contact_acceleration(force) - ground(t)
-            if self.side:
-                push = self.model.accelerations(self.side, tilt, rate, ground(t), force)[1]
-            if push:
-                return math.copysign(1.0, push)
+        for begin, end, ground in self.stretches:
+            for t in (begin, begin + 1e-3 * (end - begin)):  # at the start of a motion a_g may still be 0
+                push = self.model.contact_acceleration(force) - ground(t)
+                if self.side:
+                    push = self.model.accelerations(self.side, tilt, rate, ground(t), force)[1]
+                if v or push:
+                    return math.copysign(1.0, v or push)
         return 1.0
 
     def state(self) -> State:
