@@ -157,10 +157,10 @@ def scipy_run(problem: Problem, rtol: float, method: str) -> Callable[[], tuple[
     return run
 
 
-def heyoka_run(problem: Problem, tolerance: float) -> Callable[[], tuple[float, int]]:
+def heyoka_run(problem: Problem, tolerance: float, callback: bool) -> Callable[[], tuple[float, int]]:
     """One compiled system in flight under the pulse, one for free flight.
 
-    Impacts are a callback in heyoka's own loop; the restart between them costs no return to Python.
+    Impacts are a callback in heyoka's own loop, between which there is no return to Python, or they stop that loop.
     """
     import heyoka
 
@@ -176,8 +176,9 @@ def heyoka_run(problem: Problem, tolerance: float) -> Callable[[], tuple[float, 
         return abs(system.state[1]) >= problem.rest_rate
 
     def system(push):
+        called = {"callback": impact} if callback else {}
         event = heyoka.t_event(
-            heyoka.par[0] * phi, callback=impact, direction=heyoka.event_direction.negative, cooldown=COOLDOWN
+            heyoka.par[0] * phi, direction=heyoka.event_direction.negative, cooldown=COOLDOWN, **called
         )
         equations = [(phi, w), (w, -p2 * (heyoka.sin(angle) + push))]
         return heyoka.taylor_adaptive(equations, [0.0, 0.0], pars=[1.0], tol=tolerance, t_events=[event])
@@ -187,7 +188,11 @@ def heyoka_run(problem: Problem, tolerance: float) -> Callable[[], tuple[float, 
     if a:
         forced = system(a * heyoka.sin(frequency * heyoka.time) * heyoka.cos(angle))
         stages.insert(0, (forced, problem.pulse_end))
-    duration = problem.scene.duration
+    duration, reached = problem.scene.duration, heyoka.taylor_outcome.time_limit
+
+    def propagate(stage, until):
+        while stage.propagate_until(until)[0] != reached and not callback and impact(stage, None):
+            pass
 
     def run():
         counted[0] = 0
@@ -197,18 +202,20 @@ def heyoka_run(problem: Problem, tolerance: float) -> Callable[[], tuple[float, 
             stage.state[:] = y
             stage.pars[0] = side
             stage.reset_cooldowns()
-            stage.propagate_until(until)
+            propagate(stage, until)
             t, y, side = until, stage.state, stage.pars[0]
         tilt = float(free.state[0])
         if problem.horizon < duration:
-            free.propagate_until(duration)
+            propagate(free, duration)
         return tilt, counted[0]
 
     return run
 
 
 METHODS = ("RK45", "DOP853", "LSODA", "Radau")
-PEERS = {("heyoka", "Taylor"): heyoka_run}  # an engine's name is that of its package
+TAYLOR = {"Taylor, callback": True, "Taylor, stopped at events": False}  # how heyoka handles impacts
+# an engine's name is that of its package
+PEERS = {("heyoka", name): functools.partial(heyoka_run, callback=callback) for name, callback in TAYLOR.items()}
 INTEGRATORS: dict[tuple[str, str], Callable[..., Any]] = {
     ("analytic", "kernel"): kernel_run,
     **{("scipy", method): functools.partial(scipy_run, method=method) for method in METHODS},
@@ -224,7 +231,7 @@ TOLERANCES = {
     ("scipy", "DOP853"): ((1e-6, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13), (1e-10, 1e-11, 1e-12)),
     ("scipy", "LSODA"): ((1e-6, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12), (1e-9, 1e-11)),
     ("scipy", "Radau"): ((1e-6, 1e-8, 1e-9), (1e-6,)),
-    ("heyoka", "Taylor"): ((1e-6, 1e-8, 1e-9, 1e-10, 1e-12, 1e-14, 2.3e-16), (1e-9, 1e-12, 2.3e-16)),
+    **dict.fromkeys(PEERS, ((1e-6, 1e-8, 1e-9, 1e-10, 1e-12, 1e-14, 2.3e-16), (1e-9, 1e-12, 2.3e-16))),
 }
 
 

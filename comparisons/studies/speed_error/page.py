@@ -132,7 +132,7 @@ FINE_CAPTION = (
     "Integrators alone, left and low is better. Problems A (a free block) and B (a block under a pulse) have "
     "references of 30 digits. All integrate the same two equations, set up for speed: scipy without classes and with "
     "a first step of the length of the hop. scipy restarts at each impact; heyoka's impacts are a callback in its own "
-    "loop."
+    "loop, or they stop it and Python applies them."
 )
 
 
