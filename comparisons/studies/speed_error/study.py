@@ -26,16 +26,17 @@ from ...measuring.errors import (
 )
 from ...running.cases import Case, variant_settings
 from ...running.plan import Batch, Computed, Plan, Request
-from .cases import PLAIN, RUNS, Boundary, Entry, Trial, entries, levels_of, problem_trials, searched, trials
+from .cases import PEER, PLAIN, RUNS, Boundary, Entry, Trial, entries, levels_of, problem_trials, searched, trials
 from .cold import ANEW, STORED, first_run, load
 from .growth import TICK, grown, growth_cases
-from .integrators import PROBLEMS, SOLVER, timed
+from .integrators import PROBLEMS, SOLVER, TAYLOR, installed, timed
 from .share import own_share
 
 # Why one engine's rows cannot be computed anew by themselves, see `Study.whole`.
 WHOLE = "its CPU times are compared with each other, so they have to be measured together"
 
 REPEATS, QUICK_REPEATS = 5, 3
+USUAL = 1e-8  # tolerance of a peer in its first run
 SLOW = 0.5  # s of CPU: next to it what is loaded in a first run is nothing; such a measurement needs no warm-up
 MOST_REPEATS = 200
 TWIN_TOLERANCE = 1e-13  # of the independent solution each reference is compared with
@@ -234,13 +235,17 @@ def _shares(measured):
 
 def _first_runs(scenes, request, rounds):
     """Rows of first runs, each in a process of its own, in the scene `PLAIN`: of every solver as it comes."""
-    solvers = [("analytic", "analytic", "kernel", STORED), ("analytic", "analytic", "kernel", ANEW)]
-    solvers += [("twin", "scipy", "DOP853", STORED)]
-    solvers += [(name, name, get_engine(name).default_variant, STORED) for name in request.engines]
+    solvers: list[tuple[str, str, str, str, dict[str, Any]]] = [
+        ("analytic", "analytic", "kernel", STORED, {}),
+        ("analytic", "analytic", "kernel", ANEW, {}),
+        ("twin", "scipy", "DOP853", STORED, {}),
+        *((PEER, *pair, STORED, {"callback": TAYLOR[pair[1]], "tolerance": USUAL}) for pair in installed()),
+        *((name, name, get_engine(name).default_variant, STORED, {}) for name in request.engines),
+    ]
     rows = []
     for scene in (trial.scene for trial in scenes if trial.name == PLAIN):
-        for solver, engine, variant, code in solvers:
-            cases = [Case(scene, solver, None, {}, {"code": code, "round": turn}) for turn in range(rounds)]
+        for solver, engine, variant, code, settings in solvers:
+            cases = [Case(scene, solver, None, settings, {"code": code, "round": turn}) for turn in range(rounds)]
             done = yield Batch(cases, first_run, f"first runs, {solver}", alone=True)
             seconds = [row.cost["cpu_seconds"] for row in done if not row.failed]
             row = {"part": "first run", "scene": PLAIN, "engine": engine, "variant": variant, "code": code}
