@@ -1,4 +1,4 @@
-"""The first screen: ratings are the worst of what was tested, and what was not tested is said."""
+"""The answers side by side: ratings are the worst of what was tested, and what was not tested is said."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -6,19 +6,11 @@ from types import SimpleNamespace
 import pytest
 
 from analytic import Block, Scene, Start, simulate
-from comparisons.report.answer import (
-    MOST_WORDS,
-    best_of,
-    not_to_do,
-    own_restitution,
-    paragraph,
-    recommendation,
-    setups_of,
-)
+from comparisons.report.answer import not_to_do, own_restitution, setups_of
 from comparisons.report.runs import restitution_computed
 from comparisons.report.sections import restitution_section
 from comparisons.report.write import _outside
-from comparisons.showing.parts import COST, RESTITUTION, Judgement, Mark
+from comparisons.showing.parts import RESTITUTION, Judgement, Mark
 from comparisons.showing.wording import rating
 
 FINE, COARSE, GIVEN, OTHER = ("exudyn", "fine"), ("exudyn", "coarse"), ("exudyn", "given"), ("mujoco", "fine")
@@ -32,7 +24,7 @@ VARIANTS = [
 def restitution(fine=1e-5):
     errors = {FINE: fine, COARSE: 0.2, GIVEN: 1e-9, OTHER: 1e-4}
     marks = {name: Mark(f"{error:g}", rating(error, 0), value=error) for name, error in errors.items()}
-    return Judgement("restitution", marks, RESTITUTION, says="error {}")
+    return Judgement("restitution", marks, RESTITUTION)
 
 
 def decided(*judgements):
@@ -72,28 +64,10 @@ def test_a_study_of_engines_as_they_come_judges_the_default_variant():
     assert found[FINE].marks["odds"].words == "0 of 9" and found[COARSE].marks["odds"].words == "5 of 9"
 
 
-def test_the_recommended_engine_computes_its_impacts_itself_and_the_cheapest_wins():
-    judgements = restitution(), Judgement("cost", {FINE: Mark("9", "none", value=9.0)}, COST)
+def test_what_not_to_do_names_the_defaults_that_are_off():
+    judgements = (restitution(),)
     found = list(decided(*judgements).values())
-    assert (best_of(found).engine, best_of(found).cost) == (
-        "exudyn",
-        9.0,
-    )  # not “given”: its adapter applies the impact
-    words = " ".join(recommendation(found, judgements, "slenderness 0.1 to 0.5"))
-    assert (
-        "exudyn, variant “fine”: restitution within 1e-05, at 9.0 times" in words and "slenderness 0.1 to 0.5" in words
-    )
     assert "1 of 1 are not to be trusted (restitution off by 0.20 in exudyn)" in not_to_do(found, judgements)[0]
-    assert "No engine that was run here" in " ".join(recommendation([found[1]], judgements, ""))
-    words = recommendation(found, judgements, "slenderness 0.1 to 0.5", "slenderness 0.01 is outside the range")
-    assert words[1:] == ["No engine is recommended here: slenderness 0.01 is outside the range."]
-
-
-def test_the_paragraph_says_the_first_table_in_few_words():
-    judgements = restitution(), Judgement("boundary", {FINE: Mark("0.1 %", "good")}, says="boundary off by {}")
-    words = paragraph(list(decided(*judgements).values()), judgements)
-    assert words == "Tuned, exudyn: error 1e-05; boundary off by 0.1 %. By default: error 0.2."
-    assert len(words.split()) <= MOST_WORDS
 
 
 def test_the_blocks_own_restitution_is_that_of_its_engines():

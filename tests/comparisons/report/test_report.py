@@ -137,14 +137,18 @@ def test_outside_the_range_no_engine_is_recommended(copied, studies):
 
 def test_every_number_of_the_first_table_is_that_of_a_study(copied, studies):
     page = Page(write_page(copied, studies))
-    found = page.table("What the studies found") | page.table("The same of the others")
+    found = page.table("With counts") | page.table("The same of the others")
     summaries = where(read_result(studies / "restitution.json").rows, scope="all")
     marks = get_study("stability").judgements(read_result(studies / "stability.json"))[0].marks
     columns = {column for _, column in found if column != "engine"}
     names = {(row["engine"], row["variant"]) for row in summaries}
     assert len(names) == len(columns) >= 4
     for engine, variant in names:
-        (column,) = (column for column in columns if column.startswith(engine) and f"{variant} (" in column)
+        (column,) = (
+            column
+            for column in columns
+            if column.startswith(f"{engine}, ") and column.split(" ")[2].rstrip(":") == variant
+        )
         rows = where(summaries, engine=engine, variant=variant)
         cell = found["restitution at impacts, free rocking: error, rms", column]
         assert number_in(cell.partition(" (")[0]) == pytest.approx(max(row["rms_state"] for row in rows), rel=0.06)
@@ -153,7 +157,9 @@ def test_every_number_of_the_first_table_is_that_of_a_study(copied, studies):
             assert bool(re.search(rf"[(, ]{count} {words}[,)]", cell)) == (count > 0)
         known = marks.get((engine, variant))
         assert found["hard cases right", column].startswith(known.words if known else "not tested")
-    assert "What the studies found" not in Page(write_page(copied, studies=NO_STUDIES)).tables
+    brief = page.table("All that was tested")
+    assert all(found[row, column].startswith(cell) for (row, column), cell in brief.items() if column != "engine")
+    assert "All that was tested" not in " ".join(Page(write_page(copied, studies=NO_STUDIES)).tables)
 
 
 def test_pages_need_nothing_but_themselves(folder):
@@ -233,7 +239,7 @@ def test_a_study_is_shown_by_its_own_page_and_says_when_it_is_old(folder, copied
     assert "fake.json cannot be shown: unknown study" in (copied / "pages/fake.html").read_text()
     tables = [Table(name, ("solver", "kappa [-]"), [["exudyn", "0.75"]]) for name in ("Agreement", "All of it")]
     shown = parts.Page("A fake study: agrees", ("Two paragraphs < one.",), tuple(tables[:1]), tuple(tables[1:]))
-    study = SimpleNamespace(page=lambda result: shown, judgements=lambda result: ())
+    study = SimpleNamespace(page=lambda result: shown, judgements=lambda result: (), glance=lambda result: None)
     monkeypatch.setattr("comparisons.report.answer.get_study", lambda kind: study)
     first, own = Page(write_page(copied, studies=studies)), Page(copied / "pages/fake.html")
     for page in (first, own):
