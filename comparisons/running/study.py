@@ -149,7 +149,7 @@ def _leave_nothing_empty(folder):
 
 
 def _run(batch, store, pool, progress):
-    shown = progress and len(batch.cases) >= (2 if batch.alone else SHOWN)
+    shown = progress and (batch.long or len(batch.cases) >= (2 if batch.alone else SHOWN))
     options = dict(store=store, measure=batch.measure, time_limit=batch.time_limit, progress=shown, label=batch.label)
     if not batch.alone:
         return run_sweep(batch.cases, executor=pool, **options)
