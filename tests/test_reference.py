@@ -1,5 +1,8 @@
 """The reference that pdoc makes of the docstrings: without a warning, and the same bytes each time."""
 
+import dataclasses
+import importlib
+import re
 import subprocess
 import sys
 from typing import get_type_hints
@@ -8,6 +11,7 @@ import pytest
 from test_readme import blocks
 
 from analytic.part import Part
+from engines import ENGINES, get_engine
 
 ADDRESS, PRIVATE = " at 0x", "FieldInfo"  # of an object of this process; how pydantic keeps a constraint
 PARTS = [part for part in Part.__subclasses__() if not part.__name__.startswith("_")]
@@ -17,6 +21,22 @@ PARTS = [part for part in Part.__subclasses__() if not part.__name__.startswith(
 def test_types_of_a_scene_read_as_they_are_written(part):
     hints = repr(get_type_hints(part, include_extras=True))
     assert ADDRESS not in hints and PRIVATE not in hints
+
+
+def test_the_reference_has_the_values_of_each_variant():
+    pdoc = pytest.importorskip("pdoc", reason="the extra docs is not installed")
+    page = pdoc.doc.Module(importlib.import_module("comparisons.showing.variants")).docstring
+    names = [name for name, engine in ENGINES.items() if engine.subject and engine.installed]
+    assert names and page.count("\n## ") == len(names)
+    for name in names:
+        section = page.split(f"\n## {name}\n")[1].split("\n## ")[0]
+        for own, variant in get_engine(name).variants.items():
+            described = section.split(f"--variant {own} (")[1].split("--variant ")[0]
+            for field, value in dataclasses.asdict(variant.settings).items():
+                assert re.search(rf" {field}={re.escape(f'{value:.6g}')}\b", described), (name, own, field)
+            assert f"levels, coarse to fine: {', '.join(f'{level:.4g}' for level in variant.levels)}\n" in described
+            settings = type(variant.settings)
+            assert f"{own} `{settings.__module__}.{settings.__qualname__}`" in section  # a link to what they mean
 
 
 @pytest.mark.slow

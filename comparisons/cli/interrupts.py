@@ -8,6 +8,8 @@ import sys
 import threading
 from collections.abc import Iterator
 
+from ..running.readable import readable
+
 GRACE_SECONDS = 0.5  # to close workers and files; then the process is ended
 SIGHUP = getattr(signal, "SIGHUP", signal.SIGTERM)  # the terminal was closed; not on every system
 SIGNALS = tuple(dict.fromkeys((signal.SIGINT, signal.SIGTERM, SIGHUP)))
@@ -67,6 +69,8 @@ def _watch(read):
 def _end(number):
     if _ending.acquire(blocking=False):
         words = "Interrupted." if number == signal.SIGINT else f"Ended by {signal.Signals(number).name}."
+        with contextlib.suppress(Exception):  # where no study was begun, its module may not be loaded
+            words = f"{words} {readable(sys.modules['comparisons.running.study'].kept())}".rstrip()
         with contextlib.suppress(OSError):
             os.write(2, (SHOW_CURSOR if os.isatty(2) else b"") + words.encode() + b"\n")
     with contextlib.suppress(Exception):  # also if a module is not loaded, as nothing may be imported now

@@ -47,10 +47,11 @@ def open_(
 def export(output: Annotated[str, typer.Option(metavar="DIR", help="Folder for the pages.")] = "lessons") -> None:
     """Write the pages: playground, lessons, derivation, teacher's page with figures. They open by double click."""
     from ..lessons.export import export_pages
+    from ..lessons.topics import NAMES
     from ..running.files import check_folder
     from ..running.progress import bar, stdout_to_stderr
 
     check_folder(output)
-    with stdout_to_stderr(), bar("lessons") as progress:  # engines print on import
+    with stdout_to_stderr(), bar(f"{len(NAMES)} lessons") as progress:  # engines print on import
         paths = export_pages(Path(output), progress=progress)
     print(next(path for path in paths if path.name == "index.html"))

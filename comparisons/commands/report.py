@@ -89,7 +89,7 @@ def command(
     if not scene and (records is not None or both_signs or directions is not None):
         raise SettingError("--records, --both-signs and --directions belong to scenes of your own; name one")
     calls = _simulate(output, scene, motion, engines, variants, (records, both_signs, directions, of_folder))
-    with bar("the page") as progress:
+    with bar(f"studies and pages: {len([*shown.glob('*.json')])} stored results") as progress:
         page = write_page(output, shown, progress, calls)
     if json_file:
         write_text(json_file, form(page).text())

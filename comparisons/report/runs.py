@@ -23,7 +23,7 @@ from ..measuring.errors import compare, impact_errors, lost_impacts, rms, worst
 from ..measuring.horizon import sensitivity_horizon, solver_horizon
 from ..running.cases import Case
 from ..running.plan import Batch, Computed
-from ..running.progress import log, spinner
+from ..running.progress import spinner
 from .histories import ToFile, differences, response_of, thinned
 from .statue import statue_of
 
@@ -86,8 +86,7 @@ def plan(
     longest = max((scene.motion.end for scene in scenes.values() if scene.motion), default=0.0)
     samples = max((len(getattr(scene.motion, "samples", ())) for scene in scenes.values()), default=0)
     limit = TIME_LIMIT + LIMIT_PER_SECOND * longest + LIMIT_PER_SAMPLE * samples
-    log(f"{', '.join(scenes)} in {', '.join(('the analytic model', *request.engines))}")
-    rows = yield Batch(cases, ToFile(str(Path(histories).resolve())), "scenes", limit, rates=False)
+    rows = yield Batch(cases, ToFile(str(Path(histories).resolve())), "runs", limit, rates=False, long=True)
     more: dict[str, Any] = {"variants": described_variants(request.engines), "own": own}
     if own:
         more["statues"] = {}
@@ -99,7 +98,7 @@ def plan(
     if not (own and rocking):
         return found
     yield found
-    rows = yield Batch(restitution_cases(request.engines, rocking), impacts_only, "restitution", limit)
+    rows = yield Batch(restitution_cases(request.engines, rocking), impacts_only, "restitution", limit, long=True)
     return restitution_computed(rows)
 
 

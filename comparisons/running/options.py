@@ -129,8 +129,10 @@ def rows_of(
     from .progress import bar
 
     pairs = [(record, motion) for record, motions in groups.items() for motion in motions]
+    if not pairs:
+        return []
     rows = []
-    with bar(f"{scene.name}: motions") as progress:
+    with bar(f"{scene.name}: {len(pairs)} motions") as progress:
         for number, (record, motion) in enumerate(pairs, 1):
             response = simulate(scene.with_(motion=motion))
             rows.append(

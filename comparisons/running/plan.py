@@ -43,7 +43,7 @@ class Batch:
     """Cases to run, in parallel. measure: module-level, (`Case`, `Response`) -> dict of JSON values.
 
     alone: timed, so one after the other in one fresh process, with nothing else under way. rates: engines are judged
-    by it, by an answer that is their own.
+    by it, by an answer that is their own. long: a run takes seconds: progress is shown of few, too.
 
     Raises
     ------
@@ -57,6 +57,7 @@ class Batch:
     time_limit: float = TIME_LIMIT
     alone: bool = False
     rates: bool = True
+    long: bool = False
 
     def __post_init__(self) -> None:
         given = (one for one in self.cases if one.scene.block.restitution is not None and one.solver not in SOLVERS)

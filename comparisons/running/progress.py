@@ -1,4 +1,5 @@
-"""Progress on standard error: lines, bars, and redirected output of others."""
+"""Progress on standard error: lines, bars, and redirected output of others. Where that is no terminal a bar is a line
+as it begins, and one as it ends if it took long."""
 
 from __future__ import annotations
 
@@ -12,7 +13,7 @@ from collections.abc import Callable, Iterator
 from .readable import readable
 
 COMPILING = "compiling the analytic model, once on this machine"
-PATIENCE = 2.0  # s that compiled functions may take to load before a message
+PATIENCE = 2.0  # s that something may take before it is said
 SHOWN = 60  # characters of what is under way
 
 
@@ -42,14 +43,30 @@ def compiling() -> Iterator[None]:
             else:
                 say(f"{COMPILING}: some ten seconds")
 
-        telling = threading.Timer(PATIENCE, show)
-        telling.start()
-        try:
-            with counted:
-                yield
-        finally:
-            telling.cancel()
-            telling.join()
+        with _if_it_takes_long(show), counted:
+            yield
+
+
+@contextlib.contextmanager
+def _if_it_takes_long(tell):
+    """Calls `tell`, in another thread, once what is done inside has taken `PATIENCE`."""
+    telling = threading.Timer(PATIENCE, tell)
+    telling.start()
+    try:
+        yield
+    finally:
+        telling.cancel()
+        telling.join()
+
+
+@contextlib.contextmanager
+def lines(text: str) -> Iterator[None]:
+    """A line on standard error as what is done inside begins, and one as it ends if it took more than `PATIENCE`."""
+    began, text = time.monotonic(), readable(text, SHOWN)
+    say(text)
+    yield
+    if (seconds := time.monotonic() - began) > PATIENCE:
+        say(f"{text}: done in {seconds:.0f} s")
 
 
 def say(text: str) -> None:
@@ -64,20 +81,25 @@ def log(text: str) -> None:
 
 @contextlib.contextmanager
 def spinner(text: str) -> Iterator[Callable[[str], None]]:
-    """A line on standard error with the time elapsed, while something runs; nothing where that is no terminal."""
+    """A line on standard error with the time elapsed, while something runs; where that is no terminal, `text` once it
+    takes more than `PATIENCE`."""
     from rich.console import Console
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-    console = Console(stderr=True)
+    console, shown = Console(stderr=True), readable(text, SHOWN)
+    if not console.is_terminal:
+        with _if_it_takes_long(lambda: say(shown)):
+            yield lambda words: None
+        return
     columns = SpinnerColumn(), TextColumn("{task.description}", markup=False), TimeElapsedColumn()
-    with Progress(*columns, transient=True, console=console, disable=not console.is_terminal) as progress:
-        task = progress.add_task(readable(text, SHOWN))
+    with Progress(*columns, transient=True, console=console) as progress:
+        task = progress.add_task(shown)
         yield lambda words: progress.update(task, description=readable(words, SHOWN))
 
 
 @contextlib.contextmanager
 def bar(text: str, functions: int | None = None) -> Iterator[Callable[[int, int], None]]:
-    """A bar on standard error that is told (done, known of) while something runs; nothing where that is no terminal.
+    """A bar on standard error that is told (done, known of) while something runs; `lines` where that is no terminal.
 
     functions: about how many are to be compiled; they are counted behind the bar.
     """
@@ -85,9 +107,13 @@ def bar(text: str, functions: int | None = None) -> Iterator[Callable[[int, int]
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
     console, count = Console(stderr=True), TextColumn("{task.completed:.0f} of about {task.total:.0f} functions")
+    if not console.is_terminal:
+        with lines(text):
+            yield lambda done, total: None
+        return
     counting = TextColumn("{task.description}", markup=False), BarColumn(), count, TimeElapsedColumn()
     columns = counting if functions else Progress.get_default_columns()
-    with Progress(*columns, transient=True, console=console, disable=not console.is_terminal) as progress:
+    with Progress(*columns, transient=True, console=console) as progress:
         task = progress.add_task(readable(text, SHOWN), total=functions)
         yield lambda done, total: progress.update(task, completed=done, total=total)
 

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from .provenance import Result
 
 RUNS = "runs.jsonl"  # rows of single runs, beside the result
+_stored: Path | None = None  # where the runs are of the study under way, or of the last one
 SHOWN = 30  # runs from which on a batch shows its progress; a bisection has many small ones, what is timed takes long
 
 
@@ -79,6 +80,7 @@ def compute(
     ResultError
         The answer cannot be written as a result file.
     """
+    global _stored
     check_folder(folder)
     if into is not None:
         old, quick, options = opened(study, into, quick, options)
@@ -88,6 +90,7 @@ def compute(
         stack.enter_context(stdout_to_stderr())  # engines print on import
         store = stack.enter_context(Store(folder / RUNS))
         stack.callback(_leave_nothing_empty, folder)
+        _stored = store.path
         with spinner(f"{study.name}: engines and code") if progress else contextlib.nullcontext():
             if engines is None:  # loads engines: after what is wrong with the place was found
                 asked = installed_engines() if study.all_engines else ()
@@ -103,6 +106,16 @@ def compute(
     if into is None:
         return list(found)
     return [save(into, merged(study, old, the_one(found, Path(into)), asked, runs))]
+
+
+def kept() -> str:
+    """What is said when a study is ended early: how many runs are kept; "" where none are."""
+    if _stored is None or not _stored.exists():  # a report that has its runs removes them
+        return ""
+    with open(_stored, "rb") as file:
+        count = sum(line.endswith(b"\n") for line in file)
+    runs = f"{count} run{'s are' if count > 1 else ' is'} kept in {_stored}"
+    return f"{runs}; the same command goes on from there." if count else ""
 
 
 def _keep(path, result):
@@ -149,7 +162,7 @@ def _leave_nothing_empty(folder):
 
 
 def _run(batch, store, pool, progress):
-    shown = progress and len(batch.cases) >= (2 if batch.alone else SHOWN)
+    shown = progress and (batch.long or len(batch.cases) >= (2 if batch.alone else SHOWN))
     options = dict(store=store, measure=batch.measure, time_limit=batch.time_limit, progress=shown, label=batch.label)
     if not batch.alone:
         return run_sweep(batch.cases, executor=pool, **options)

@@ -29,6 +29,7 @@ from analytic import Response
 
 from .cases import Case, compile_for, solver
 from .executors import Executor, Task
+from .progress import lines
 from .provenance import json_ready
 from .readable import Mendable
 
@@ -209,7 +210,8 @@ def run_sweep(
         }
         if waiting:
             compile_for({case.solver for case in waiting.values()})
-            advance = _bar(stack, progress, label, len(waiting))
+            solvers = len({case.solver for case in waiting.values()})
+            advance = _bar(stack, label, len(waiting), solvers) if progress else lambda count: None
             _run(waiting, store, executor, measure, time_limit, advance)
         rows = [store.rows[key] for key in keys]
     return [
@@ -260,8 +262,12 @@ def _lost_line(key, lost):
     return json.dumps({"key": key, "values": {"outcome": "failed"}, "failure": json_ready(lost), "cost": {}})
 
 
-def _bar(stack, shown, label, total):
-    """A function that moves a bar on by a count; shown until `stack` ends."""
+def _bar(stack, label, total, solvers):
+    """A function that moves a bar on by a count; shown until `stack` ends. `lines` where that is no terminal."""
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        stack.enter_context(lines(f"{label}: {total} to do in {solvers} solver{'s' * (solvers > 1)}"))
+        return lambda count: None
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -270,5 +276,5 @@ def _bar(stack, shown, label, total):
         TextColumn("left"),
         TimeRemainingColumn(),
     )
-    bar = stack.enter_context(Progress(*columns, console=Console(stderr=True), disable=not shown, transient=False))
+    bar = stack.enter_context(Progress(*columns, console=console))
     return partial(bar.advance, bar.add_task(label, total=total))

@@ -90,7 +90,7 @@ def test_compiling_is_said_and_is_not_on_the_clock_of_the_run(rocking, monkeypat
     monkeypatch.setattr(solver, "compile_kernels", slowly)
     status, out, err = rocking("run", "free-rocking-rigid", "--time-limit", "2", "--json", "-")
     assert status == 0 and json.loads(out)["cpu_seconds"] < 1.0
-    assert err == f"{progress.COMPILING}: some ten seconds\n"
+    assert err.splitlines()[0] == f"{progress.COMPILING}: some ten seconds" and err.count(progress.COMPILING) == 1
 
 
 @pytest.mark.parametrize("command", ["run", "compare"])

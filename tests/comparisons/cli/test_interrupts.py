@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -11,6 +12,10 @@ import psutil
 import pytest
 
 from comparisons.cli.interrupts import stoppable
+from comparisons.report.study import UNFINISHED
+from comparisons.running import study
+from comparisons.running.provenance import RESULTS
+from engines import installed_engines
 from engines.guard import run_apart
 
 ENDLESS = """
@@ -28,6 +33,18 @@ ka = 2e4
 base_displacement = 0.2
 [run]
 duration = 1e7
+"""
+
+
+STANDS = """
+[block]
+mass = 3172.05
+radius = 1.0884
+slenderness = 0.28
+[motion]
+pulse = "one-sine"
+amplitude = 1.0
+frequency = 1.0
 """
 
 
@@ -119,12 +136,50 @@ def test_a_hangup_that_is_ignored_as_by_nohup_stays_so():
         signal.signal(signal.SIGHUP, before)
 
 
-def test_an_interrupted_study_resumes(tmp_path):
-    process = started("-m", "comparisons", "study", "restitution", "--quick", "--output", tmp_path)
-    store, deadline = tmp_path / "runs.jsonl", time.monotonic() + 120
-    while time.monotonic() < deadline and not (store.exists() and store.read_bytes().count(b"\n") > 5):
-        time.sleep(0.05)
+def broken_off(store, *arguments):
+    """Errors of a command that was told to stop as soon as a run is in its store, and how many runs are there then."""
+    process, deadline = started("-m", "comparisons", *arguments), time.monotonic() + 120
+    while time.monotonic() < deadline and not (store.exists() and store.read_bytes()):
+        time.sleep(0.02)
     seconds, alive = hears(process)
     assert process.returncode == 130 and seconds < 3 and not alive
-    assert "Traceback" not in process.stderr.read()
     assert store.read_bytes().endswith(b"\n") and "Interrupt" not in store.read_text()
+    return process.stderr.read(), store.read_bytes().count(b"\n")
+
+
+def kept(store, count):
+    runs = f"{count} run{'s are' if count > 1 else ' is'} kept in {store}"
+    return f"Interrupted. {runs}; the same command goes on from there.\n"
+
+
+def test_an_interrupted_study_says_what_is_kept(tmp_path):
+    store = tmp_path / "runs.jsonl"
+    err, count = broken_off(store, "study", "restitution", "--quick", "--output", tmp_path)
+    assert "Traceback" not in err and err.endswith(kept(store, count))
+
+
+def test_an_interrupted_report_says_what_is_kept_and_goes_on_from_there(tmp_path):
+    (tmp_path / "studies").mkdir()
+    for file in RESULTS.glob("surface.*"):
+        shutil.copy(file, tmp_path / "studies")
+    store, one = tmp_path / "page" / UNFINISHED / "runs.jsonl", ("--engine", installed_engines()[0])
+    (tmp_path / "stands.toml").write_text(STANDS)  # no run but those of the scene itself
+    words = ("report", tmp_path / "stands.toml", *one, "--output", tmp_path / "page", "--studies", tmp_path / "studies")
+    err, count = broken_off(store, *words)
+    assert err.endswith(kept(store, count))
+    again = started("-m", "comparisons", *words)
+    _, err = again.communicate()
+    assert again.returncode == 0 and f" {count} found in {UNFINISHED}/runs.jsonl" in err
+    assert not store.exists()  # now there is nothing to go on from, and nothing of it would be said
+
+
+def test_nothing_is_said_of_runs_that_are_gone_or_not_yet_there(tmp_path, monkeypatch):
+    store = tmp_path / "runs.jsonl"
+    monkeypatch.setattr(study, "_stored", store)
+    said = []
+    for text in ("", "{", "{}\n{", "{}\n{}\n"):  # a line that is not whole is no run
+        store.write_text(text)
+        said.append(study.kept())
+    store.unlink()
+    said.append(study.kept())
+    assert said == ["", "", *(kept(store, count).removeprefix("Interrupted. ").rstrip() for count in (1, 2)), ""]

@@ -46,8 +46,9 @@ def test_pages_lead_to_nothing_outside(rocking, tmp_path, monkeypatch, names):
     if names:
         monkeypatch.setattr(export, "lessons", lambda: [lesson(name) for name in names])
         monkeypatch.setattr(export, "_lesson_page", lambda *parts: "<!DOCTYPE html><title>left out</title>")
-    status, out, _ = rocking("lessons", "export", "--output", tmp_path / "pages")
+    status, out, err = rocking("lessons", "export", "--output", tmp_path / "pages")
     assert status == 0 and out.strip() == str(tmp_path / "pages" / "index.html")
+    assert err.startswith("8 lessons\n")  # said as it begins, as it takes long
     found = list((tmp_path / "pages").glob("*.html"))
     assert len(found) == 4 + len(names or lessons())
     for file in found:

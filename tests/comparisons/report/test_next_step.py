@@ -41,6 +41,8 @@ def test_the_command_on_the_card_runs_on_this_file(rocking, tmp_path, monkeypatc
     place = str(tmp_path / name) if command == "margin" else name
     status, _, err = rocking("report", place, *many, "--engine", "analytic", "--output", "page", "--studies", studies)
     assert status == 0, err
+    stages = [line for line in err.splitlines() if line.startswith(("runs:", "studies")) and "done in" not in line]
+    assert stages == ["runs: 1 to do in 1 solver", "studies and pages: 3 stored results"]  # though nobody sees a bar
     page = (tmp_path / "page/report.html").read_text()
     (shown,) = re.findall('<p class="next">.*?data-copies="(.*?)"', page)
     words = shlex.split(html.unescape(shown))

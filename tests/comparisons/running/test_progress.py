@@ -1,4 +1,5 @@
-"""What is said while the analytic model is compiled: how many functions so far, of about how many."""
+"""What is said while something runs: lines where nobody sees a bar; of the model's compiling, how many functions so
+far, of about how many."""
 
 import contextlib
 import os
@@ -61,6 +62,27 @@ def test_the_bar_shows_the_count_and_goes_beyond_what_was_known(capsys, monkeypa
     with progress.bar(progress.COMPILING, 3) as tell:
         tell(2, 3)
     assert "2 of about 3 functions" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("patience, end", [(0.0, "records\x1b[0m: done in 0 s\n"), (100.0, "")])
+def test_a_bar_where_no_terminal_is_is_a_line_and_one_at_its_end_if_that_takes_long(capsys, monkeypatch, patience, end):
+    monkeypatch.setattr(progress, "PATIENCE", patience)
+    with progress.bar("records\x1b[0m") as tell:
+        begun = capsys.readouterr().err
+        tell(1, 2)
+    assert (begun, capsys.readouterr().err) == ("records\\x1b[0m\n", end.replace("\x1b", "\\x1b"))
+    with pytest.raises(KeyboardInterrupt), progress.bar("records"):
+        raise KeyboardInterrupt
+    assert capsys.readouterr().err == "records\n"  # it is not done
+
+
+@pytest.mark.parametrize("patience, said", [(0.0, "one scene\n"), (100.0, "")])
+def test_a_spinner_where_no_terminal_is_is_a_line_if_it_takes_long(capsys, monkeypatch, patience, said):
+    monkeypatch.setattr(progress, "PATIENCE", patience)
+    with progress.spinner("one scene") as tell:
+        tell("its margin")
+        time.sleep(0.2)  # the line is said from another thread
+    assert capsys.readouterr().err == said
 
 
 @pytest.mark.slow
