@@ -207,22 +207,21 @@ def own_restitution(block: Result, outside: str = "") -> Judgement:
     return Judgement("restitution of this block, free: error, rms", marks, RESTITUTION)
 
 
-def not_to_do(setups: Sequence[Setup], judgements: Sequence[Judgement]) -> list[str]:
+def not_to_do(setups: Sequence[Setup]) -> list[str]:
     """Three lines at most."""
-    heads = [one.heading for one in judgements if one.key == RESTITUTION]
-    defaults = [one for one in setups if one.tier == "defaults" and any(one.marks[head].value for head in heads)]
+    defaults = [one for one in setups if one.tier == "defaults" and one.rating.level in LEVELS]
     lines = []
     if defaults:
-        bad = [one for one in defaults if one.rating.level == "bad"]
-        off = ", ".join(f"{number(one.marks[heads[0]].value, 2)} in {one.engine}" for one in bad or defaults)
-        count = f"{len(bad)} of {len(defaults)}"
-        lines.append(f"Do not use the variants “defaults”: {count} are not to be trusted (restitution off by {off}).")
+        bad = sum(one.rating.level == "bad" for one in defaults)
+        lines.append(
+            f"Do not use an engine as it comes: of {len(defaults)} that were tested {bad} are not to be trusted."
+        )
     lines.append(
-        "Check how close the outcome is to changing (rocking margin SCENE). If your data are less certain than that, "
-        "do not rely on it."
+        "Check how close the outcome is to changing (rocking margin SCENE), and do not rely on it if your data are "
+        "less certain than that."
     )
     lines.append(
-        "Do not compare tilt point by point beyond the sensitivity horizon, nor trust a level until a finer one no "
+        "Do not compare tilts point by point beyond the sensitivity horizon. Trust a level only once a finer one no "
         "longer changes the result."
     )
     return lines

@@ -10,7 +10,7 @@ from .answer import Setup
 
 QUESTION = "How far can a multibody engine be trusted with a rocking body, and at what cost?"
 TUNED, DEFAULTS = "tuned", "defaults"
-HOW = ((TUNED, "when tuned"), (DEFAULTS, "as it comes"))
+HOW = ((TUNED, "tuned"), (DEFAULTS, "as it comes"))
 
 
 def screen(setups: Sequence[Setup], judgements: Sequence[Judgement], glances: Iterable[Glance]) -> dict[str, Any]:
@@ -56,14 +56,16 @@ def title(setups: Sequence[Setup]) -> str:
 
 def lines(
     setups: Sequence[Setup], judgements: Sequence[Judgement], shares: Sequence[Endings], says: Mapping[str, str]
-) -> list[str]:
-    """Restitution; outcomes; cost, and real blocks. Those of which no study tells are left out."""
+) -> list[list[tuple[str, str]]]:
+    """Three lines, each of (what it is about, a sentence): restitution; outcomes; cost, and real blocks. What no study
+    tells is left out."""
     found = [
-        _restitution(setups, judgements),
-        _outcomes(shares),
-        " ".join(filter(None, map(says.get, ("cost", "real")))),
+        [("Restitution", _restitution(setups, judgements))],
+        [("Outcomes", _outcomes(shares))],
+        [("Cost", says.get("cost", "")), ("Real blocks", says.get("real", ""))],
     ]
-    return [line for line in found if line]
+    told = [[pair for pair in line if pair[1]] for line in found]
+    return [line for line in told if line]
 
 
 def _columns(setups, tier):
@@ -76,11 +78,11 @@ def _restitution(setups, judgements):
     parts = []
     for tier, how in HOW if head else ():
         marks = {one.engine: one.marks[head] for one in _columns(setups, tier)}
-        told = [f"{number(mark.value, 2)} in {engine}" for engine, mark in marks.items() if mark.value is not None]
+        told = [f"{engine} by {number(mark.value, 2)}" for engine, mark in marks.items() if mark.value is not None]
         missed = any("missed" in mark.words for mark in marks.values())
         if told:
-            parts.append(f"{listed(told)} {how}{', and impacts are missed' if missed else ''}")
-    return f"Restitution at an impact is off by {'; by '.join(parts)}." if parts else ""
+            parts.append(f"{how}, {listed(told)}{', and impacts are missed' if missed else ''}")
+    return f"at an impact it is off (rms): {'; '.join(parts)}." if parts else ""
 
 
 def _outcomes(shares):
@@ -89,7 +91,7 @@ def _outcomes(shares):
     parts = []
     for tier, how in HOW:
         some = [one for one in shares if one.motions == motions and one.tier == tier]
-        told = [f"{one.differing} of {one.runs} in {one.engine}" for one in some]
+        told = [f"{one.engine} in {one.differing} of {one.runs}" for one in some]
         if told:
-            parts.append(f"{listed(told)} {how}")
-    return f"The outcome under {motions} differs in {'; in '.join(parts)}." if parts else ""
+            parts.append(f"{how}, {listed(told)}")
+    return f"under {motions} they differ from the model’s: {'; '.join(parts)}." if parts else ""

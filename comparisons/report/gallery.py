@@ -48,7 +48,8 @@ def headlines(first: Mapping[str, Any]) -> str:
     advice = first["advice"]
     rows = [advice.columns, ["---"] * len(advice.columns), *advice.rows] if advice else []
     charts = " ".join(f"![{ALT[name]}](comparisons/report/gallery/{name}.svg)" for name in ALT if first[name])
-    told = [line for words in first["lines"] for line in (*wrap(words, 120), "")]
+    lines = [" ".join(f"**{about}:** {words}" for about, words in line) for line in first["lines"]]
+    told = [line for words in lines for line in (*wrap(words, 120), "")]
     return "\n".join((*told, charts, "", *(f"| {' | '.join(row)} |" for row in rows)))
 
 

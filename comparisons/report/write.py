@@ -26,8 +26,9 @@ from .detail import assets, detail, environment
 from .figures import animation
 from .first import screen
 from .runs import RESTITUTION, SCENES
-from .sections import earthquake, restitution_section, scene_sections, summary
+from .sections import earthquake, restitution_section, scene_sections
 from .statue import card_of
+from .summary import summary
 
 if TYPE_CHECKING:
     from ..running.provenance import Result
@@ -52,15 +53,20 @@ SHORT = {
 }
 
 
+FOLDED = ("random-scenes", "sensitivity", "mistakes")  # what does not answer the page's question by itself
+
+
 @dataclass(frozen=True)
 class Part:
-    """A section of the page. short: its name in the contents; page: where all of its study stands."""
+    """A section of the page. short: its name in the contents; page: where all of its study stands; folded: whether it
+    is opened by a click."""
 
     id: str
     short: str
     section: Section | None
     origin: str = ""
     page: str = ""
+    folded: bool = False
 
 
 def write_page(
@@ -150,7 +156,7 @@ def _answer(scenes: Result, block: Result | None, stored: list[Stored]) -> dict[
         "own": _contact_ours(scenes),
         "limits": in_words(),
         "summary": summary(scenes, block),
-        "not_to_do": not_to_do(setups, judgements),
+        "not_to_do": not_to_do(setups),
         "decision": setups,
         "headings": {each.heading: where[each.heading] for each in judgements},
         "trusted": f"{TRUSTED:g}",
@@ -220,17 +226,23 @@ def _contents(scenes: Result, stored: list[Stored]) -> list[Part]:
     parts = [Part("equations", "Scene and equations", setting)]
     found = {one.name: one for one in stored if one.finding is not None}
     name = "One earthquake" if scenes.settings["motion"] else "The scenes"
-    own = Part("earthquake", name, earthquake(scenes), origin_of(scenes), f"{PAGES}/runs.html")
+    own = Part("earthquake", name, earthquake(scenes), made(origin_of(scenes)), f"{PAGES}/runs.html")
     order = [name for name in SHORT if name in found] + [name for name in found if name not in SHORT]
     for name in order:
         one = found[name]
         anchor = "impact" if name == "restitution" else name
-        parts.append(Part(anchor, SHORT.get(name, one.section.title), one.finding, one.origin, f"{PAGES}/{name}.html"))
+        short, page = SHORT.get(name, one.section.title), f"{PAGES}/{name}.html"
+        parts.append(Part(anchor, short, one.finding, made(one.origin), page, name in FOLDED))
         if name == ("autopsy" if "autopsy" in order else "restitution"):
             parts.append(own)
     if own not in parts:
         parts.insert(1, own)
     return [*parts, Part("method", "Method and words", None)]
+
+
+def made(origin: str) -> str:
+    """Date and commit of an origin; machine and versions stand on the study's own page."""
+    return ", ".join(origin.split(", ")[:2])
 
 
 def _computed(result: Result) -> Table:

@@ -88,7 +88,8 @@ def _costs(curves: Sequence[Curve], width: int) -> Chart:
                 mark=None if whole else "x",
             )
         places[one.who] = chart.at(cpu, errors)
-    _name(chart, sorted(shown, key=lambda one: not one.subject), places)
+    named = [one for one in shown if width == WIDE or one.subject or one.kind == "model"]  # the others: by the pointer
+    _name(chart, sorted(named, key=lambda one: not one.subject), places)
     return chart
 
 

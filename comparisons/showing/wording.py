@@ -77,7 +77,8 @@ def equal_mark(found: Mapping[str, Any]) -> Mark:
     equal, (low, high) = found["equal"], found["interval"]
     levels = {"yes": "good", "no": "bad" if low > EQUAL else "fair"}
     words, most = f"{found['differing']} of {found['runs']}", percent(high)
-    note = {"yes": "equal", "no": "not shown to be equal"}.get(equal, equal) + f"; {found['failed']} failed"
+    note = {"yes": "equal", "no": "not shown to be equal"}.get(equal, "inconclusive: too few motions")
+    note += f"; {found['failed']} failed"
     return Mark(f"{words} (at most {most})", levels.get(equal, "part"), note, found["share"])
 
 

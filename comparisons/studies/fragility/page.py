@@ -55,10 +55,9 @@ def page(result: Result) -> Page:
         _title(found),
         (
             "Over a whole motion the rocking of a block cannot be predicted point by point, but probabilities can. "
-            f"Engines are compared with the analytic model run by run. Equal means that at most {100 * EQUAL:g} % of "
-            "runs end otherwise, by the upper limit of the 95 % interval; a failed run counts as differing; too few "
-            "runs prove nothing.",
-            *([f"Too few runs to tell: {'; '.join(few)}."] if few else ()),
+            f"Engines are compared with the analytic model run by run. “Equal” means that at most {100 * EQUAL:g} % of "
+            "runs end otherwise, by the upper limit of the 95 % interval; a failed run counts as differing.",
+            *([f"Too few motions to tell: {'; '.join(few)}."] if few else ()),
         ),
         first=(
             _shares(
@@ -188,7 +187,7 @@ def _title(found):
     words = [row["equal"] for row in found]
     count = f"{words.count('yes')} of {len(found)} variants of engines"
     title = f"Many earthquakes: outcomes equal to the model's, to {100 * EQUAL:g} %, in {count}"
-    return title + (f"; too few runs to tell for {words.count(TOO_FEW)}" if TOO_FEW in words else "")
+    return title + (f"; too few motions to tell for {words.count(TOO_FEW)}" if TOO_FEW in words else "")
 
 
 def _fits(row):

@@ -66,9 +66,9 @@ def page(result: Result) -> Page:
         _title(both, equal),
         (
             "What counts is how the block ends: whether it stands, rocks or overturns, and in which swing it falls. "
-            f"Equal means that the upper limit of the interval is below {equal}; a failed run counts as differing. "
-            "Runs under one record may all tell the same: the interval takes a record as one run. Where so few "
-            "records could not show equality even if no run differed, they are inconclusive.",
+            f"“Equal” means that the upper limit of the 95 % interval is below {equal}; a failed run counts as "
+            "differing. Runs under one record are not independent, so the interval counts records. A number of records "
+            "that could not show equality even if no run differed is inconclusive.",
         ),
         first=(
             _tilts(runs),
@@ -185,7 +185,7 @@ def _title(both: list[dict[str, Any]], equal: str) -> str:
     title = f"Recorded motions: {words.count('yes')} of {len(words)} variants of engines end as the model does, "
     title += f"within {equal}"
     few = words.count(TOO_FEW)
-    return title + (f"; {few} inconclusive (too few runs)" if few else "")
+    return title + (f"; {few} inconclusive (too few records)" if few else "")
 
 
 def _tilts(runs: list[dict[str, Any]]) -> Figure | None:

@@ -54,9 +54,10 @@ def page(result: Result) -> Page:
     main = [row for row in where(scores, judged=BY_RECORD) if TABLE not in row["forecast"]]
     return Page(
         title(scores, settings),
-        (sentence(result, engines), bounds(result)),
+        (sentence(result, engines),),
         first=(_bars(result, engines), _table_of_engines(result, engines)),
         more=(
+            bounds(result),
             _right_of_engines(engines),
             Head("Each record held out in turn"),
             _scores("Share of right answers and Brier score (smaller is better), with 95 % intervals by record", main),

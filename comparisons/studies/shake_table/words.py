@@ -50,7 +50,7 @@ def at_a_glance(result: Result) -> str:
     if not rows:
         return ""
     right, names = (listed([str(row[key]) for row in rows]) for key in ("right", "specimen"))
-    return f"On a shake table the model predicts {right} of {rows[0]['size']} outcomes of real blocks ({names})."
+    return f"on a shake table the model predicts {right} of {rows[0]['size']} outcomes ({names})."
 
 
 def _unsafe(row):

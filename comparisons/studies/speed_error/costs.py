@@ -174,7 +174,7 @@ def glance(result: Result) -> Glance | None:
     return Glance(
         says={"cost": words} if (words := _words(result)) else {},
         curves=tuple(_curves(result, rows)),
-        scene=rows[0]["title"].capitalize(),
+        scene="a block rocking on bearings, under a record",
         advice=advice(result),
     )
 
@@ -263,6 +263,6 @@ def _words(result):
         return ""
     own = " and ".join(f"{number(1e3 * row['cpu_per_second'], 2)} ms in {row['engine']}" for row in found.values())
     return (
-        f"A peak tilt to {percent(ASKED, 1)} costs {own} of CPU time per simulated second; in the analytic model, "
-        f"{number(1e3 * costs[ASKED], 2)} ms."
+        f"a peak tilt to {percent(ASKED, 1)} takes {own} of CPU time per simulated second, and "
+        f"{number(1e3 * costs[ASKED], 2)} ms in the analytic model."
     )

@@ -64,10 +64,10 @@ def test_a_study_of_engines_as_they_come_judges_the_default_variant():
     assert found[FINE].marks["odds"].words == "0 of 9" and found[COARSE].marks["odds"].words == "5 of 9"
 
 
-def test_what_not_to_do_names_the_defaults_that_are_off():
-    judgements = (restitution(),)
-    found = list(decided(*judgements).values())
-    assert "1 of 1 are not to be trusted (restitution off by 0.20 in exudyn)" in not_to_do(found, judgements)[0]
+def test_what_not_to_do_counts_the_defaults_that_are_not_to_be_trusted():
+    assert "of 1 that were tested 1 are not to be trusted" in not_to_do(list(decided(restitution()).values()))[0]
+    good = Judgement("restitution", {COARSE: Mark("1e-5", "good", value=1e-5)}, RESTITUTION)
+    assert "of 1 that were tested 0 are" in not_to_do(list(decided(good).values()))[0]
 
 
 def test_the_blocks_own_restitution_is_that_of_its_engines():
