@@ -42,7 +42,7 @@ def shown(found: Sequence[Endings], setups: Sequence[Setup]) -> list[Endings]:
     kept = [one for one in found if (one.engine, one.variant) in columns]
     motions = list(dict.fromkeys(one.motions for one in kept))
     return sorted(
-        kept, key=lambda one: (motions.index(one.motions), one.tier == TUNED, columns[one.engine, one.variant])
+        kept, key=lambda one: (motions.index(one.motions), one.kind == TUNED, columns[one.engine, one.variant])
     )
 
 
@@ -90,7 +90,7 @@ def _outcomes(shares):
     motions = next((one.motions for one in shares if "record" in one.motions), shares[0].motions if shares else "")
     parts = []
     for tier, how in HOW:
-        some = [one for one in shares if one.motions == motions and one.tier == tier]
+        some = [one for one in shares if one.motions == motions and one.kind == tier]
         told = [f"{one.engine} in {one.differing} of {one.runs}" for one in some]
         if told:
             parts.append(f"{how}, {listed(told)}")

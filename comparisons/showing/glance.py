@@ -158,7 +158,7 @@ def _endings(rows: Sequence[Endings], width: int) -> Chart:
         f"Share of runs that end otherwise than the model's: {'; '.join(map(_told, rows))}.",
         height=52 + LINE * len(lines),
         width=width,
-        left=12 + round(LETTER * 0.53 * max(len(f"{one.engine}, {one.tier}") for one in rows)),
+        left=12 + round(LETTER * 0.53 * max(len(f"{one.engine}, {one.kind}") for one in rows)),
         right=shown[-1][0] + 12,
         head=12,
     )
@@ -169,7 +169,7 @@ def _endings(rows: Sequence[Endings], width: int) -> Chart:
             chart.beside(0, place, one, aside=(4 - chart.left, 4.5), kind="title")
             continue
         who = f"{one.engine}, {one.variant}"
-        chart.beside(0, place, f"{one.engine}, {one.tier}", who=who, aside=(-6, 4.5), anchor="end")
+        chart.beside(0, place, f"{one.engine}, {one.kind}", who=who, aside=(-6, 4.5), anchor="end")
         at = 0.0
         for way, kind in CLASSES.items():
             if count := getattr(one, way):
@@ -187,7 +187,7 @@ def _count(number: int) -> str:
 
 def _told(one: Endings) -> str:
     share, ways = percent(one.differing / one.runs), (f"{getattr(one, way)} {words}" for way, words in WAYS.items())
-    return f"{one.motions}, {one.engine}, {one.tier}: {share} of {one.runs}; {', '.join(ways)}"
+    return f"{one.motions}, {one.engine}, {one.kind}: {share} of {one.runs}; {', '.join(ways)}"
 
 
 def _both(charts: Sequence[Chart], caption: str) -> Figure:

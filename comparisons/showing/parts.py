@@ -71,14 +71,14 @@ class Mark:
 class Endings:
     """How many runs of a variant end otherwise than the model's, under one kind of motion.
 
-    tier: the variant's kind. runs: those judged; of these failed; missed: overturn in the model alone; added: in the
+    kind: of the variant. runs: those judged; of these failed; missed: overturn in the model alone; added: in the
     engine alone; other: end, or fall, otherwise in another way. interval: 95 % of the share of all four.
     """
 
     motions: str
     engine: str
     variant: str
-    tier: str
+    kind: str
     runs: int
     failed: int
     missed: int

@@ -87,14 +87,14 @@ def counted(motions: str, rows: Iterable[Mapping[str, Any]]) -> tuple[Endings, .
     or "failed"; falls and model_falls, whether the block overturns; group: runs of one count as one in the interval.
     """
     found = []
-    for (engine, variant, tier), runs in grouped(rows, "engine", "variant", "tier").items():
+    for (engine, variant, kind), runs in grouped(rows, "engine", "variant", "tier").items():
         wrong = [row for row in runs if row["class"] == "differs"]
         ways = [(row["model_falls"], row["falls"]) for row in wrong]
         missed, added = ways.count((True, False)), ways.count((False, True))
         failed = sum(row["class"] == "failed" for row in runs)
         _, interval = equality([row["class"] != "right" for row in runs], [row["group"] for row in runs])
         counts = len(runs), failed, missed, added, len(wrong) - missed - added
-        found.append(Endings(motions, engine, variant, tier, *counts, interval))
+        found.append(Endings(motions, engine, variant, kind, *counts, interval))
     return tuple(found)
 
 
