@@ -83,8 +83,9 @@ def equal_mark(found: Mapping[str, Any]) -> Mark:
 
 
 def counted(motions: str, rows: Iterable[Mapping[str, Any]]) -> tuple[Endings, ...]:
-    """The `Endings` of every variant from its judged runs, each with: engine, variant, tier; class "right", "differs"
-    or "failed"; falls and model_falls, whether the block overturns; group: runs of one count as one in the interval.
+    """The `Endings` of every variant from its judged runs: rows of a study, each with engine, variant and its kind, and
+    its class "right", "differs" or "failed"; falls and model_falls, whether the block overturns; group: runs of one
+    count as one in the interval.
     """
     found = []
     for (engine, variant, kind), runs in grouped(rows, "engine", "variant", "tier").items():
