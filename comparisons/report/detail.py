@@ -93,11 +93,11 @@ def environment() -> Environment:
             seen.add(found[0])
             return f'<abbr title="{escape(known[found[0]])}">{found[0]}</abbr>'
 
-        return Markup(words.sub(explained, indexed(str(escape(text)))))
+        return Markup(words.sub(explained, indexed(str(escape(unbroken(text))))))
 
     found.filters |= {
         "math": lambda tex: Markup(mathml(tex, display=True)),
-        "indexed": lambda text: Markup(indexed(str(escape(text)))),
+        "indexed": lambda text: Markup(indexed(str(escape(unbroken(str(text)))))),
         "glossed": glossed,
         "unbroken": unbroken,
         "number": number,

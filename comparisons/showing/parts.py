@@ -240,9 +240,12 @@ def short(value: float | None) -> str:
     return power if point and digits == "1" else digits + point + power
 
 
+UNIT = re.compile(r"(?<=[\d⁰¹²³⁴⁵⁶⁷⁸⁹]) (?=(?:ms|s|m|N/m|kg|rad|deg|Hz|g|of)\b|[%×])|(?<=\bof) (?=\d)")
+
+
 def unbroken(text: str) -> str:
     """The text with no line break between a number and its unit, or the count that it is of."""
-    return re.sub(r"(?<=\d) (?=(?:%|×|ms|s|of)\b|[%×])|(?<=\bof) (?=\d)", "\u00a0", text)
+    return UNIT.sub("\u00a0", text)
 
 
 def typeset(text: str) -> str:
