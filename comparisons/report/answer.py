@@ -13,7 +13,8 @@ from engines import ENGINES
 from ..running.age import age, by_engine, date_of, last_check
 from ..running.provenance import RESULTS, Result, ResultError
 from ..running.readable import readable
-from ..showing.parts import COST, RESTITUTION, Glance, Judgement, Mark, Section, number
+from ..showing.glance import Glance
+from ..showing.parts import COST, RESTITUTION, Judgement, Mark, Section, number
 from ..showing.wording import rating, with_counts
 from ..studies import StudyBroken, get_study, study_names
 from ..studies.rows import read_study

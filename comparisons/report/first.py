@@ -3,8 +3,8 @@
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from ..showing.glance import WAYS, costs, endings, swatches
-from ..showing.parts import RESTITUTION, Endings, Glance, Judgement, number
+from ..showing.glance import WAYS, Endings, Glance, costs, endings, swatches
+from ..showing.parts import RESTITUTION, Judgement, number
 from ..showing.wording import listed
 from .answer import Setup
 

@@ -24,7 +24,8 @@ from .cases import SOLVERS, Case
 from .sweep import Row
 
 if TYPE_CHECKING:
-    from ..showing.parts import Glance, Judgement, Page
+    from ..showing.glance import Glance
+    from ..showing.parts import Judgement, Page
     from .provenance import Result
 
 TIME_LIMIT = 300.0  # s, of one run

@@ -1,14 +1,71 @@
-"""The two charts of the report's first screen: error against cost, and how runs end; each once for a wide page and once
-for a phone, of which a style shows one.
+"""What studies give to the report's first screen, and its two charts: error against cost, and how runs end; each once
+for a wide page and once for a phone, of which a style shows one.
 """
 
-from collections.abc import Callable, Iterable, Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
 
 from markupsafe import Markup
 
+from ..measuring.statistics import equality
 from .charts import LETTER, WIDTH, Axis, Chart
-from .parts import Curve, Endings, Figure, grouped, percent, power_of_ten
+from .parts import Figure, Table, grouped, percent, power_of_ten
+
+
+@dataclass(frozen=True)
+class Endings:
+    """How many runs of a variant end otherwise than the model's, under one kind of motion.
+
+    kind: of the variant. runs: those judged; of these failed; missed: overturn in the model alone; added: in the
+    engine alone; other: end, or fall, otherwise in another way. interval: 95 % of the share of all four.
+    """
+
+    motions: str
+    engine: str
+    variant: str
+    kind: str
+    runs: int
+    failed: int
+    missed: int
+    added: int
+    other: int
+    interval: tuple[float, float]
+
+    @property
+    def differing(self) -> int:
+        return self.failed + self.missed + self.added + self.other
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Error over cost of a solver. who: engine and variant; name: shorter. kind: "defaults", "tuned", or "model" of
+    the equations themselves; subject: whether it is an engine in question.
+
+    points: (CPU time [s/s], error [-], whether it missed nothing, what it is in words), from coarse to fine.
+    """
+
+    who: str
+    name: str
+    kind: str
+    subject: bool
+    points: tuple[tuple[float, float, bool, str], ...]
+
+
+@dataclass(frozen=True)
+class Glance:
+    """What a study gives to the report's first screen.
+
+    says: {place in the answer: a sentence}. endings: of variants. curves: of solvers, in the scene that is called
+    `scene`. advice: the recommendation by accuracy.
+    """
+
+    says: Mapping[str, str] = field(default_factory=dict)
+    endings: tuple[Endings, ...] = ()
+    curves: tuple[Curve, ...] = ()
+    scene: str = ""
+    advice: Table | None = None
+
 
 WIDE = 590
 FINEST, WORST = 1e-11, 1.0  # of errors; what lies beyond stands at the frame
@@ -36,6 +93,23 @@ WAYS = {
     "failed": "fails",
 }
 CLASSES = {"missed": "missed", "added": "added", "other": "other", "failed": "lost-run"}
+
+
+def counted(motions: str, rows: Iterable[Mapping[str, Any]]) -> tuple[Endings, ...]:
+    """The `Endings` of every variant from its judged runs: rows of a study, each with engine, variant and its kind, and
+    its class "right", "differs" or "failed"; falls and model_falls, whether the block overturns; group: runs of one
+    count as one in the interval.
+    """
+    found = []
+    for (engine, variant, kind), runs in grouped(rows, "engine", "variant", "tier").items():
+        wrong = [row for row in runs if row["class"] == "differs"]
+        ways = [(row["model_falls"], row["falls"]) for row in wrong]
+        missed, added = ways.count((True, False)), ways.count((False, True))
+        failed = sum(row["class"] == "failed" for row in runs)
+        _, interval = equality([row["class"] != "right" for row in runs], [row["group"] for row in runs])
+        counts = len(runs), failed, missed, added, len(wrong) - missed - added
+        found.append(Endings(motions, engine, variant, kind, *counts, interval))
+    return tuple(found)
 
 
 class Box(NamedTuple):

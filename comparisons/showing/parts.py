@@ -67,60 +67,6 @@ class Mark:
     value: float | None = None
 
 
-@dataclass(frozen=True)
-class Endings:
-    """How many runs of a variant end otherwise than the model's, under one kind of motion.
-
-    kind: of the variant. runs: those judged; of these failed; missed: overturn in the model alone; added: in the
-    engine alone; other: end, or fall, otherwise in another way. interval: 95 % of the share of all four.
-    """
-
-    motions: str
-    engine: str
-    variant: str
-    kind: str
-    runs: int
-    failed: int
-    missed: int
-    added: int
-    other: int
-    interval: tuple[float, float]
-
-    @property
-    def differing(self) -> int:
-        return self.failed + self.missed + self.added + self.other
-
-
-@dataclass(frozen=True)
-class Curve:
-    """Error over cost of a solver. who: engine and variant; name: shorter. kind: "defaults", "tuned", or "model" of
-    the equations themselves; subject: whether it is an engine in question.
-
-    points: (CPU time [s/s], error [-], whether it missed nothing, what it is in words), from coarse to fine.
-    """
-
-    who: str
-    name: str
-    kind: str
-    subject: bool
-    points: tuple[tuple[float, float, bool, str], ...]
-
-
-@dataclass(frozen=True)
-class Glance:
-    """What a study gives to the report's first screen.
-
-    says: {place in the answer: a sentence}. endings: of variants. curves: of solvers, in the scene that is called
-    `scene`. advice: the recommendation by accuracy.
-    """
-
-    says: Mapping[str, str] = field(default_factory=dict)
-    endings: tuple[Endings, ...] = ()
-    curves: tuple[Curve, ...] = ()
-    scene: str = ""
-    advice: Table | None = None
-
-
 RESTITUTION, COST = "restitution", "cost"  # keys of judgements that the report's first screen takes numbers of
 
 

@@ -7,7 +7,7 @@ from typing import Any
 from analytic.response import COMPARED, EDGE, UNCOMPARED, Difference
 
 from ..measuring.statistics import EQUAL, equality
-from .parts import Endings, Mark, grouped, percent
+from .parts import Mark, percent
 
 # Root mean square error of restitution: measured restitution of stone scatters by some per cent.
 TRUSTED, USABLE = 1e-3, 1e-2
@@ -80,23 +80,6 @@ def equal_mark(found: Mapping[str, Any]) -> Mark:
     note = {"yes": "equal", "no": "not shown to be equal"}.get(equal, "inconclusive: too few motions")
     note += f"; {found['failed']} failed"
     return Mark(f"{words} (at most {most})", levels.get(equal, "part"), note, found["share"])
-
-
-def counted(motions: str, rows: Iterable[Mapping[str, Any]]) -> tuple[Endings, ...]:
-    """The `Endings` of every variant from its judged runs: rows of a study, each with engine, variant and its kind, and
-    its class "right", "differs" or "failed"; falls and model_falls, whether the block overturns; group: runs of one
-    count as one in the interval.
-    """
-    found = []
-    for (engine, variant, kind), runs in grouped(rows, "engine", "variant", "tier").items():
-        wrong = [row for row in runs if row["class"] == "differs"]
-        ways = [(row["model_falls"], row["falls"]) for row in wrong]
-        missed, added = ways.count((True, False)), ways.count((False, True))
-        failed = sum(row["class"] == "failed" for row in runs)
-        _, interval = equality([row["class"] != "right" for row in runs], [row["group"] for row in runs])
-        counts = len(runs), failed, missed, added, len(wrong) - missed - added
-        found.append(Endings(motions, engine, variant, kind, *counts, interval))
-    return tuple(found)
 
 
 def differing(comparable: str, differences: Iterable[Difference]) -> list[str]:

@@ -9,8 +9,9 @@ from ...measuring.statistics import EQUAL, TOO_FEW
 from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure
 from ...showing.figures import ranks, shades
-from ...showing.parts import NAME, Column, Glance, Head, Judgement, Page, grouped, number, percent, short, table, where
-from ...showing.wording import counted, equal_mark, tally
+from ...showing.glance import Glance, counted
+from ...showing.parts import NAME, Column, Head, Judgement, Page, grouped, number, percent, short, table, where
+from ...showing.wording import equal_mark, tally
 
 LEVEL = 0.05  # of the test between an engine and the model, and least p of a curve that is shown
 OVERTURNING = "overturning"

@@ -9,11 +9,10 @@ import numpy as np
 from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure, key_of
 from ...showing.figures import MOVED, lines
+from ...showing.glance import Endings, Glance
 from ...showing.parts import (
     NAME,
     Column,
-    Endings,
-    Glance,
     Head,
     Judgement,
     Mark,

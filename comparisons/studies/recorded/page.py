@@ -11,11 +11,11 @@ from ...measuring.statistics import TOO_FEW
 from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure, key_of
 from ...showing.figures import LOOKS
+from ...showing.glance import Glance, counted
 from ...showing.parts import (
     NAME,
     Column,
     Figure,
-    Glance,
     Judgement,
     Mark,
     Page,
@@ -27,7 +27,7 @@ from ...showing.parts import (
     typeset,
     where,
 )
-from ...showing.wording import NOT_COMPARED, counted, equal_mark, tally
+from ...showing.wording import NOT_COMPARED, equal_mark, tally
 from .study import ERRORS
 
 MANY = 0.95  # share of the runs whose error a quantile tells

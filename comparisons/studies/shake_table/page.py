@@ -9,22 +9,8 @@ from ...measuring.statistics import EQUAL, TOO_FEW, wilson
 from ...running.provenance import Result
 from ...showing.charts import Axis
 from ...showing.figures import ranks
-from ...showing.parts import (
-    NAME,
-    Column,
-    Endings,
-    Figure,
-    Glance,
-    Head,
-    Judgement,
-    Page,
-    Table,
-    grouped,
-    number,
-    percent,
-    table,
-    where,
-)
+from ...showing.glance import Endings, Glance
+from ...showing.parts import NAME, Column, Figure, Head, Judgement, Page, Table, grouped, number, percent, table, where
 from ...showing.wording import equal_mark
 from . import at_hand
 from .campaign import outcomes_of

@@ -13,11 +13,11 @@ from ...measuring.statistics import wilson
 from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, curve, figure, key_of
 from ...showing.figures import lines, ranks
+from ...showing.glance import Glance, counted
 from ...showing.parts import (
     NAME,
     Column,
     Figure,
-    Glance,
     Judgement,
     Mark,
     Page,
@@ -29,7 +29,7 @@ from ...showing.parts import (
     typeset,
     where,
 )
-from ...showing.wording import NOT_COMPARED, counted
+from ...showing.wording import NOT_COMPARED
 
 TRUSTED = 0.95  # share of right runs, of those not left out
 APART = 0.008  # of friction: marks at one place stand side by side

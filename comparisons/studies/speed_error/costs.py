@@ -10,13 +10,12 @@ from engines import ENGINES, get_engine
 
 from ...measuring.scripts import NAME as SCRIPT
 from ...running.provenance import Result
+from ...showing.glance import Curve, Glance
 from ...showing.parts import (
     COST,
     NAME,
     UNITS,
     Column,
-    Curve,
-    Glance,
     Judgement,
     Mark,
     Row,
