@@ -7,7 +7,7 @@ import pytest
 
 from comparisons.report.answer import setups_of
 from comparisons.report.first import QUESTION, lines, screen, shown, title
-from comparisons.showing.glance import WIDE, Curve, Endings, Glance, costs, endings
+from comparisons.showing.glance import WIDE, Curve, Endings, Glance, costs, counted, endings
 from comparisons.showing.parts import RESTITUTION, Judgement, Mark, Table
 
 TUNED, PLAIN, MORE = ("exudyn", "compliant-corners"), ("exudyn", "native-contact"), ("mujoco", "impact-aware")
