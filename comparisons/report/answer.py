@@ -215,7 +215,7 @@ def not_to_do(setups: Sequence[Setup]) -> list[str]:
     if defaults:
         bad = sum(one.rating.level == "bad" for one in defaults)
         lines.append(
-            f"Do not use an engine as it comes: of {len(defaults)} that were tested {bad} are not to be trusted."
+            f"Do not use an engine with its defaults: of {len(defaults)} that were tested {bad} are not to be trusted."
         )
     lines.append(
         "Check how close the outcome is to changing (rocking margin SCENE), and do not rely on it if your data are "

@@ -10,7 +10,7 @@ from .answer import Setup
 
 QUESTION = "How far can a multibody engine be trusted with a rocking body, and at what cost?"
 TUNED, DEFAULTS = "tuned", "defaults"
-HOW = ((TUNED, "tuned"), (DEFAULTS, "as it comes"))
+HOW = ((TUNED, "tuned"), (DEFAULTS, "with defaults"))
 
 
 def screen(setups: Sequence[Setup], judgements: Sequence[Judgement], glances: Iterable[Glance]) -> dict[str, Any]:
@@ -37,7 +37,7 @@ def way_of(words: str) -> str:
 
 
 def shown(found: Sequence[Endings], setups: Sequence[Setup]) -> list[Endings]:
-    """Those of the engines in question, tuned and as they come, in the order of the first table: defaults first."""
+    """Those of the engines in question in the order of the first table, of each kind of motion: defaults first."""
     columns = {(one.engine, one.variant): place for place, one in enumerate(setups) if one.in_first_table}
     kept = [one for one in found if (one.engine, one.variant) in columns]
     motions = list(dict.fromkeys(one.motions for one in kept))
@@ -50,7 +50,7 @@ def title(setups: Sequence[Setup]) -> str:
     """The answer in a sentence, where it is as clear as that; else the question."""
     levels = {tier: {one.rating.level for one in _columns(setups, tier)} for tier in (TUNED, DEFAULTS)}
     if levels[TUNED] and levels[DEFAULTS] == {"bad"} and "bad" not in levels[TUNED]:
-        return "An engine as it comes misjudges a rocking block; tuned, it seldom does."
+        return "With defaults a physics engine misjudges a rocking block; tuned, it seldom does."
     return QUESTION
 
 
@@ -78,20 +78,30 @@ def _restitution(setups, judgements):
     parts = []
     for tier, how in HOW if head else ():
         marks = {one.engine: one.marks[head] for one in _columns(setups, tier)}
-        told = [f"{engine} by {number(mark.value, 2)}" for engine, mark in marks.items() if mark.value is not None]
-        missed = any("missed" in mark.words for mark in marks.values())
-        if told:
-            parts.append(f"{how}, {listed(told)}{', and impacts are missed' if missed else ''}")
-    return f"at an impact it is off (rms): {'; '.join(parts)}." if parts else ""
+        known = {engine: mark for engine, mark in marks.items() if mark.value is not None}
+        deaf = [engine for engine, mark in known.items() if "missed" in mark.words]
+        missed = ", and both miss impacts" if len(deaf) == 2 else f", and {listed(deaf)} misses impacts" if deaf else ""
+        if known:
+            errors = listed([number(mark.value, 2) for mark in known.values()])
+            parts.append(
+                f"{how} by {errors}{missed}" if parts else f"{how}, {listed(list(known))} err by {errors}{missed}"
+            )
+    return f"{'; '.join(parts)} (rms, of a number below 1)." if parts else ""
 
 
 def _outcomes(shares):
-    """How many runs end otherwise under recorded motions, or under the first others that were run."""
+    """How many runs end otherwise under recorded motions, or under the first others that were run; and which way."""
     motions = next((one.motions for one in shares if "record" in one.motions), shares[0].motions if shares else "")
     parts = []
     for tier, how in HOW:
         some = [one for one in shares if one.motions == motions and one.kind == tier]
-        told = [f"{one.engine} in {one.differing} of {one.runs}" for one in some]
-        if told:
-            parts.append(f"{how}, {listed(told)}")
-    return f"under {motions} they differ from the model’s: {'; '.join(parts)}." if parts else ""
+        runs = listed(list(dict.fromkeys(str(one.runs) for one in some)))
+        if some:
+            differ = listed([str(one.differing) for one in some])
+            whose = f"{how}, {listed([one.engine for one in some])}" if not parts else how
+            parts.append(f"{whose} in {differ} of {runs}")
+    if not parts:
+        return ""
+    ways = [sum(getattr(one, way) for one in shares if one.kind == DEFAULTS) for way in ("missed", "added")]
+    unsafe = f" In all, defaults miss {ways[0]} overturnings and add {ways[1]}." if any(ways) else ""
+    return f"under {motions} they differ from the analytic model’s: {'; '.join(parts)}.{unsafe}"

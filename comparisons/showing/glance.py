@@ -10,7 +10,7 @@ from markupsafe import Markup
 
 from ..measuring.statistics import equality
 from .charts import LETTER, WIDTH, Axis, Chart
-from .parts import Figure, Table, grouped, percent, power_of_ten
+from .parts import Figure, Table, grouped, percent
 
 
 @dataclass(frozen=True)
@@ -68,29 +68,33 @@ class Glance:
 
 
 WIDE = 590
-FINEST, WORST = 1e-11, 1.0  # of errors; what lies beyond stands at the frame
+FINEST, WORST = 1e-9, 1.0  # of errors; what lies beyond stands at the frame
 TICKS = (
-    *((10.0**power, power_of_ten(10.0**power)) for power in (-10, -8, -6)),
+    (1e-8, "10⁻⁶ %"),
+    (1e-6, "10⁻⁴ %"),
     (1e-4, "0.01 %"),
+    (1e-3, "0.1 %"),
     (1e-2, "1 %"),
+    (1e-1, "10 %"),
     (1.0, "100 %"),
 )
 SPEEDS = tuple(
     (10.0**power, words)
-    for power, words in enumerate(("0.01 ms", "0.1 ms", "1 ms", "10 ms", "0.1 s", "1 s", "10 s"), -5)
+    for power, words in enumerate(("0.01 ms", "0.1 ms", "1 ms", "10 ms", "100 ms", "1 s", "10 s"), -5)
 )
-LINE = 16  # height of a row of the second chart
+LINE = 15  # height of a row of the second chart
 COLUMNS: tuple[tuple[int, str, Callable[[Endings], str]], ...] = (
-    (78, "differ", lambda one: f"{one.differing} of {one.runs}"),
-    (128, "missed", lambda one: _count(one.missed)),
-    (174, "added", lambda one: _count(one.added)),
-    (218, "failed", lambda one: _count(one.failed)),
+    (76, "differ", lambda one: f"{one.differing} of {one.runs}"),
+    (128, "missed", lambda one: str(one.missed)),
+    (174, "added", lambda one: str(one.added)),
+    (215, "other", lambda one: str(one.other)),
+    (260, "failed", lambda one: str(one.failed)),
 )  # beside the bars: where a column ends, its head, its words
 WAYS = {
-    "missed": "misses the overturning",
-    "added": "adds an overturning",
-    "other": "ends otherwise",
-    "failed": "fails",
+    "missed": "an overturning is missed",
+    "added": "one is added",
+    "other": "another difference",
+    "failed": "the run fails",
 }
 CLASSES = {"missed": "missed", "added": "added", "other": "other", "failed": "lost-run"}
 
@@ -131,8 +135,8 @@ class Box(NamedTuple):
 def costs(curves: Sequence[Curve]) -> Figure:
     """Error over cost of every solver, its levels joined, its name beside it."""
     caption = (
-        "A mark for each level; open: as the engine comes; a cross: impacts missed; at the frame: beyond it. Left and "
-        "low is better."
+        "One mark for each step, stiffness or tolerance; open: defaults; cross: impacts missed; on the frame: "
+        "off the scale. Lower left is better."
     )
     return _both([_costs(curves, width) for width in (WIDE, WIDTH)], caption)
 
@@ -144,12 +148,13 @@ def _costs(curves: Sequence[Curve], width: int) -> Chart:
     x = Axis("CPU time per simulated second", low, high, "log", tuple(t for t in SPEEDS if low <= t[0] <= high))
     y = Axis("error of peak tilt over the slenderness", FINEST, WORST * 1.0001, "log", TICKS)
     says = f"Error of peak tilt over CPU time of {', '.join(one.who for one in shown)}."
-    chart = Chart(x, y, says, height=400 if width == WIDE else 420, width=width, left=66, right=16)
+    chart = Chart(x, y, says, height=400 if width == WIDE else 420, width=width, left=72, right=16)
     places = {}
     for one in sorted(shown, key=lambda one: one.subject):
         cpu, errors, sound, told = zip(*one.points, strict=True)
         errors = tuple(min(max(error, FINEST), WORST) for error in errors)
-        chart.line(cpu, errors, one.who, thin=not one.subject)
+        grey = not one.subject and one.kind != "model"  # the other engines stand behind
+        chart.line(cpu, errors, one.who, grey=grey, thin=not one.subject)
         for whole in (True, False):
             some = [k for k in range(len(cpu)) if sound[k] == whole]
             chart.dots(
@@ -160,6 +165,7 @@ def _costs(curves: Sequence[Curve], width: int) -> Chart:
                 small=not one.subject and one.kind != "model",
                 says=[told[k] for k in some],
                 mark=None if whole else "x",
+                grey=grey,
             )
         places[one.who] = chart.at(cpu, errors)
     named = [one for one in shown if width == WIDE or one.subject or one.kind == "model"]  # the others: by the pointer
@@ -191,12 +197,14 @@ def _beside(name, places):
             ((0, -9), "middle", x - long / 2),
             ((0, 18), "middle", x - long / 2),
             ((-8, 4.5), "end", x - 8 - long),
+            ((0, -24), "middle", x - long / 2),
+            ((0, -39), "middle", x - long / 2),
             ((6, -8), "start", x + 6),
             ((6, 17), "start", x + 6),
             ((-6, -8), "end", x - 6 - long),
             ((-6, 17), "end", x - 6 - long),
         ):
-            yield Box(left, y + aside[1] - 11, left + long, y + aside[1] + 3), (x, y), aside, anchor
+            yield Box(left, y + aside[1] - 10, left + long, y + aside[1] + 3), (x, y), aside, anchor
 
 
 def _cover(chart, box, taken, marks):
@@ -216,7 +224,8 @@ def endings(found: Iterable[Endings]) -> Figure:
     """Shares of runs that end otherwise than the model's, motion by motion."""
     rows = list(found)
     caption = (
-        "Share of runs that end otherwise than the model's, with 95 % intervals; a failed run counts as differing."
+        "Bars: share of runs; lines: 95 % intervals. “Other”: rocks or stands, or falls at another time. Defaults were "
+        "run on fewer of the same scenes."
     )
     return _both([_endings(rows, width) for width in (WIDE, WIDTH)], caption)
 
@@ -229,7 +238,7 @@ def _endings(rows: Sequence[Endings], width: int) -> Chart:
     chart = Chart(
         Axis("", 0, 1, ticks=((0, "0"), (0.25, "25 %"), (0.5, "50 %"), (0.75, "75 %"), (1, "100 %"))),
         Axis("", len(lines) - 0.4, -0.6, ticks=()),
-        f"Share of runs that end otherwise than the model's: {'; '.join(map(_told, rows))}.",
+        f"Share of runs whose outcome differs: {'; '.join(map(_told, rows))}.",
         height=52 + LINE * len(lines),
         width=width,
         left=12 + round(LETTER * 0.53 * max(len(f"{one.engine}, {one.kind}") for one in rows)),
@@ -253,10 +262,6 @@ def _endings(rows: Sequence[Endings], width: int) -> Chart:
         for aside, _, text in shown:
             chart.beside(1, place, text(one), aside=(aside, 4.5), anchor="end")
     return chart
-
-
-def _count(number: int) -> str:
-    return str(number) if number else "–"
 
 
 def _told(one: Endings) -> str:

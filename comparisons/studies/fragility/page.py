@@ -181,7 +181,7 @@ def glance(result: Result) -> Glance:
         for row in where(result.rows, part="run")
         if row["class"] != "left out"
     ]
-    return Glance(endings=counted("synthetic motions", runs))
+    return Glance(endings=counted("synthetic earthquakes", runs))
 
 
 def _title(found):

@@ -151,7 +151,7 @@ def glance(result: Result) -> Glance:
         for row in where(result.rows, part="run")
         if row["class"] != "left out"
     ]
-    return Glance(endings=counted("recorded motions", runs))
+    return Glance(endings=counted("recorded earthquakes", runs))
 
 
 def summary(rows: Sequence[dict[str, Any]]) -> Iterator[dict[str, Any]]:

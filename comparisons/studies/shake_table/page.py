@@ -126,8 +126,8 @@ def glance(result: Result) -> Glance:
     alone = len({row["specimen"] for row in rows}) == 1
     endings = tuple(
         Endings(
-            "shake table", row["engine"], row["variant"], row["tier"], row["size"], row["failed"], row["only_a"],
-            row["only_b"], 0, tuple(row["interval"])
+            "motions of a shake table", row["engine"], row["variant"], row["tier"], row["size"], row["failed"],
+            row["only_a"], row["only_b"], 0, tuple(row["interval"])
         )
         for row in rows
         if row["specimen"] == ALL or alone

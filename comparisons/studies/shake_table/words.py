@@ -7,7 +7,7 @@ from typing import Any
 from ...running.provenance import Result
 from ...showing.parts import number, percent, short, where
 from ...showing.wording import listed
-from .judging import AS_IT_IS, BY_RECORD, CURVE, EACH, MODEL, THRESHOLD
+from .judging import AS_IT_IS, BY_RECORD, CURVE, EACH, FREQUENT, MODEL, THRESHOLD
 from .measures import CORNER
 from .runs import ALL
 
@@ -45,12 +45,21 @@ def sentence(result: Result, engines: Sequence[dict[str, Any]]) -> str:
 
 
 def at_a_glance(result: Result) -> str:
-    """How often the model is right about real blocks; "" where it was not judged."""
-    rows = where(result.rows, part="score", judged=BY_RECORD, forecast=MODEL)
-    if not rows:
+    """How often the model is right about real blocks, beside a guess and tuned engines; "" where it was not judged."""
+    scores = where(result.rows, part="score", judged=BY_RECORD)
+    right = {name: [row["right"] for row in where(scores, forecast=name)] for name in (MODEL, FREQUENT)}
+    if not right[MODEL]:
         return ""
-    right, names = (listed([str(row[key]) for row in rows]) for key in ("right", "specimen"))
-    return f"on a shake table the model predicts {right} of {rows[0]['size']} outcomes ({names})."
+    shares = listed([percent(one / len(result.settings["tests"])) for one in right[MODEL]])
+    guess = listed([percent(one / len(result.settings["tests"])) for one in right[FREQUENT]])
+    own = [row["right"] for row in where(result.rows, part="engine", tier="tuned") if row["right"] is not None]
+    engines = [percent(one / len(result.settings["tests"])) for one in (min(own), max(own))] if own else []
+    tuned = f", tuned engines {' to '.join(dict.fromkeys(engines))}" if engines else ""
+    names = listed([one["name"] for one in result.settings["specimens"]])
+    return (
+        f"on a shake table the model predicts {shares} of the outcomes ({names}){tuned}, the commoner outcome {guess}; "
+        "restitution was not measured."
+    )
 
 
 def _unsafe(row):

@@ -177,7 +177,7 @@ def glance(result: Result) -> Glance:
         }
         for row in judged(result)
     ]
-    return Glance(endings=counted("sliding blocks", runs))
+    return Glance(endings=counted("blocks that may slide", runs))
 
 
 def summed(cells: Iterable[Mapping[str, Any]], key: Any) -> list[dict[str, Any]]:

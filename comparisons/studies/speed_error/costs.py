@@ -28,6 +28,7 @@ from ...showing.parts import (
     table,
     where,
 )
+from ...showing.wording import listed
 from .cases import NEEDED, PLAIN
 
 FINE, FINE_LEVELS, FINEST = "horizon_tilt", (1e-6, 1e-9, 1e-12), 1e-16  # of integrators alone; the last is drawn
@@ -173,7 +174,7 @@ def glance(result: Result) -> Glance | None:
     return Glance(
         says={"cost": words} if (words := _words(result)) else {},
         curves=tuple(_curves(result, rows)),
-        scene="a block rocking on bearings, under a record",
+        scene="a block rocking on bearings",
         advice=advice(result),
     )
 
@@ -235,10 +236,11 @@ def advice(result: Result) -> Table | None:
         subjects = {name: row for name, row in found.items() if ENGINES[row["engine"]].subject}
         for name, row in list(subjects.items())[:1] or [("", None)]:
             rows.append([f"{percent(error, 1)}", *_advised(name, row, found)])
-    heads = ("accuracy", "engine, variant", "level", "CPU time per simulated second", "cheaper", "its script")
+    names = listed([name for name, engine in ENGINES.items() if engine.subject])
+    heads = ("accuracy", "use", "setting", "CPU time per simulated second", "cheaper elsewhere", "as a script")
     caption = (
-        "What to use: the cheapest engine in question whose peak tilt (record) and overturning amplitude (pulses) have "
-        "the accuracy"
+        f"What to use: the cheaper of {names}, tuned, whose peak tilt in an earthquake and whose smallest overturning "
+        "pulse are that accurate"
     )
     return Table(caption, heads, rows)
 
@@ -250,18 +252,22 @@ def _advised(name, row, found):
     other = "none" if cheaper[0] == name else f"{cheaper[0]}, {number(1e3 * cheaper[1]['cpu_per_second'], 2)} ms"
     script = f"rocking script {row['engine']} SCENE" if ENGINES[row["engine"]].script else "–"
     unit = UNITS.get(row["parameter"], "")
-    level = f"{row['parameter'].replace('_', ' ')} {short(row['level'])} {unit}".strip()
+    level = f"{row['parameter'].replace('_', ' ')} {number(row['level'], 2)} {unit}".strip()
     return [name, level, f"{number(1e3 * row['cpu_per_second'], 2)} ms", other, script]
 
 
 def _words(result):
-    """The sentence on cost: what the accuracy `ASKED` costs the engines in question, and the model."""
-    found = {name: row for name, row in advised(result, ASKED).items() if ENGINES[row["engine"]].subject}
-    costs = equal_costs(result).get(KERNEL, {}).get((PLAIN, "peak_tilt"))
-    if not found or not costs or costs[ASKED] is None:
+    """The sentence on cost: what the accuracy `ASKED` costs the engines in question over the model, tuned."""
+    found = ratios(result)
+    told = {
+        one["engine"]: ratio
+        for one in result.settings["variants"]
+        if (ratio := found.get(NAME.of(one))) and one["tier"] == "tuned" and ENGINES[one["engine"]].subject
+        if get_engine(one["engine"]).default_variant == one["variant"]
+    }
+    if not told:
         return ""
-    own = " and ".join(f"{number(1e3 * row['cpu_per_second'], 2)} ms in {row['engine']}" for row in found.values())
+    times = listed([number(ratio, 2) for ratio in told.values()])
     return (
-        f"a peak tilt to {percent(ASKED, 1)} takes {own} of CPU time per simulated second, and "
-        f"{number(1e3 * costs[ASKED], 2)} ms in the analytic model."
+        f"for {percent(ASKED, 1)} of peak tilt, {listed(list(told))}, tuned, take {times} times the model’s CPU time."
     )
