@@ -83,9 +83,8 @@ def _restitution(setups, judgements):
         missed = ", and both miss impacts" if len(deaf) == 2 else f", and {listed(deaf)} misses impacts" if deaf else ""
         if known:
             errors = listed([number(mark.value, 2) for mark in known.values()])
-            parts.append(
-                f"{how} by {errors}{missed}" if parts else f"{how}, {listed(list(known))} err by {errors}{missed}"
-            )
+            whose = how if parts else f"{how}, {listed(list(known))} {'err' if len(known) > 1 else 'errs'}"
+            parts.append(f"{whose} by {errors}{missed}")
     return f"{'; '.join(parts)} (rms, of a number below 1)." if parts else ""
 
 
