@@ -138,6 +138,16 @@ def subject(row: Row) -> bool:
     return row["engine"] in ENGINES and ENGINES[row["engine"]].subject
 
 
+def kind(row: Row) -> str:
+    """Engine and kind of a row's variant: "exudyn, tuned"."""
+    return f"{row['engine']}, {row['tier']}"
+
+
+def as_it_comes(row: Row) -> bool:
+    """Whether a row is of a variant as the engine comes: open marks."""
+    return row["tier"] == "defaults"
+
+
 def _of_one(series, engines):
     """{series: its look} where all are of one solver, and more than its own looks tell apart: the model has one."""
     most = 1 if engines == {REFERENCE} else len(LOOKS)

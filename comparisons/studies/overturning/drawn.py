@@ -8,7 +8,7 @@ import numpy as np
 
 from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure, key_of, log_axis, room
-from ...showing.figures import beside, lines, subject
+from ...showing.figures import as_it_comes, beside, kind, lines, subject
 from ...showing.parts import NAME, Column, Figure, Row, grouped, number, percent, short, where
 
 LIMIT, FAIR = 0.005, 0.03  # shifts of a trusted and of a usable engine
@@ -38,18 +38,17 @@ def shifts(result: Result) -> Figure | None:
     settings, own = result.settings, result.settings["default_variants"]
     rows = grouped(where(result.rows, part={"shift", "drawn shift"}), NAME.of)
     every = [one for one in settings["variants"] if (NAME.of(one),) in rows]
-    shown = [one for one in every if one["tier"] == "defaults" or own.get(one["engine"]) == one["variant"]]
+    shown = [one for one in every if as_it_comes(one) or own.get(one["engine"]) == one["variant"]]
     if not shown:
         return None
     shown.sort(key=lambda one: not subject(one))
     left_out = "; ".join(NAME.of(one) for one in every if one not in shown)
     strip = _strip(shown, rows, pressed(result), list(settings["grounds"]))
     caption = (
-        f"Left: all boundaries at their shifts, known to ± {percent(settings['tolerance'] / 2, 1)}; within a row from "
-        f"above: {', '.join(settings['grounds'])}, drawn blocks. Filled: tuned; open: defaults; bars: boundaries with "
-        "N < 0, which do not count. Cross at the frame: not found, with their number, + those with N < 0."
-        + f" Not drawn, but in the table: {left_out}."
-        * bool(left_out)
+        f"Left: all boundaries at their shifts, known to ±\u00a0{percent(settings['tolerance'] / 2, 1)}; within a row "
+        f"from above: {', '.join(settings['grounds'])}, drawn blocks. Filled: tuned; open: defaults; bars: boundaries "
+        "with N\u00a0<\u00a00, which do not count. Cross at the frame: not found, with their number, + those with "
+        "N\u00a0<\u00a00. Arrowhead: nearer to 0." + f" Not drawn, but in the table: {left_out}." * bool(left_out)
     )
     ground, shape = next(iter(settings["grounds"])), settings["shapes"][0]
     words = " Right: the analytic model under one of the pulses; shaded: overturns; dots: boundaries that are sought."
@@ -57,7 +56,7 @@ def shifts(result: Result) -> Figure | None:
 
 
 def _strip(shown, rows, sound, grounds):
-    names = [f"{one['engine']}, {one['tier']}" for one in shown]
+    names = list(map(kind, shown))
     known = [SHIFT.of(row) for some in rows.values() for row in some if row["shift"]]
     axis = log_axis(SHIFT.head, [*known, 100 * LIMIT])
     told, lost = [], []
@@ -70,7 +69,9 @@ def _strip(shown, rows, sound, grounds):
         lost.append((missing.count(True), missing.count(False)))
     chart = Chart(
         Axis(axis.label, axis.low, axis.high, "log", tuple((tick, short(tick)) for tick in DECADES)),
-        Axis("", len(shown) - 0.5, -0.5, ticks=tuple(enumerate(names))),
+        Axis(
+            "", len(shown) - 0.5, -0.5, ticks=tuple((k, f"{name}\u2002") for k, name in enumerate(names))
+        ),  # room for an arrowhead
         f"{SHIFT.head}: {'; '.join(told)}.",
         title="shift of every boundary",
         height=92 + LINE * len(shown),
@@ -82,7 +83,7 @@ def _strip(shown, rows, sound, grounds):
     chart.heading(100 * LIMIT, "trusted")
     chart.beside(axis.high, -0.5, "not found", aside=(54, -5), anchor="end")
     for line, (one, name) in enumerate(zip(shown, names, strict=True)):
-        _row(chart, line, name, rows[NAME.of(one),], sound, grounds, one["tier"] != "defaults")
+        _row(chart, line, name, rows[NAME.of(one),], sound, grounds, not as_it_comes(one))
         if any(lost[line]):
             chart.dots([axis.high], [line], name, mark="x", says=[f"{name}: {sum(lost[line])} not found"])
             words = f"{lost[line][0]}" + f" + {lost[line][1]}" * bool(lost[line][1])
