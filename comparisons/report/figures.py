@@ -98,7 +98,7 @@ def _pair(result, name, rows, column, label, scale):
     marked = bool(scene["horizon"]) and scene["horizon"] < 0.99 * end
     beside = Chart(
         Axis("time [s]", 0.0, end),
-        Axis("|engine − model|", LEAST, 10.0 ** max(np.ceil(np.log10(most)), -7), "log"),
+        Axis(f"|engine − model| {label[label.index('[') :]}", LEAST, 10.0 ** max(np.ceil(np.log10(most)), -7), "log"),
         f"{scene['name']}: how far the engines are from the analytic model in {label}; largest: {largest}.",
         title=f"{scene['name']}: {WORDS[column]}, error",
         height=240,

@@ -281,6 +281,7 @@ class Chart:
             up=[(y, word) for y, (_, word) in zip(ys, up, strict=True)],
             slanted=slanting([word for _, word in across], self.right - self.left),
             labels=self._labels(),
+            begin=max(0, min(self.left, self.width - round(0.64 * LETTER * len(self.title)))),  # of the title
         )
 
     def _labels(self):

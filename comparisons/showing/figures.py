@@ -145,7 +145,7 @@ def kind(row: Row) -> str:
 
 def as_it_comes(row: Row) -> bool:
     """Whether a row is of a variant as the engine comes: open marks."""
-    return row["tier"] == "defaults"
+    return row.get("tier") == "defaults"
 
 
 def _of_one(series, engines):

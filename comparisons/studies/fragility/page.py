@@ -194,9 +194,9 @@ def _differing(found, tiers):
         sorted((row for row in found if row["runs"]), key=lambda row: (not subject(row), row["engine"] == REFERENCE)),
         NAME,
         Column("runs that differ or fail", "share", percent=True, within="interval"),
-        "Right: runs of each variant that end otherwise than the model’s, or fail, of both scenes; open: defaults.",
+        "Right: runs of each variant that end otherwise than the model’s, or fail, all scenes together; open: defaults.",
         Axis("runs that differ or fail", 0.0, 1.0, ticks=tuple((k / 4, f"{25 * k} %") for k in range(5))),
-        panel=lambda row: "all scenes: against the model",
+        panel=lambda row: "all scenes: engines",
         opened=lambda row: tiers.get(NAME.of(row)) == "defaults",
     )
 
