@@ -8,7 +8,7 @@ from scipy.stats import norm
 from ...measuring.statistics import EQUAL, TOO_FEW
 from ...running.provenance import Result
 from ...showing.charts import REFERENCE, Axis, Chart, figure
-from ...showing.figures import beside, ranks, shades, subject
+from ...showing.figures import as_it_comes, beside, ranks, shades, subject
 from ...showing.parts import NAME, Column, Glance, Head, Judgement, Page, grouped, number, percent, short, table, where
 from ...showing.wording import counted, equal_mark, tally
 
@@ -70,7 +70,7 @@ def page(result: Result) -> Page:
                     "intervals, over the measure of least dispersion for overturning. A lognormal curve is drawn where "
                     f"it fits, p ≥ {LEVEL:g}. Overturning: the small marks.",
                 ),
-                _differing(found, tiers),
+                _differing([{**row, "tier": tiers[NAME.of(row)]} for row in found]),
             ),
             table(
                 "All scenes together: runs with another outcome than the analytic model's or a fall at another time, "
@@ -188,16 +188,16 @@ def glance(result: Result) -> Glance:
     return Glance(endings=counted("synthetic motions", runs))
 
 
-def _differing(found, tiers):
+def _differing(found):
     """Of every variant, those in question first, the share of its runs that end otherwise than the model's."""
     return ranks(
         sorted((row for row in found if row["runs"]), key=lambda row: (not subject(row), row["engine"] == REFERENCE)),
         NAME,
         Column("runs that differ or fail", "share", percent=True, within="interval"),
-        "Right: runs of each variant that end otherwise than the model’s, or fail, all scenes together; open: defaults.",
+        "Right: runs of each variant that end otherwise than the model’s or fail, all scenes together; open: defaults.",
         Axis("runs that differ or fail", 0.0, 1.0, ticks=tuple((k / 4, f"{25 * k} %") for k in range(5))),
         panel=lambda row: "all scenes: engines",
-        opened=lambda row: tiers.get(NAME.of(row)) == "defaults",
+        opened=as_it_comes,
     )
 
 

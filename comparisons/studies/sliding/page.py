@@ -12,7 +12,7 @@ from ...measuring.errors import rms
 from ...measuring.statistics import wilson
 from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, curve, figure, key_of
-from ...showing.figures import lines, ranks
+from ...showing.figures import as_it_comes, lines, ranks
 from ...showing.parts import (
     NAME,
     Column,
@@ -72,8 +72,9 @@ def page(result: Result) -> Page:
                 NAME,
                 WRONG,
                 "Engines where the friction does not suffice: share of runs that differ or fail, with 95 % Wilson "
-                "intervals.",
+                "intervals; open marks: defaults.",
                 Axis(WRONG.head, 0.0, 1.0, ticks=tuple((k / 4, f"{25 * k} %") for k in range(5))),
+                opened=as_it_comes,
             ),
             table("By the kind of motion", summed(cells, "motion"), *_outcomes("motion")),
             table("By friction", summed(cells, _interval), *_outcomes(_interval)),
