@@ -22,6 +22,7 @@ ANALYTIC = "analytic"
 TILT = 0.01, 1.6  # least and largest limit of a tilt axis, over slenderness, so that contact noise is not shown
 SHOWN = 700  # samples of a line
 LEAST = 1e-9  # of a difference drawn
+WORDS = {"tilt": "tilt", "slip": "slip", "base_displacement": "displacement"}  # in the titles of panels
 
 
 def pairs(result: Result, name: str) -> Iterator[list[Chart]]:
@@ -83,7 +84,7 @@ def _pair(result, name, rows, column, label, scale):
         Axis("time [s]", 0.0, end),
         Axis(label, -limit, limit),
         f"{scene['name']}: {label} over time in {', '.join(lines)}.",
-        title=scene["name"],
+        title=f"{scene['name']}: {WORDS[column]}",
         height=240,
     )
     for who, (time, values) in lines.items():
@@ -97,9 +98,9 @@ def _pair(result, name, rows, column, label, scale):
     marked = bool(scene["horizon"]) and scene["horizon"] < 0.99 * end
     beside = Chart(
         Axis("time [s]", 0.0, end),
-        Axis("|engine − model|", LEAST, 10.0 ** max(np.ceil(np.log10(most)), -7), "log"),
+        Axis(f"|engine − model| {label[label.index('[') :]}", LEAST, 10.0 ** max(np.ceil(np.log10(most)), -7), "log"),
         f"{scene['name']}: how far the engines are from the analytic model in {label}; largest: {largest}.",
-        title="difference from the analytic model",
+        title=f"{scene['name']}: {WORDS[column]}, error",
         height=240,
         head=16 * marked,
     )

@@ -285,7 +285,7 @@ def restitution_section(result: Result, given: bool = False) -> Section:
 
 
 CAPTION = (
-    "Left: all solvers over each other. Right: how far the engines are from the analytic model, logarithmic. A "
+    "Left: all solvers over each other. Right: how far the engines are from the analytic model, 10⁻⁹ at least. A "
     "block that never lifts in any solver has no tilt to show."
 )
 

@@ -30,7 +30,6 @@ LETTER = 13
 REFERENCE = "analytic"
 INK = 25  # % of the page's ink in a solver's colour: so much gives each a contrast of 3.4 or more, light and dark
 HAIR = 0.5  # overlap of neighbouring cells of a map, so that rounding leaves no gap between them
-NEAR, ASIDE = 6.0, (0, 7, -7, 14, -14)  # marks nearer than this cover each other; where to put one instead
 DASHES = {"-": "", "--": "7 4", ":": "2 3.5", "-.": "8 3 2 3"}
 SHAPES = {
     "o": "M-4 0a4 4 0 1 0 8 0a4 4 0 1 0-8 0z",
@@ -41,7 +40,9 @@ SHAPES = {
     "P": "M-1.6-4.6h3.2v3h3v3.2h-3v3h-3.2v-3h-3v-3.2h3z",
     "x": "M-4-4L4 4M4-4L-4 4",
     "X": "M-4.5-2.5l2-2 2.5 2.5 2.5-2.5 2 2-2.5 2.5 2.5 2.5-2 2-2.5-2.5-2.5 2.5-2-2 2.5-2.5z",
+    "|": "M0-6V6",
 }
+OUTWARD = "M6.5-3.5L10 0 6.5 3.5"  # beside a mark at the frame, to the right: its value lies beyond
 
 
 class Look(NamedTuple):
@@ -129,7 +130,6 @@ class Chart:
         self.top, self.bottom = (30 if title else 12) + head, height - (foot or (46 if x.label else 28))
         self.height, self.parts, self.over = height, list[str](), list[str]()
         self.ends: list[tuple[float, str, str]] = []
-        self.taken, self.moved = list[tuple[float, float]](), False  # places of marks; whether one was moved
 
     def at(self, xs: Sequence[float] | np.ndarray, ys: Sequence[float] | np.ndarray) -> np.ndarray:
         """Places, shape (points, 2), of values."""
@@ -169,19 +169,24 @@ class Chart:
         says: Sequence[str] | None = None,
         mark: str | None = None,
         tone: str = "",
-        apart: bool = False,
+        beyond: bool = False,
         look: Look | None = None,
     ) -> None:
-        """Marks of one solver; says: what each tells under the pointer. apart: one that would cover another stands
-        beside it. look: of one curve of several.
+        """Marks of one solver; says: what each tells under the pointer. beyond: values outside the panel stand at its
+        frame, with an arrowhead. look: of one curve of several.
         """
         shape, kind = _mark(who, filled, look.mark if look else mark), "dot" if filled else "dot open"
         told = says or [""] * len(xs)
         marks = []
         for (x, y), words in zip(self.at(xs, ys), told, strict=True):
-            if self.left - 1 <= x <= self.right + 1 and self.top - 1 <= y <= self.bottom + 1:
-                place = self._free(x, y) if apart else x
-                marks.append(f'<path class="{kind}" transform="{_placed(place, y, small)}" d="{shape}"{_told(words)}/>')
+            at = min(max(x, self.left), self.right), min(max(y, self.top), self.bottom)
+            outside = math.hypot(x - at[0], y - at[1]) > 1
+            if outside and beyond:
+                angle = math.degrees(math.atan2(np.sign(round(y - at[1], 1)), np.sign(round(x - at[0], 1))))
+                arrow = f'<path class="beyond" transform="{_placed(*at, False)}rotate({angle:g})" d="{OUTWARD}"/>'
+                marks.append(arrow)
+            if beyond or not outside:
+                marks.append(f'<path class="{kind}" transform="{_placed(*at, small)}" d="{shape}"{_told(words)}/>')
         self.over.append(f"{_group(who, grey, tone, look)}{''.join(marks)}</g>")
 
     def reach(self, xs: Sequence[float], ys: Sequence[float], lows: Sequence[float], highs: Sequence[float],
@@ -191,14 +196,6 @@ class Chart:
         begins, ends = (self.at(xs, one) if along == "y" else self.at(one, ys) for one in (lows, highs))
         path = "".join(f"M{a[0]:.1f} {a[1]:.1f}L{b[0]:.1f} {b[1]:.1f}" for a, b in zip(begins, ends, strict=True))
         self.parts.append(f'{_group(who, grey, tone, look)}<path class="reach" d="{path}"/></g>')
-
-    def _free(self, x, y):
-        """The x near it where a mark covers no other one."""
-        free = (x + by for by in ASIDE if all(math.hypot(x + by - a, y - b) >= NEAR for a, b in self.taken))
-        place = next(free, x)
-        self.taken.append((place, y))
-        self.moved = self.moved or place != x
-        return place
 
     def area(self, xs: Sequence[float], ys: Sequence[float], kind: str) -> None:
         """A filled polygon; kind: its class."""
@@ -284,6 +281,7 @@ class Chart:
             up=[(y, word) for y, (_, word) in zip(ys, up, strict=True)],
             slanted=slanting([word for _, word in across], self.right - self.left),
             labels=self._labels(),
+            begin=max(0, min(self.left, self.width - round(0.64 * LETTER * len(self.title)))),  # of the title
         )
 
     def _labels(self):

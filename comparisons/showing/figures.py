@@ -15,6 +15,8 @@ from typing import Any
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
+from engines import ENGINES
+
 from .charts import REFERENCE, WIDTH, Axis, Chart, curve, figure, key_of, log_axis, room, slanting
 from .parts import Column, Figure, Key, Row, grouped, value_of
 
@@ -26,7 +28,6 @@ LOOKS: tuple[dict[str, Any], ...] = (
     {"filled": False, "small": True},
 )
 LONGEST = 14  # characters of a name beside a line; longer ones stand in the legend alone
-MOVED = " Marks that would cover each other stand side by side."
 Rule = tuple[str, float, str]
 
 
@@ -44,6 +45,7 @@ def lines(
     says: Callable[[Row], str] | None = None,
     joined: bool = True,
     like: Iterable[Row] = (),
+    opened: Callable[[Row], bool] | None = None,
 ) -> Figure | None:
     """Panels of lines and marks, one series for each engine and what tells its series apart; None: nothing to draw.
 
@@ -72,6 +74,8 @@ def lines(
         Whether a line joins the marks.
     like : iterable of dict
         Rows whose series get their looks first: figures of the same `like` draw a series alike.
+    opened : function
+        Rows whose series have open marks, all others filled ones, in place of looks in the order of the series.
     """
     rows = list(rows)
     kept = [row for row in rows if _drawn(x.of(row), "x" in log) and _drawn(y.of(row), "y" in log)]
@@ -90,6 +94,8 @@ def lines(
     ranked = grouped([*like, *(row for row in rows if not grey(row))], "engine", name)
     engines = grouped(ranked, lambda pair: pair[0]).values()
     looks = {who: LOOKS[rank % len(LOOKS)] for pairs in engines for rank, (_, who) in enumerate(pairs)}
+    if opened:
+        looks = {who: LOOKS[opened(members[0])] for (_, who), members in ranked.items()}
     looks |= _of_one([who for _, who in ranked], {engine for engine, _ in ranked})
     panels = grouped(kept, panel)
     names = {who: who.removeprefix(f"{engine}, ") if "look" in looks[who] else engine for engine, who in coloured}
@@ -119,14 +125,27 @@ def lines(
             if joined:
                 chart.line(*places, who, grey=not shown, look=look.get("look"))
             if engine != REFERENCE or "look" in look:
-                chart.dots(
-                    *places, who, grey=not shown, says=told, apart=shown and joined and "look" not in look, **look
-                )
+                chart.dots(*places, who, grey=not shown, says=told, **look)
             if ends and shown:
                 chart.label(places[1][-1], names[who], who, look=look.get("look"))
         charts.append(chart)
     keys = {who: key_of(who, joined=joined, **looks[who]) for _, who in coloured}
-    return figure(charts, caption + MOVED if any(chart.moved for chart in charts) else caption, keys, keys)
+    return figure(charts, caption, keys, keys)
+
+
+def subject(row: Row) -> bool:
+    """Whether a row is of an engine in question; the others are shown for comparison."""
+    return row["engine"] in ENGINES and ENGINES[row["engine"]].subject
+
+
+def kind(row: Row) -> str:
+    """Engine and kind of a row's variant: "exudyn, tuned"."""
+    return f"{row['engine']}, {row['tier']}"
+
+
+def as_it_comes(row: Row) -> bool:
+    """Whether a row is of a variant as the engine comes: open marks."""
+    return row.get("tier") == "defaults"
 
 
 def _of_one(series, engines):
@@ -144,9 +163,7 @@ def beside(*figures: Figure | None) -> Figure | None:
         return None
     keys = {who: key for one in found for who, key in one.keys.items()}
     svg, alt = b"".join(one.svg for one in found), " ".join(one.alt for one in found)
-    caption = " ".join(dict.fromkeys(one.caption.removesuffix(MOVED) for one in found))
-    moved = MOVED if any(one.caption.endswith(MOVED) for one in found) else ""
-    return Figure(svg, alt, caption + moved, tuple(keys), keys)
+    return Figure(svg, alt, " ".join(dict.fromkeys(one.caption for one in found)), tuple(keys), keys)
 
 
 def _drawn(value: Any, log: bool) -> bool:
@@ -168,6 +185,7 @@ def ranks(
     *,
     panel: Key = lambda row: "",
     rules: Sequence[tuple[float, str]] = (),
+    opened: Callable[[Row], bool] = lambda row: False,
 ) -> Figure | None:
     """Panels of values one below the other, each with its interval; None: nothing to draw.
 
@@ -180,11 +198,13 @@ def ranks(
     value : Column
         With ``within`` for the interval.
     axis : Axis
-        Of the values; what lies beyond stands at its end.
+        Of the values; what lies beyond stands at its end, with an arrowhead.
     panel : key
         Title of a row's panel.
     rules : sequence of (value, words)
         Lines to compare with, in every panel.
+    opened : function
+        Rows with an open mark.
     """
     kept = [row for row in rows if value.of(row) is not None]
     charts, engines = [], {row["engine"]: None for row in kept if row["engine"] != REFERENCE}
@@ -207,7 +227,8 @@ def ranks(
             who = "" if row["engine"] == REFERENCE else row["engine"]
             middle, *ends = np.clip([value.of(row), *value.ends(row)], axis.low, axis.high)
             chart.reach([middle], [place], ends[:1] or [middle], ends[1:] or [middle], who, along="x")
-            chart.dots([middle], [place], who, says=[f"{name.text(row)}: {value.text(row)}"])
+            told = [f"{name.text(row)}: {value.text(row)}"]
+            chart.dots([value.of(row)], [place], who, filled=not opened(row), says=told, beyond=True)
         charts.append(chart)
     return figure(charts, caption, engines) if charts else None
 

@@ -3,13 +3,12 @@
 import numpy as np
 
 from ...running.provenance import Result
-from ...showing.charts import Axis, Chart, figure
-from ...showing.figures import MOVED
+from ...showing.charts import Axis, Chart, figure, key_of
+from ...showing.figures import as_it_comes, kind, subject
 from ...showing.parts import NAME, Column, Page, table, where
 
 RIGID = "rigid ground"
 WINDOW = 20.0  # ms before and after the landing that are drawn
-INSTANT = 1.0  # ms: marks of a landing that takes less stand beside those of other engines
 MARKED = 40  # values of a line, at most, to mark each
 # frame: (its title, key of its values, unit of the page, label)
 FRAMES = {
@@ -80,7 +79,7 @@ def _frames(rows):
     charts = []
     for name, (title, key, unit, label) in FRAMES.items():
         series = []
-        for row in sorted(rows, key=lambda row: row["best"]):
+        for row in sorted(rows, key=_coloured):
             frame = row["frames"].get(name, {"time": []})
             time = 1e3 * np.array(frame["time"])
             near = np.abs(time) <= 1.5 * WINDOW
@@ -99,19 +98,21 @@ def _frames(rows):
             left=70,
         )
         for row, time, values in series:
-            grey = not row["best"]
-            chart.line(time, values, row["engine"], grey=grey)
+            grey, who, inside = not _coloured(row), kind(row), np.abs(time) <= WINDOW
+            chart.line(time, values, who, grey=grey)
             if len(values) <= MARKED:
-                at_once = not grey and float(np.ptp(time)) < INSTANT
-                if at_once:  # one mark of several in one place
-                    kept = np.sort(np.unique(np.round(values / room), return_index=True)[1])
-                    time, values = time[kept], values[kept]
-                says = [f"{NAME.of(row)}: {value:.3g}" for value in values]
-                chart.dots(time, values, row["engine"], grey=grey, filled=not grey, says=says, apart=at_once)
+                says = [f"{NAME.of(row)}: {value:.3g}" for value in values[inside]]
+                filled = not as_it_comes(row)
+                chart.dots(time[inside], values[inside], who, grey=grey, filled=filled, says=says, beyond=True)
         charts.append(chart)
     caption = (
-        "The first impact on rigid ground. Coloured: each engine’s main variant; grey: kind “defaults”. Only engines "
-        "whose position of the block is read have frames 2 and 3."
+        "The first impact on rigid ground. Coloured: each engine’s main variant, and the defaults of those in "
+        "question; grey: other defaults. Open marks: defaults; an arrowhead: beyond the frame. Only engines whose "
+        "position of the block is read have frames 2 and 3."
     )
-    caption += MOVED if any(chart.moved for chart in charts) else ""
-    return figure(charts, caption, [row["engine"] for row in rows if row["best"]])
+    keys = {kind(row): key_of(kind(row), filled=not as_it_comes(row)) for row in rows if _coloured(row)}
+    return figure(charts, caption, keys, keys)
+
+
+def _coloured(row):
+    return row["best"] or subject(row)

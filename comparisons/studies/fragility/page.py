@@ -7,8 +7,8 @@ from scipy.stats import norm
 
 from ...measuring.statistics import EQUAL, TOO_FEW
 from ...running.provenance import Result
-from ...showing.charts import Axis, Chart, figure
-from ...showing.figures import ranks, shades
+from ...showing.charts import REFERENCE, Axis, Chart, figure
+from ...showing.figures import as_it_comes, beside, ranks, shades, subject
 from ...showing.glance import Glance, counted
 from ...showing.parts import NAME, Column, Head, Judgement, Page, grouped, number, percent, short, table, where
 from ...showing.wording import equal_mark, tally
@@ -51,6 +51,7 @@ def page(result: Result) -> Page:
     chosen = [row for row in fits if row["measure"] == best.get(row["scene"], "PGA")]
     tones = dict(zip(dict.fromkeys(row["state"] for row in fits), TONES, strict=False))
     found = tallies(result)
+    tiers = {NAME.of(one): one["tier"] for one in result.settings["variants"]}
     few = [NAME.of(row) for row in where(found, equal=TOO_FEW)]
     return Page(
         _title(found),
@@ -61,12 +62,15 @@ def page(result: Result) -> Page:
             *([f"Too few motions to tell: {'; '.join(few)}."] if few else ()),
         ),
         first=(
-            _shares(
-                chosen,
-                tones,
-                "Share of runs of the analytic model that exceed each limit state, with 95 % Wilson intervals, over "
-                "the measure of least dispersion for overturning. A lognormal curve is drawn where it fits, "
-                f"p ≥ {LEVEL:g}. Overturning: the small marks.",
+            beside(
+                _shares(
+                    chosen,
+                    tones,
+                    "Left: the analytic model’s share of runs that exceed each limit state, with 95 % Wilson "
+                    "intervals, over the measure of least dispersion for overturning. A lognormal curve is drawn where "
+                    f"it fits, p ≥ {LEVEL:g}. Overturning: the small marks.",
+                ),
+                _differing([{**row, "tier": tiers[NAME.of(row)]} for row in found]),
             ),
             table(
                 "All scenes together: runs with another outcome than the analytic model's or a fall at another time, "
@@ -184,6 +188,19 @@ def glance(result: Result) -> Glance:
     return Glance(endings=counted("synthetic earthquakes", runs))
 
 
+def _differing(found):
+    """Of every variant, those in question first, the share of its runs that end otherwise than the model's."""
+    return ranks(
+        sorted((row for row in found if row["runs"]), key=lambda row: (not subject(row), row["engine"] == REFERENCE)),
+        NAME,
+        Column("runs that differ or fail", "share", percent=True, within="interval"),
+        "Right: runs of each variant that end otherwise than the model’s or fail, all scenes together; open: defaults.",
+        Axis("runs that differ or fail", 0.0, 1.0, ticks=tuple((k / 4, f"{25 * k} %") for k in range(5))),
+        panel=lambda row: "all scenes: engines",
+        opened=as_it_comes,
+    )
+
+
 def _title(found):
     words = [row["equal"] for row in found]
     count = f"{words.count('yes')} of {len(found)} variants of engines"
@@ -209,7 +226,7 @@ def _shares(rows, tones, caption):
             Axis(measure, low, high, "log", tuple((tick, short(tick)) for tick in TICKS if low <= tick <= high)),
             Axis("share of runs [-]", 0.0, 1.0),
             f"{scene}: share of runs that exceed {', '.join(row['state'] for row in members)}.",
-            title=scene,
+            title=f"{scene}: limit states",
             right=116,
             height=300,
         )

@@ -1,14 +1,10 @@
 """What is shown of the overturning study."""
 
-import itertools
 import statistics
 from functools import partial
 
-import numpy as np
-
 from ...running.provenance import Result
-from ...showing.charts import Axis, Chart, figure, key_of
-from ...showing.figures import MOVED, lines
+from ...showing.figures import lines
 from ...showing.glance import Endings, Glance
 from ...showing.parts import (
     NAME,
@@ -24,13 +20,13 @@ from ...showing.parts import (
     table,
     where,
 )
+from .drawn import AMPLITUDE, FAIR, FREQUENCY, GROUND, LIMIT, PULSE, maps, over_frequency, place, pressed
+from .drawn import shifts as drawn_shifts
 from .edges import APART, JUMPS
 from .edges import FREQUENCY as FREQUENCIES
 
-LIMIT, FAIR = 0.005, 0.03  # shifts of a trusted and of a usable engine
 RATINGS = {"good": "trusted", "fair": "usable", "bad": "not to be trusted"}
 EVIDENCE = 50  # failed runs shown, at most
-PLACE = ("ground", "shape", "frequency", "amplitude")
 REGIONS = {
     "scan": "coarse scan",
     "outside": "beyond the band, N ≥ 0",
@@ -38,9 +34,6 @@ REGIONS = {
     "inside": "within the band",
 }
 
-GROUND, PULSE = Column("ground", "ground"), Column("pulse", "shape")
-FREQUENCY = Column("pulse frequency over rocking frequency [-]", "frequency", digits=None)
-AMPLITUDE = Column("amplitude over g tan γ [-]", "amplitude", digits=6)
 NORMAL = Column("least N/(m g) of the analytic model [-]", "min_normal")
 FOUND = Column("found [-]", "{found} of {of}")
 MEDIAN = Column("median shift [%]", lambda row: row["median"] and 100 * row["median"])
@@ -48,10 +41,10 @@ LARGEST = Column("largest shift [%]", lambda row: row["largest"] and 100 * row["
 
 
 def page(result: Result) -> Page:
-    s, shapes = result.settings, result.settings["shapes"]
+    s = result.settings
     edges, shifts, held, drawn = (where(result.rows, part=part) for part in ("edge", "shift", "held", "drawn edge"))
-    pressed = _pressed(result)
-    known = [row for row in shifts if _place(row) in pressed]
+    sound = pressed(result)
+    known = [row for row in shifts if place(row) in sound]
     rated = list(_rated(result))
     own = s["default_variants"]
     tuned = {(one["engine"], one["variant"]) for one in s["variants"] if one["tier"] == "tuned"}
@@ -66,7 +59,7 @@ def page(result: Result) -> Page:
             *_under_jumps(result),
         ),
         first=(
-            _maps(result, shapes[:1]),
+            drawn_shifts(result),
             table(
                 f"Boundaries under all pulses on both grounds, and of {len(drawn)} blocks drawn in the promised range, "
                 f"block pressed on its base; outcomes further than {band} from those on both grounds; a boundary where "
@@ -84,13 +77,13 @@ def page(result: Result) -> Page:
             ),
         ),
         more=(
-            _maps(result, shapes[1:]),
+            maps(result, s["shapes"]),
             Head("Every boundary"),
-            _over_frequency([row for row in known if own[row["engine"]] == row["variant"]], s["engines"]),
+            over_frequency([row for row in known if own[row["engine"]] == row["variant"]]),
             _boundaries(
                 "Boundaries, and the engines' shifts, known to ± "
                 f"{percent(s['tolerance'] / 2, 1)}: block pressed on its base",
-                [edge for edge in edges if _place(edge) in pressed],
+                [edge for edge in edges if place(edge) in sound],
                 known,
             ),
             _drawn(drawn, where(result.rows, part="drawn shift")),
@@ -177,21 +170,12 @@ def glance(result: Result) -> Glance:
     )  # fmt: skip
 
 
-def _place(row):
-    return tuple(row[key] for key in PLACE)
-
-
-def _pressed(result):
-    """Places of the boundaries at which the block stays pressed on its base."""
-    return {_place(edge) for edge in where(result.rows, part={"edge", "drawn edge"}) if edge["min_normal"] >= 0}
-
-
 def _rated(result):
     """A summary and a rating of each variant that is run at its default, where the block stays pressed on its base;
     beyond: the boundaries where it does not."""
-    pressed = _pressed(result)
+    sound = pressed(result)
     for (name,), every in grouped(where(result.rows, part={"shift", "drawn shift"}), NAME.of).items():
-        members, others = ([row for row in every if (_place(row) in pressed) == inside] for inside in (True, False))
+        members, others = ([row for row in every if (place(row) in sound) == inside] for inside in (True, False))
         beyond = _summary(others) if others else {"of": 0, "found": 0, "largest": None}
         counts = [row for row in where(result.rows, part="confusion", region="outside") if NAME.of(row) == name]
         found, wrong = _summary(members), sum(row["only_a"] + row["only_b"] for row in counts)
@@ -235,93 +219,12 @@ def _title(best, tuned):
     return "; ".join([words, *lost])
 
 
-def _maps(result, shapes):
-    """Outcomes of the analytic model with the boundaries of the engines, and outcomes that differ."""
-    panels = [_map(result, ground, shape) for shape, ground in itertools.product(shapes, result.settings["grounds"])]
-    if not panels:
-        return None
-    differ = where(result.rows, part="disagreement", shape=set(shapes))
-    caption = (
-        f"Analytic model, {' and '.join(shapes)} pulse: shaded overturns, blank stands. Marks: the engines' "
-        "boundaries. Shifts too small to be seen here are in the table."
-        + f" Crosses: outcomes that differ further than {percent(result.settings['band'], 1)} from every boundary."
-        * bool(differ)
-    )
-    keys = {engine: key_of(engine, filled=False, joined=False) for engine in result.settings["engines"]}
-    return figure(panels, caption + MOVED * any(panel.moved for panel in panels), keys, keys)
-
-
-def _map(result, ground, shape):
-    frequency, amplitude = result.arrays["frequency"], result.arrays["amplitude"]
-    chart = Chart(
-        Axis(FREQUENCY.head, float(frequency[0]), float(frequency[-1])),
-        Axis(AMPLITUDE.head, float(amplitude[0]), float(amplitude[-1]), "log", ((1, "1"), (3, "3"), (10, "10"))),
-        f"Outcomes on {ground} over frequency and amplitude of a {shape} pulse, with boundaries of the engines.",
-        title=f"{ground}, {shape}",
-        height=300,
-    )
-    _shade(chart, frequency, amplitude, result.arrays[f"{ground}/{shape}"] >= 0)
-    here = where(result.rows, ground=ground, shape=shape)
-    for engine in result.settings["engines"]:
-        own = result.settings["default_variants"][engine]
-        rows = [row for row in where(here, part="shift", engine=engine, variant=own) if row["shift"] is not None]
-        told = [
-            f"{engine}: amplitude {number(row['amplitude'], 4)}, shifted by {percent(row['shift'])}" for row in rows
-        ]
-        amplitudes = [row["amplitude"] * (1 + row["shift"]) for row in rows]
-        chart.dots([row["frequency"] for row in rows], amplitudes, engine, filled=False, says=told, apart=True)
-        rows = where(here, part="disagreement", engine=engine)
-        told = [f"{engine}: differs at amplitude {AMPLITUDE.text(row)}" for row in rows]
-        chart.dots([row["frequency"] for row in rows], [row["amplitude"] for row in rows], engine, says=told, mark="x")
-    return chart
-
-
-def _shade(chart, frequency, amplitude, falls):
-    """Runs of amplitudes that overturn, as a polygon for each stretch of frequencies with the same number of runs."""
-    runs = []
-    for column in falls.T:
-        ends = np.flatnonzero(np.diff(np.concatenate([[0], column.astype(np.int8), [0]])))
-        runs.append([(amplitude[a], amplitude[min(b, len(amplitude)) - 1]) for a, b in ends.reshape(-1, 2)])
-    begin = 0
-    for _, stretch in itertools.groupby(runs, len):
-        columns = list(stretch)
-        end = begin + len(columns)
-        xs = list(frequency[begin:end])
-        if end < len(runs):  # into the next one, so that no seam is seen
-            xs.append(1.5 * frequency[end] - 0.5 * frequency[end - 1])
-            columns.append(columns[-1])
-        for run in zip(*columns, strict=True):
-            low, high = zip(*run, strict=True)
-            chart.area([*xs, *xs[::-1]], [*low, *high[::-1]], "falls")
-        begin = end
-
-
-def _over_frequency(shifts, engines):
-    aside = {engine: 0.24 * (k - 0.5 * (len(engines) - 1)) for k, engine in enumerate(engines)}
-    return lines(
-        [row for row in shifts if row["shift"] is not None],
-        Column(FREQUENCY.head, lambda row: row["frequency"] + aside[row["engine"]]),
-        Column("shift of the boundary, absolute [%]", lambda row: 100 * abs(row["shift"])),
-        "Boundary of the engine over that of the analytic model, less 1. Engines stand beside each other at each "
-        "frequency.",
-        panel="ground",
-        by=lambda row: f"overturning {'begins' if row['rises'] else 'ends'}",
-        log="y",
-        rules=[("y", 100 * LIMIT, "trusted")],
-        says=lambda row: (
-            f"{NAME.of(row)}: {percent(row['shift'])} at {row['shape']}, frequency {row['frequency']:g}, amplitude "
-            f"{AMPLITUDE.text(row)}"
-        ),
-        joined=False,
-    )
-
-
 def _boundaries(caption, edges, shifts, *columns):
     """A table of boundaries, with more columns, and the shifts of each setting in a column of its own."""
-    found = {(NAME.of(row), *_place(row)): row["shift"] for row in shifts}
+    found = {(NAME.of(row), *place(row)): row["shift"] for row in shifts}
 
     def shift(name, edge):
-        value = found.get((name, *_place(edge)))
+        value = found.get((name, *place(edge)))
         return "not found" if value is None else number(100 * value, 2)
 
     return table(
@@ -379,11 +282,9 @@ def _under_jumps(result):
     """A sentence on the tuned engines whose largest shift is under a pulse that begins with a jump; none without."""
     own = result.settings["default_variants"]
     rows = where(result.rows, part={"shift", "drawn shift"})
-    pressed, found = _pressed(result), []
+    sound, found = pressed(result), []
     for engine in result.settings["engines"]:
-        mine = [
-            row for row in where(rows, engine=engine, variant=own[engine]) if row["shift"] and _place(row) in pressed
-        ]
+        mine = [row for row in where(rows, engine=engine, variant=own[engine]) if row["shift"] and place(row) in sound]
         worst = max(mine, key=lambda row: abs(row["shift"]), default=None)
         if worst and worst["shape"] in JUMPS:
             found.append(f"{engine}: {percent(worst['shift'])} under a {worst['shape']} pulse")
@@ -417,8 +318,8 @@ def _refinement(result):
     """The boundaries at one frequency at all levels; at the default those that were searched more closely."""
     variants = {NAME.of(variant): variant for variant in result.settings["variants"]}
     tried = where(result.rows, part="refinement")
-    places, shifts = {_place(row) for row in tried}, where(result.rows, part="shift")
-    closer = [row for row in shifts if _place(row) in places and NAME.of(row) in map(NAME.of, tried)]
+    places, shifts = {place(row) for row in tried}, where(result.rows, part="shift")
+    closer = [row for row in shifts if place(row) in places and NAME.of(row) in map(NAME.of, tried)]
     known = {(NAME.of(row), row["level"]) for row in closer}
     rows = [row for row in tried if (NAME.of(row), row["level"]) not in known] + closer
     groups, order = grouped(rows, NAME.of, "level"), list(variants)

@@ -7,7 +7,7 @@ from analytic.response import EDGE
 from ...measuring.statistics import CLASSES, wilson
 from ...running.provenance import Result
 from ...showing.charts import Axis
-from ...showing.figures import ranks
+from ...showing.figures import as_it_comes, ranks
 from ...showing.parts import NAME, Column, Judgement, Mark, Page, grouped, table, typeset, where
 
 TRUSTED = 0.95  # share of right runs, of those not left out
@@ -32,8 +32,10 @@ def page(result: Result) -> Page:
                 counts,
                 NAME,
                 WRONG,
-                "Share of runs that differ from the analytic model or fail, with 95 % Wilson intervals.",
+                "Share of runs that differ from the analytic model or fail, with 95 % Wilson intervals. Open marks: "
+                "defaults; an arrowhead: none.",
                 Axis("runs that differ or fail", LEAST, 1.0, "log", TICKS),
+                opened=as_it_comes,
             ),
             table(
                 "Random scenes in the range of a statue: right in the outcome, the time of a fall, the number of "

@@ -10,7 +10,7 @@ from analytic.records.fema import PREFIX
 from ...measuring.statistics import TOO_FEW
 from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure, key_of
-from ...showing.figures import LOOKS
+from ...showing.figures import as_it_comes, kind, subject
 from ...showing.glance import Glance, counted
 from ...showing.parts import (
     NAME,
@@ -32,7 +32,8 @@ from .study import ERRORS
 
 MANY = 0.95  # share of the runs whose error a quantile tells
 BOTH = "both"  # of the column "configuration": free-standing and isolated together
-LEAST, FALLEN, MOST = 0.01, 4.0, 6.0  # tilt over slenderness: the axes begin, "overturns" stands, and they end
+# tilt over slenderness: the axes begin, "overturns" stands, and the model's axis and the engine's end, there "failed"
+LEAST, FALLEN, MOST, FAILED = 0.01, 4.0, 6.0, 10.0
 TICKS = ((0.01, "≤ 0.01"), (0.1, "0.1"), (1.0, "1"), (FALLEN, "overturns"))
 PEAKS = {"tilt": "peak tilt", "displacement": "peak base displacement"}
 WORDS = {
@@ -189,43 +190,51 @@ def _title(both: list[dict[str, Any]], equal: str) -> str:
 
 
 def _tilts(runs: list[dict[str, Any]]) -> Figure | None:
-    """Each run's peak tilt over the model's, of the tuned variants that run most; a panel for each configuration."""
-    groups = grouped(where(runs, tier="tuned"), "engine", "variant")
-    most = max(map(len, groups.values()), default=0)
-    shown = {pair: members for pair, members in groups.items() if len(members) == most}
-    looks: dict[tuple[str, str], Any] = {}
-    for engine, variant in shown:
-        looks[engine, variant] = LOOKS[sum(engine == other for other, _ in looks) % len(LOOKS)]
-    axis = (LEAST, MOST, "log", TICKS)
+    """Each run's peak tilt over the model's, of the engines in question, tuned and as they come; a panel for each
+    configuration."""
+    groups = grouped(runs, "engine", "variant", "tier").values()
+    shown = [members for members in groups if subject(members[0])]
+    firsts = [members[0] for members in shown]
+    ups = tuple((value, f"{word}\u2002") for value, word in (*TICKS, (FAILED, "failed")))  # room for half a mark
     charts = []
     for configuration in dict.fromkeys(row["configuration"] for row in runs):
-        x, y = (Axis(f"peak tilt over slenderness, {who}", *axis) for who in ("model [-]", "engine [-]"))
-        names = ", ".join(map(", ".join, shown))
-        says = f"{configuration}: peak tilt over slenderness of {names}, over the analytic model's."
-        chart = Chart(x, y, says, title=configuration, height=340, left=100)
+        names = ", ".join(map(NAME.of, firsts))
+        chart = Chart(
+            Axis("peak tilt over slenderness, model [-]", LEAST, MOST, "log", TICKS),
+            Axis("peak tilt over slenderness, engine [-]", LEAST, FAILED, "log", ups),
+            f"{configuration}: peak tilt over slenderness of {names}, over the analytic model's.",
+            title=f"{configuration}: peak tilt",
+            height=340,
+            left=100,
+        )
         chart.line([LEAST, FALLEN], [LEAST, FALLEN], tone="var(--faint)")
-        for pair, members in shown.items():
-            drawn = where(members, configuration=configuration, **{"class": {"right", "differs"}})
+        for members in sorted(shown, key=lambda some: not as_it_comes(some[0])):
+            drawn = where(members, configuration=configuration, **{"class": {"right", "differs", "failed"}})
             model, engine = ([_place(row, side) for row in drawn] for side in ("model_", ""))
-            chart.dots(model, engine, ", ".join(pair), says=[_says(row) for row in drawn], **looks[pair])
+            filled, says = not as_it_comes(members[0]), [_says(row) for row in drawn]
+            chart.dots(model, engine, kind(members[0]), filled=filled, says=says)
         charts.append(chart)
-    keys = {", ".join(pair): key_of(", ".join(pair), joined=False, **look) for pair, look in looks.items()}
+    keys = {kind(row): key_of(kind(row), filled=not as_it_comes(row), joined=False) for row in firsts}
+    left_out = "; ".join(NAME.of(members[0]) for members in groups if members not in shown)
     caption = (
         "One mark for each component that is judged: on the line, engine and model agree; where one of the two stands "
-        "at “overturns”, the outcome is another one."
+        "at “overturns”, the outcome is another one. Open: defaults, of fewer records; at the upper frame: failed runs."
+        + f" Not drawn, but in the table: {left_out}."
+        * bool(left_out)
     )
     return figure(charts, caption, keys, keys) if charts else None
 
 
 def _place(row, side):
-    return FALLEN if row[f"{side}outcome"] == "overturns" else max(row[f"{side}tilt"], LEAST)
+    at = {"overturns": FALLEN, "failed": FAILED}.get(row[f"{side}outcome"])
+    return at or max(row[f"{side}tilt"], LEAST)
 
 
 def _says(row):
     """What a mark tells; of a run that is right its place says enough."""
     if row["class"] == "right":
         return ""
-    here, there = (f"{row[f'{side}outcome']} ({number(row[f'{side}tilt'], 2)})" for side in ("", "model_"))
+    here, there = (f"{row[f'{side}outcome']} ({number(row.get(f'{side}tilt'), 2)})" for side in ("", "model_"))
     return f"{NAME.of(row)}, {RECORD.of(row)}: {here}, in the model {there}; {row['class']}"
 
 

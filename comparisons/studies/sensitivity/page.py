@@ -59,9 +59,9 @@ def page(result: Result) -> Page:
                 WHAT,
                 SHARE,
                 "Share of outcomes that each change alters, with 95 % Wilson intervals. Ink: changes of the scene in "
-                "the analytic model; coloured: the engines’ main variants, on the unchanged scene.",
+                "the analytic model; coloured: the engines’ main variants, on the unchanged scene. Arrowhead: none.",
                 Axis("outcomes changed", LEAST, 1.0, "log", TICKS),
-                panel="scene",
+                panel=lambda row: f"{row['scene']}: outcomes changed",
             ),
             *tables[:1],
         ),

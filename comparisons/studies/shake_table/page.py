@@ -8,7 +8,7 @@ from typing import Any
 from ...measuring.statistics import EQUAL, TOO_FEW, wilson
 from ...running.provenance import Result
 from ...showing.charts import Axis
-from ...showing.figures import ranks
+from ...showing.figures import as_it_comes, ranks
 from ...showing.glance import Endings, Glance
 from ...showing.parts import NAME, Column, Figure, Head, Judgement, Page, Table, grouped, number, percent, table, where
 from ...showing.wording import equal_mark
@@ -189,12 +189,13 @@ def _bars(result: Result, engines: Sequence[dict[str, Any]]) -> Figure | None:
         Axis(SHARE.head, first / 10, 1.0, ticks=tuple((tenth / 10, str(10 * tenth)) for tenth in marked)),
         panel="specimen",
         rules=rules,
+        opened=as_it_comes,
     )
 
 
 def _bar(row, name, right, within):
-    share = right / row["size"]
-    return {"engine": row["engine"], "specimen": row["specimen"], "name": name, "share": share, "within": within}
+    kept = {key: row.get(key) for key in ("engine", "specimen", "tier")}
+    return {**kept, "name": name, "share": right / row["size"], "within": within}
 
 
 def _between(row, model):

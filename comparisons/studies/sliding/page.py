@@ -12,7 +12,7 @@ from ...measuring.errors import rms
 from ...measuring.statistics import wilson
 from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, curve, figure, key_of
-from ...showing.figures import lines, ranks
+from ...showing.figures import as_it_comes, lines, ranks
 from ...showing.glance import Glance, counted
 from ...showing.parts import (
     NAME,
@@ -32,7 +32,6 @@ from ...showing.parts import (
 from ...showing.wording import NOT_COMPARED
 
 TRUSTED = 0.95  # share of right runs, of those not left out
-APART = 0.008  # of friction: marks at one place stand side by side
 LEAST_ERROR = 1e-6  # of a slip, at which the figure's axis begins
 ALL, FALLS = "all", "overturns"
 # share: (in words, of which scenes it is one, those scenes in words)
@@ -73,8 +72,9 @@ def page(result: Result) -> Page:
                 NAME,
                 WRONG,
                 "Engines where the friction does not suffice: share of runs that differ or fail, with 95 % Wilson "
-                "intervals.",
+                "intervals; open marks: defaults.",
                 Axis(WRONG.head, 0.0, 1.0, ticks=tuple((k / 4, f"{25 * k} %") for k in range(5))),
+                opened=as_it_comes,
             ),
             table("By the kind of motion", summed(cells, "motion"), *_outcomes("motion")),
             table("By friction", summed(cells, _interval), *_outcomes(_interval)),
@@ -288,13 +288,13 @@ def _shares(cells: Sequence[Mapping[str, Any]]) -> Figure | None:
             Axis("friction μ [-]", min(ends), max(ends)),
             Axis("share of scenes [-]", 0.0, 1.0),
             f"{support}: share of scenes, over friction, in which the block is {', '.join(looks)}.",
-            title=support,
+            title=f"{support}: what sliding does",
             height=300,
         )
         rows = summed(members, lambda cell: tuple(cell["friction"]))
-        for rank, (share, (words, whole, of)) in enumerate(SHARES.items()):
+        for share, (words, whole, of) in SHARES.items():
             drawn = [row for row in rows if row[whole]]
-            xs = [sum(row["name"]) / 2 + APART * (rank - 1) for row in drawn]
+            xs = [sum(row["name"]) / 2 for row in drawn]
             ys = [row[f"{share}_share"] for row in drawn]
             lows, highs = ([row[f"{share}_within"][end] for row in drawn] for end in (0, 1))
             told = [f"{words}, of those {of}: {_counted(row, share)}" for row in drawn]

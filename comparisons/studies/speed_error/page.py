@@ -125,7 +125,8 @@ def _shares(result):
 
 CAPTION = (
     "Left and low is better. Coloured: solvers of which a level and all finer ones keep 0.001; grey: the others, named "
-    "under the pointer. No error is given for levels with missed impacts. Errors below 10⁻⁹ are drawn there."
+    "under the pointer. Levels that failed, missed impacts or found no boundary have no error: table “Levels without "
+    "an error” of the study’s page. Errors below 10⁻⁹ are drawn there."
 )
 
 FINE_CAPTION = (

@@ -7,6 +7,7 @@ from engines.statue_range import in_words
 
 from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure
+from ...showing.figures import as_it_comes, kind, subject
 from ...showing.parts import NAME as ENGINE
 from ...showing.parts import Column, Head, Judgement, Mark, Page, grouped, short, table, where
 from .basis import FREE, SLIDING
@@ -47,6 +48,7 @@ def page(result: Result) -> Page:
     cases, measures = result.settings["cases"], result.settings["measures"]
     cells, variants = _cells(result), result.settings["variants"]
     within, apart = _parted(cases)
+    chosen = [one for one in variants if one["best"] or subject(one) and as_it_comes(one)]
     counts = sorted(_counts(result, cells), key=lambda row: -row[RIGHT])
     wrong = where(cells.values(), result={DIFFERS, FAILED})
     return Page(
@@ -70,7 +72,7 @@ def page(result: Result) -> Page:
             _matrix(
                 cells,
                 within,
-                where(variants, best=True),
+                chosen,
                 "Default levels. ✓ right, ~ differs, ≠ another outcome, ✗ failed; under the pointer: the measure "
                 "farthest outside its tolerance. 2nd code: the independent second implementation; steps: plain time "
                 "stepping of the equations. –: not run, or not modelled, as these two know no friction.",
@@ -85,11 +87,11 @@ def page(result: Result) -> Page:
             ),
         ),
         more=(
-            _matrix(cells, apart, where(variants, best=True), "Cases outside the range, counted apart."),
+            _matrix(cells, apart, chosen, "Cases outside the range, counted apart."),
             _matrix(
                 cells,
                 cases,
-                where(variants, best=False),
+                [one for one in variants if one not in chosen],
                 "The engines’ other variants, all cases. –: not run, or no friction modelled.",
             ),
             table(
@@ -274,7 +276,7 @@ def _most(counts):
 
 def _matrix(cells, cases, variants, caption):
     """A line for each case, a column for each variant, in two halves; None: no variants or cases."""
-    names = {NAME.of(one): SHORT.get(NAME.of(one), one["engine"] if one["best"] else NAME.of(one)) for one in variants}
+    names = {NAME.of(one): _short(one) for one in variants}
     if not names or not cases:
         return None
     middle, foot, charts = (len(cases) + 1) // 2, 22 + round(SLANT * max(map(len, names.values()))), []
@@ -296,6 +298,14 @@ def _matrix(cells, cases, variants, caption):
             chart.cell(i, j, kind, sign, f"{says}{short(cell['tolerance'])}; finer levels: {cell['remedy']}")
         charts.append(chart)
     return figure(charts, caption)
+
+
+def _short(variant):
+    """What stands below a column: the kind, where it is in the first figure."""
+    name = NAME.of(variant)
+    if variant["best"] or subject(variant) and as_it_comes(variant):
+        return SHORT.get(name, kind(variant).removesuffix(", "))
+    return name
 
 
 def _judge(case):

@@ -201,6 +201,11 @@ def test_figures_of_the_runs_say_how_far_the_engines_are_apart(folder):
             assert number == pytest.approx(max(most, 1e-9), rel=0.05)
 
 
+def test_no_two_panels_of_the_report_have_one_title(folder):
+    titles = re.findall('<text class="title" x="[^"]*" y="17">([^<]*)</text>', (folder / "report.html").read_text())
+    assert len(titles) == len(set(titles)) >= 4
+
+
 def test_synthetic_motion_is_named_so_and_nothing_else_is_left_in_the_folder(folder):
     source, all_of_it = ((folder / name).read_text() for name in ("report.html", RUNS))
     assert "synthetic" in re.search("<title>(.*?)</title>", source).group(1)

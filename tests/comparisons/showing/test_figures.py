@@ -13,7 +13,6 @@ from page_numbers import number_in
 from comparisons.showing.charts import (
     HAIR,
     INK,
-    NEAR,
     SHAPES,
     STYLE,
     TONES,
@@ -25,7 +24,7 @@ from comparisons.showing.charts import (
     log_axis,
     marker,
 )
-from comparisons.showing.figures import MOVED, beside, lines, ranks, regions, shades
+from comparisons.showing.figures import as_it_comes, beside, lines, ranks, regions, shades
 from comparisons.showing.parts import NAME, Column
 from engines import ENGINES
 
@@ -195,13 +194,40 @@ def test_grey_series_stand_behind_and_are_in_no_legend():
     assert {FIRST, SECOND} <= {text.text for text in panel.iter("text")}
 
 
-def test_marks_that_would_cover_each_other_stand_side_by_side():
+def test_marks_stand_at_their_values_though_they_cover_each_other():
     same = [row(FIRST, f"variant {k}", 0.2, 1e-3) for k in range(4)]
-    made = lines(same, X, Y, "Errors.", log="y")
-    (panel,) = panels(made)
-    places = sorted(place_of(part)[0] for part in panel.iter("path") if (part.get("class") or "").startswith("dot"))
-    assert len(places) == 4 and min(np.diff(places)) >= NEAR
-    assert made.caption.endswith(MOVED) and not lines(same[:1], X, Y, "Errors.", log="y").caption.endswith(MOVED)
+    (panel,) = panels(lines(same, X, Y, "Errors.", log="y"))
+    places = [place_of(part) for part in panel.iter("path") if (part.get("class") or "").startswith("dot")]
+    assert len(places) == 4 and len(set(places)) == 1
+
+
+def test_marks_beyond_the_panel_stand_at_its_frame_with_an_arrowhead_that_points_there():
+    chart = Chart(LINEAR, LOG, "Beyond.")
+    values = ([0.0, 8.0, 8.0, -3.0, 0.0, 0.0], [1.0, 1.0, 1e3, 1.0, 1e3, 0.0])
+    chart.dots(*values)
+    assert [part.get("class") for part in element(chart).iter("path")].count("dot") == 1  # the others are not asked for
+    chart.over.clear()
+    chart.dots(*values, beyond=True)
+    marks = [part for part in element(chart).iter("path") if part.get("class") == "dot"]
+    arrows = [part.get("transform") for part in element(chart).iter("path") if part.get("class") == "beyond"]
+    x, y = (round(float(at), 1) for at in chart.at([0.0], [1.0])[0])
+    right, left, top, bottom = chart.right, chart.left, chart.top, chart.bottom
+    assert list(map(place_of, marks)) == [(x, y), (right, y), (right, top), (left, y), (x, top), (x, bottom)]
+    assert [re.search(r"rotate\((.*)\)", one)[1] for one in arrows] == ["0", "-45", "180", "-90", "90"]
+
+
+def test_series_as_the_engine_comes_have_open_marks_the_others_filled_ones():
+    made = lines(ROWS, X, Y, "Errors.", log="y", opened=lambda one: one["variant"] == "fine")
+    drawn = {who: re.search('<path class="(dot[^"]*)"', str(key))[1] for who, key in made.keys.items()}
+    assert drawn == {f"{FIRST}, fine": "dot open", f"{FIRST}, coarse": "dot", f"{SECOND}, fine": "dot open"}
+    (panel,) = panels(lines(ROWS[2:3], X, Y, "Errors.", opened=as_it_comes))  # of a row without a kind
+    assert [part.get("class") for part in panel.iter("path") if "dot" in (part.get("class") or "")] == ["dot"]
+
+
+def test_a_long_title_is_not_cut_off():
+    short, long = (Chart(LINEAR, LINEAR, "Titles.", left=200, title=words) for words in ("short", 45 * "m"))
+    begins = [float(next(one for one in element(chart).iter("text")).get("x")) for chart in (short, long)]
+    assert begins[0] == 200 and begins[1] < 30
 
 
 def test_rules_are_named_outside_the_plot():
@@ -230,8 +256,11 @@ def test_ranked_values_stand_below_each_other_with_their_intervals_and_no_furthe
     rows = [row("analytic", "model", 0, 0.5), row(FIRST, "fine", 0, 0.0), row(SECOND, "fine", 0, None, "sliding")]
     rows = [one | {"ends": [0.25, 2.0] if one["y"] else None} for one in rows]
     share = Column("share [-]", "y", within="ends")
-    made = ranks(rows, NAME, share, "Shares.", Axis("share [-]", 0.1, 1.0, "log"), panel="ground")
+    axis, opened = Axis("share [-]", 0.1, 1.0, "log"), lambda one: one["engine"] == FIRST
+    made = ranks(rows, NAME, share, "Shares.", axis, panel="ground", opened=opened)
     (panel,) = panels(made)
+    assert [part.get("class") for part in panel.iter("path") if part.get("data-says")] == ["dot", "dot open"]
+    assert [part.get("class") for part in panel.iter("path")].count("beyond") == 1  # of 0
     assert made.solvers == (FIRST,) and ENGINES[FIRST].colour in made.svg.decode()
     told = [part for part in panel.iter("path") if part.get("data-says")]
     assert [part.get("data-says") for part in told] == ["analytic, model: 0.50 (0.25 to 2.0)", f"{FIRST}, fine: 0"]

@@ -1,7 +1,9 @@
 """What the report's first page takes of the studies: each number from the stored rows, no lucky setting, no silence."""
 
 import re
+from collections import Counter
 from operator import itemgetter
+from xml.etree import ElementTree
 
 import pytest
 from page_numbers import number_in
@@ -9,13 +11,28 @@ from page_numbers import number_in
 from comparisons.report.write import SHORT
 from comparisons.running.provenance import RESULTS, read_result
 from comparisons.running.sources import source_digests
-from comparisons.showing.parts import Head, where
+from comparisons.showing.parts import NAME, Head, where
 from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.stability.page import judgements as hard_cases
+from engines import ENGINES
 
 
 def stored(name):
     return read_result(RESULTS / f"{name}.json")
+
+
+SUBJECTS = [name for name, engine in ENGINES.items() if engine.subject]
+
+
+def panels(name):
+    """The panels of a study's figures on the report's first page."""
+    svg = "".join(figure.svg.decode() for figure in get_study(name).page(stored(name)).opening().figures)
+    return list(ElementTree.fromstring(f"<all>{svg}</all>"))
+
+
+def told(name):
+    """What the marks of these figures tell under the pointer."""
+    return [part.get("data-says") for panel in panels(name) for part in panel.iter() if part.get("data-says")]
 
 
 @pytest.mark.parametrize("name", BUILT_IN)
@@ -76,3 +93,57 @@ def test_hard_cases_are_counted_as_the_settings_come():
         left = {name for name in within if no_friction and cases[name]["oracle"] == "model and Moreau"}
         left |= {name for name in within if not variants[engine, variant]["best"] and name.startswith("10 minutes")}
         assert {row["case"] for row in rows} == within - left
+
+
+def test_no_two_panels_of_the_first_page_have_one_title():
+    found = [text.text for name in SHORT for panel in panels(name) for text in panel.iter("text")
+             if text.get("class") == "title"]  # fmt: skip
+    assert len(found) > 15 and not [title for title, count in Counter(found).items() if count > 1]
+
+
+def test_every_boundary_of_a_variant_that_is_drawn_stands_at_its_shift_or_is_counted_at_the_frame():
+    result, says = stored("overturning"), told("overturning")
+    own, drawn = result.settings["default_variants"], 0
+    for one in result.settings["variants"]:
+        rows = where(result.rows, part={"shift", "drawn shift"}, engine=one["engine"], variant=one["variant"])
+        found = sum(row["shift"] is not None for row in rows)
+        if rows and (one["tier"] == "defaults" or own[one["engine"]] == one["variant"]):
+            drawn += 1
+            assert sum(words.startswith(f"{NAME.of(one)}: ") for words in says) == found
+            lost = f"{one['engine']}, {one['tier']}: {len(rows) - found} not found"
+            assert (lost in says) == (found < len(rows))
+    assert drawn == 2 * len(own) - 1  # one engine has a variant as it comes alone
+
+
+def test_every_judged_run_under_a_record_is_a_mark_and_a_failed_one_stands_at_the_frame():
+    marks, heights = Counter(), {}
+    for panel in panels("recorded"):
+        for group in panel.iter("g"):
+            places = [part.get("transform") for part in group if (part.get("class") or "").startswith("dot")]
+            marks[group.get("data-who")] += len(places)
+            heights.setdefault(group.get("data-who"), []).extend(float(re.findall(r"[\d.]+", one)[1]) for one in places)
+    runs = [
+        row for row in where(stored("recorded").rows, part="run", engine=set(SUBJECTS)) if row["class"] != "left out"
+    ]
+    judged = Counter(f"{row['engine']}, {row['tier']}" for row in runs)
+    assert {who: marks[who] for who in judged} == judged and len(judged) == 2 * len(SUBJECTS)
+    failed = Counter(f"{row['engine']}, {row['tier']}" for row in where(runs, **{"class": "failed"}))
+    top = min(min(places) for places in heights.values() if places)
+    assert {who: places.count(top) for who, places in heights.items() if places.count(top)} == failed and failed
+
+
+def test_hard_cases_have_a_column_for_the_engines_in_question_as_they_come():
+    result, says = stored("stability"), told("stability")
+    within = [case for case in result.settings["cases"].values() if not case.get("outside")]
+    shown = [one for one in result.settings["variants"] if one["best"] or one["tier"] == "defaults"]
+    assert len(says) == len(within) * len(shown) and {one["tier"] for one in shown} > {"tuned", "defaults"}
+
+
+@pytest.mark.parametrize("name", ["restitution", "autopsy"])
+def test_the_legend_names_the_engines_in_question_tuned_and_as_they_come(name):
+    (figure,) = get_study(name).page(stored(name)).opening().figures
+    assert {f"{engine}, {kind}" for engine in SUBJECTS for kind in ("tuned", "defaults")} < set(figure.solvers)
+    for who, key in figure.keys.items():
+        assert ('class="dot open"' in key) == who.endswith(", defaults"), who
+    others = {who for who in figure.solvers if who.endswith(", defaults")} - {f"{one}, defaults" for one in SUBJECTS}
+    assert len(others) == 1  # an engine that has no other variant

@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import re
 
 import numpy as np
 import pytest
@@ -11,9 +12,10 @@ from analytic import simulate
 from analytic.linear_oscillator import displacement_spectrum
 from comparisons.measuring.statistics import fit_fragility
 from comparisons.running.plan import Request
-from comparisons.showing.parts import where
+from comparisons.showing.parts import NAME, where
 from comparisons.studies import get_study
 from comparisons.studies.fragility import fits
+from comparisons.studies.fragility.page import tallies
 from comparisons.studies.fragility.study import NEAR, PERIOD, SCENES, cloud, plan
 
 STUDY = get_study("fragility")
@@ -180,11 +182,10 @@ def test_a_curve_is_drawn_only_where_it_fits(weaker):
         {**row, "p_value": 0.5 if row["state"] == "overturning" else 0.01} if row["part"] == "fit" else row
         for row in weaker.rows
     ]
-    first, others = (
-        figure.svg.decode()
-        for figure in STUDY.page(dataclasses.replace(weaker, rows=rows)).whole().figures
-        if "share of runs" in figure.alt
-    )
+    page = STUDY.page(dataclasses.replace(weaker, rows=rows))
+    whole, others = (figure.svg.decode() for figure in page.whole().figures if "share of runs" in figure.alt)
+    first, ranked = re.split('(?=<svg class="chart")', whole)[1:]  # beside the model's curves the engines
+    assert [ranked.count(f'data-says="{NAME.of(row)}: ') for row in tallies(weaker)] == [1] * len(tallies(weaker))
     assert first.count('class="dot"') == 14 * 4 and first.count('class="reach"') == 4
     # beside curves, the names in the margin have lines
     assert first.count('class="line"') == 1 + 4 and others.count('class="line"') == others.count('class="reach"') > 0

@@ -173,7 +173,9 @@ def test_the_scan_counts_who_errs_which_way(tmp_path):
 def test_the_page_shows_every_boundary_and_every_level(tmp_path):
     result, page = study(tmp_path, shifted(0.0))
     edges = where(result.rows, part="edge")
-    for figure in page.figures[:2]:  # maps, and shifts over frequency
+    strip, *others = page.figures
+    assert strip.svg.count(b'class="dot') == len(where(result.rows, part="shift")) + len(edges) == 4 * 6 + 6
+    for figure in others[:2]:  # maps, and shifts over frequency
         assert figure.svg.count(b'class="dot') == 2 * len(edges) == 12  # two engines
     (boundaries,) = (table for table in page.tables if "pybullet, impact-aware [%]" in table.columns)
     shown = np.array([[number_in(row[column]) for column in (3, -4, -3, -2, -1)] for row in boundaries.rows])
