@@ -5,8 +5,9 @@ from answered import edit
 
 from comparisons.running.provenance import RESULTS, ResultError, read_result, write_result
 from comparisons.studies import BUILT_IN, get_study
+from comparisons.studies.explained import TYPES, Explained
 from comparisons.studies.rows import ROWS, _columns, read_study, wrong_with
-from comparisons.studies.vocabulary import TYPES, Explained, columns_of
+from comparisons.studies.vocabulary import columns_of
 
 CELL = {**{"part": "order", "engine": "exudyn", "variant": "step", "ground": "rigid ground"}, "order": 2.0}
 

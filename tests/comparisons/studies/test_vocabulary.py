@@ -10,7 +10,8 @@ from table_tests import published
 from comparisons.running.plan import Request
 from comparisons.running.provenance import RESULTS, read_result
 from comparisons.studies import BUILT_IN, get_study
-from comparisons.studies.vocabulary import OWN, SHARED, columns_of
+from comparisons.studies.explained import SHARED
+from comparisons.studies.vocabulary import OWN, columns_of
 from engines import installed_engines
 
 # Of no stored result: an impact about which nothing can be determined.
