@@ -14,15 +14,14 @@ from ...showing.charts import Axis, Chart, figure
 from ...showing.figures import lines, regions
 from ...showing.parts import Column, Head, Page, Table, grouped, number, percent, table, where
 from . import runs as paper
+from .drawn import GAMMA, bearings, curves, misprints
 from .runs import FREE, ISOLATED
 from .variations import CATEGORIES, WITHIN
 
-PRINTED, CORRECT, LIMIT = "var(--ghost)", "var(--accent)", "var(--soft)"  # colours of curves
 DAMPINGS = ("var(--ink)", "var(--accent)", "var(--good)", "var(--fair)", "var(--bad)")  # of Fig. 5(b), least first
 FLOOR = 1e-9  # differences below are drawn there
 KEPT = 5  # of so many samples of a smooth history one is drawn
 HARMS = dict(zip(CATEGORIES, ("", "right", "wrong", "falls"), strict=True))  # classes of who stays upright
-GAMMA = "slenderness γ [rad]"
 
 NUMBER = Column("number of the paper", "{where}: {quantity}")
 PAPER = Column("paper", "paper", digits=6)
@@ -55,16 +54,6 @@ def _table(caption: str, rows: Iterable[Mapping[str, Any]], *columns: Column) ->
         return Markup(low.replace("_", "_<wbr>"))  # a record's name may break there
 
     return Table(caption, tuple(map(symbols, made.columns)), [list(map(symbols, row)) for row in made.rows])
-
-
-def _curves(title: str, x: Axis, y: Axis, curves: Mapping[str, tuple], right: int = 106) -> Chart:
-    """A `Chart` of {name: (colour, xs, ys)}, each named where it ends; a name in parentheses is not written."""
-    chart = Chart(x, y, f"{title}: {y.label} over {x.label}; {', '.join(curves)}.", right=right, title=title)
-    for name, (tone, xs, ys) in curves.items():
-        chart.line(xs, ys, tone=tone)
-        if not name.startswith("("):
-            chart.label(ys[-1], name, tone=tone)
-    return chart
 
 
 def _paper(result):
@@ -110,67 +99,10 @@ def _paper(result):
                 Column("value corrected", "value_corrected", digits=5),
                 Column("value printed", "value_printed", digits=5),
             ),
-            _misprints(result.arrays),
+            misprints(result.arrays),
             Head("The bearings"),
-            _bearings(result.arrays),
+            bearings(result.arrays),
         ),
-    )
-
-
-def _misprints(arrays):
-    """Eqs (8) and (12), as printed and corrected."""
-    forms = (("as printed", PRINTED, "printed"), ("corrected", CORRECT, "right"))
-    charts = [
-        _curves(
-            title,
-            x,
-            Axis("momentum after / before [-]", *ends),
-            {name: (tone, arrays[f"impact/{by}"], arrays[f"impact/{form} by {by}"]) for name, tone, form in forms},
-        )
-        for title, by, x, ends in (
-            ("Eq. (8), R = 1.0884 m", "slenderness", Axis(GAMMA, 0.1, 0.45), (0.985, 1.02)),
-            ("Eq. (8), γ = 0.28 rad", "radius", Axis("radius R [m]", 0.1, 10.0, "log"), (0.5, 4.0)),
-        )
-    ]
-    unloading = {
-        name: (tone, arrays["reversal/x"][::-1], arrays[f"reversal/{form}"][::-1] / 1e3) for name, tone, form in forms
-    }
-    x, loading = arrays["reversal/loading"]
-    jump = arrays["reversal/right"][0] - arrays["reversal/printed"][0]
-    curves = {"loading": (LIMIT, x, loading / 1e3), **unloading}
-    displacement, force = Axis("displacement x [m]", -0.2, 0.2), Axis("force of one bearing [kN]", -2.5, 2.5)
-    return figure(
-        [*charts, _curves("Eq. (12), unloading from 0.2 m", displacement, force, curves)],
-        "Horizontal momentum after an impact over that before: eq. (8) as printed is right only where R cos γ happens "
-        f"to be 1 m. With eq. (12) as printed the force jumps by {number(jump / 1e3)} kN = 2 f₀ at a reversal.",
-    )
-
-
-def _bearings(arrays):
-    """Fig. 3, and the definitions of Table 1(a) over the amplitude."""
-    ends, amplitude = np.array([-0.34, 0.34]), Axis("amplitude [m]", 0.0, 0.4)
-    limits = {
-        name: (LIMIT, ends, (abs(slope) * ends / 0.34 + s * f0) / 1e3)
-        for name, (s, slope, f0) in zip(("(lower)", "limit curves"), arrays["loops/limits"], strict=True)
-    }
-    loops = _curves(
-        "Fig. 3",
-        Axis("displacement x [m]", -0.34, 0.34),
-        Axis("force of one bearing [kN]", -3.0, 3.0),
-        {**limits, "algebraic law": (CORRECT, arrays["loops/x"], arrays["loops/force"] / 1e3)},
-    )
-    loops.dots(*(arrays["loops/reversals"].T / [[1.0], [1e3]]), tone=PRINTED)
-    period, ours, usual = (arrays[f"amplitude/{name}"] for name in ("period", "damping 2 pi", "damping 4 pi"))
-    at, energy = arrays["amplitude/x"], {"loss/(2π energy)": (PRINTED, ours), "loss/(4π energy)": (CORRECT, usual)}
-    dampings = {name: (tone, at, 100 * share) for name, (tone, share) in energy.items()}
-    periods = _curves("Period", amplitude, Axis("secant period [s]", 0.0, 2.5), {"(one)": (CORRECT, at, period)}, 14)
-    damping = _curves("Damping", amplitude, Axis("damping [% of critical]", 0.0, 60.0), dampings, 132)
-    for chart, value in ((periods, paper.PERIOD), (damping, 100 * paper.DAMPING)):
-        chart.dots([paper.X_MAX], [value], says=[f"Table 1(a): {value:g}"], tone="var(--bad)")
-    return figure(
-        [loops, periods, damping],
-        "The bearing law between its limit curves; its history is fixed at the reversal points, dots. Dots on period "
-        "and damping: Table 1(a), the secant period at 0.30 m, and loss of a cycle over 2π times the elastic energy.",
     )
 
 
@@ -312,7 +244,7 @@ def _spectra(result):
     edges = np.concatenate([period[:1], (period[1:] + period[:-1]) / 2, period[-1:]])
     tilt.area(list(np.repeat(edges, 2)), [0.0, *np.repeat(np.where(overturns, 1.6, 0.0), 2), 0.0], "falls")
     tilt.line(period, result.arrays["rocking/tilt"])
-    sway = _curves(
+    sway = curves(
         "Fig. 5(b)",
         Axis("period [s]", 0.0, 5.0),
         Axis("peak displacement [m]", 0.0, 1.05 * float(peaks.max())),

@@ -96,10 +96,9 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
     """The plan of the study: first an answer at the default levels, then more; grid: in place of FULL or QUICK.
 
     Rows by "part": "edge" (a boundary of the analytic model), "shift" (an engine's beside it, of its main variant and
-    of those of the kind "defaults"), "drawn edge" and "drawn shift" (the same of blocks drawn at random), "held" (the
-    same with the corner held down, where the model's normal force is negative), "refinement" (the same at other
-    levels), "confusion" (counts of outcomes), "disagreement" (an outcome that differs outside the band) and
-    "failure".
+    the kind "defaults"), "scan" (their outcomes over a coarse scan), "drawn edge" and "drawn shift" (of blocks drawn at
+    random), "held" (with the corner held down, where the model's N < 0), "refinement" (other levels), "confusion"
+    (counts of outcomes), "disagreement" (an outcome that differs outside the band) and "failure".
 
     Arrays: frequency, amplitude; ``<ground>/<shape>``: int16, shape (amplitudes, frequencies), impacts before
     overturning in the analytic model, -1 where it does not overturn. ``points``: shape (n, 8): ground, shape, engine
