@@ -360,13 +360,16 @@ def _how(result, every):
     differing = sorted({row["name"] for row in every if not row["repeatable"]})
     scenes = result.settings["scenes"].values()
     differences = [one["reference_difference"].get(measure, 0.0) for one in scenes for measure in measures_of(one)]
+    machine, load = result.provenance["machine"], result.settings.get("load")
+    beside = f" Other processes took {percent(max(load))} of it at most." if load else ""
     return (
         f"{result.settings['rounds']} fresh processes one after the other; in each, every solver has its turn after a "
         "warm-up. CPU times are medians, of the simulation without import, compilation and building of the scene. The "
         f"cost of one level differs between rounds by up to a factor of {number(_noise(every), 3)} for "
-        f"{NOISE} % of the levels: costs closer than that are not distinguished.",
+        f"{NOISE} % of the levels: costs closer than that are not distinguished. Machine: {machine['processor']}, "
+        f"{machine['logical_cores']} cores.{beside}",
         "References are the kernel at its tightest; an independent solution by scipy differs from them by at most "
-        f"{number(max(differences), 1)} in the errors shown. The model's own solvers apply eq. (7): their error of "
+        f"{number(max(differences), 1)} in the errors shown. The solvers of the equations apply eq. (7): their error of "
         f"restitution under a motion is rounding. The errors of {same} of {len(every)} levels are the same bit for "
         f"bit in every round{'; not those of ' + ', '.join(differing) if differing else ''}.",
         "On a free base the largest tilt is that of the start and has no error. Errors of the peak displacement and "
