@@ -369,7 +369,7 @@ def _how(result, every):
         f"{NOISE} % of the levels: costs closer than that are not distinguished. Machine: {machine['processor']}, "
         f"{machine['logical_cores']} cores.{beside}",
         "References are the kernel at its tightest; an independent solution by scipy differs from them by at most "
-        f"{number(max(differences), 1)} in the errors shown. The solvers of the equations apply eq. (7): their error of "
+        f"{number(max(differences), 1)} in the errors shown. Solvers of the equations apply eq. (7): their error of "
         f"restitution under a motion is rounding. The errors of {same} of {len(every)} levels are the same bit for "
         f"bit in every round{'; not those of ' + ', '.join(differing) if differing else ''}.",
         "On a free base the largest tilt is that of the start and has no error. Errors of the peak displacement and "
