@@ -108,7 +108,7 @@ def log_axis(label: str, values: Iterable[float]) -> Axis:
 class Chart:
     """One panel; says: a description for readers who cannot see it. left, right, head, foot: margins.
 
-    width: `WIDTH`, or more of one that is not for a phone.
+    width: `WIDTH`, or more of one that is not for a phone. turned: whether words below the axis stand upright.
     """
 
     def __init__(
@@ -124,8 +124,9 @@ class Chart:
         head: int = 0,
         title: str = "",
         width: int = WIDTH,
+        turned: bool = False,
     ) -> None:
-        self.x, self.y, self.says, self.title, self.width = x, y, says, title, width
+        self.x, self.y, self.says, self.title, self.width, self.turned = x, y, says, title, width, turned
         self.left, self.right = left, width - right
         self.top, self.bottom = (30 if title else 12) + head, height - (foot or (46 if x.label else 28))
         self.height, self.parts, self.over = height, list[str](), list[str]()
@@ -349,6 +350,13 @@ def figure(
         solvers=tuple(dict.fromkeys(solvers)),
         keys={name: Markup(key) for name, key in (keys or {}).items()},
     )
+
+
+def broad(wide: Chart, narrow: Sequence[Chart], caption: str) -> Figure:
+    """The `Figure` of a chart that takes the whole width of a page, and of those that stand for it on a phone."""
+    small = "".join(chart.svg() for chart in narrow)
+    svg = f'<div class="wide">{wide.svg()}</div><div class="narrow">{small}</div>'
+    return Figure(svg.encode(), wide.says, caption, broad=True)
 
 
 def alone(svg: str) -> str:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from markupsafe import Markup
 
 from ..measuring.statistics import equality
-from .charts import LETTER, WIDTH, Axis, Chart
+from .charts import LETTER, WIDTH, Axis, Chart, broad
 from .parts import Figure, Table, grouped, percent
 
 
@@ -138,7 +138,7 @@ def costs(curves: Sequence[Curve]) -> Figure:
         "One mark for each step, stiffness or tolerance; open: defaults; cross: impacts missed; on the frame: "
         "off the scale. Lower left is better."
     )
-    return _both([_costs(curves, width) for width in (WIDE, WIDTH)], caption)
+    return broad(_costs(curves, WIDE), [_costs(curves, WIDTH)], caption)
 
 
 def _costs(curves: Sequence[Curve], width: int) -> Chart:
@@ -227,7 +227,7 @@ def endings(found: Iterable[Endings]) -> Figure:
         "Bars: share of runs; lines: 95 % intervals. “Other”: rocks or stands, or falls at another time. Defaults were "
         "run on fewer of the same scenes."
     )
-    return _both([_endings(rows, width) for width in (WIDE, WIDTH)], caption)
+    return broad(_endings(rows, WIDE), [_endings(rows, WIDTH)], caption)
 
 
 def _endings(rows: Sequence[Endings], width: int) -> Chart:
@@ -267,13 +267,6 @@ def _endings(rows: Sequence[Endings], width: int) -> Chart:
 def _told(one: Endings) -> str:
     share, ways = percent(one.differing / one.runs), (f"{getattr(one, way)} {words}" for way, words in WAYS.items())
     return f"{one.motions}, {one.engine}, {one.kind}: {share} of {one.runs}; {', '.join(ways)}"
-
-
-def _both(charts: Sequence[Chart], caption: str) -> Figure:
-    wide, narrow = (
-        f'<div class="{kind}">{chart.svg()}</div>' for kind, chart in zip(("wide", "narrow"), charts, strict=True)
-    )
-    return Figure(f"{wide}{narrow}".encode(), charts[0].says, caption)
 
 
 def swatches() -> list[tuple[Markup, str]]:

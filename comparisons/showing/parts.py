@@ -34,7 +34,7 @@ class Figure:
     """svg: the picture. alt: what it shows, for those who cannot see it. caption: what to look at.
 
     solvers: those whose lines can be told apart and hidden; keys: {one of them: the picture of its line}, where it is
-    not as everywhere.
+    not as everywhere. broad: whether it takes the whole width of a page; it then has a second form for a phone.
     """
 
     svg: bytes
@@ -42,6 +42,7 @@ class Figure:
     caption: str
     solvers: tuple = ()
     keys: dict = field(default_factory=dict)
+    broad: bool = False
 
     @property
     def element(self) -> Markup:

@@ -6,7 +6,7 @@ from itertools import product
 from engines.statue_range import in_words
 
 from ...running.provenance import Result
-from ...showing.charts import Axis, Chart, figure
+from ...showing.charts import Axis, Chart, broad, figure, room
 from ...showing.figures import as_it_comes, kind, subject
 from ...showing.parts import NAME as ENGINE
 from ...showing.parts import Column, Head, Judgement, Mark, Page, grouped, short, table, where
@@ -28,7 +28,8 @@ NOT_MODELLED = {**NOT_RUN, "result": "not modelled"}  # a case with friction, by
 APART = "outside the range"
 MOST, SOME = 0.85, 0.6  # shares of cases from which a solver may be trusted, and is usable with care
 NOTED = 2  # cases named in the note of the first table
-SLANT = 4.1  # height of a letter of the slanted names below a matrix
+SLANT, UPRIGHT = 4.1, 6.9  # height of a letter of the slanted and of the upright names below a matrix
+STRIP = 1180  # width of the matrix that takes a page's
 TWIN = "second implementation"
 SHORT = {TWIN: "2nd code", "time-stepping": "steps"}
 
@@ -69,12 +70,12 @@ def page(result: Result) -> Page:
             ),
         ),
         first=(
-            _matrix(
+            _strip(
                 cells,
                 within,
                 chosen,
-                "Default levels. ✓ right, ~ differs, ≠ another outcome, ✗ failed; under the pointer: the measure "
-                "farthest outside its tolerance. 2nd code: the independent second implementation; steps: plain time "
+                "Default levels. Blank or ✓ right, ~ differs, ≠ another outcome, ✗ failed; under the pointer: the "
+                "measure farthest outside its tolerance. 2nd code: the independent second implementation; steps: plain time "
                 "stepping of the equations. –: not run, or not modelled, as these two know no friction.",
             ),
             table(
@@ -276,9 +277,37 @@ def _most(counts):
 
 def _matrix(cells, cases, variants, caption):
     """A line for each case, a column for each variant, in two halves; None: no variants or cases."""
+    charts = _halves(cells, cases, variants)
+    return figure(charts, caption) if charts else None
+
+
+def _strip(cells, cases, variants, caption):
+    """A column for each case, a line for each variant; on a phone as `_matrix`."""
+    halves, names = _halves(cells, cases, variants), {NAME.of(one): _short(one) for one in variants}
+    if not halves:
+        return None
+    foot = 14 + round(UPRIGHT * max(len(_readable(case)) for case in cases))
+    chart = Chart(
+        Axis("", -0.5, len(cases) - 0.5, ticks=tuple(enumerate(map(_readable, cases)))),
+        Axis("", len(names) - 0.5, -0.5, ticks=tuple(enumerate(names.values()))),
+        " ".join(half.says for half in halves),
+        left=room(names.values()),
+        right=4,
+        foot=foot,
+        height=16 + foot + 22 * len(names),
+        width=STRIP,
+        turned=True,
+    )
+    for (i, case), (j, name) in product(enumerate(cases), enumerate(names)):
+        sign, kind, says = _told(cells[case, name], case, name)
+        chart.cell(i, j, kind, "" if sign == SIGNS[RIGHT][0] else sign, says)
+    return broad(chart, halves, caption)
+
+
+def _halves(cells, cases, variants):
     names = {NAME.of(one): _short(one) for one in variants}
     if not names or not cases:
-        return None
+        return []
     middle, foot, charts = (len(cases) + 1) // 2, 22 + round(SLANT * max(map(len, names.values()))), []
     for half in (list(cases)[:middle], list(cases)[middle:]):
         right = {name: [cells[case, name]["result"] for case in half].count(RIGHT) for name in names}
@@ -292,12 +321,17 @@ def _matrix(cells, cases, variants, caption):
             height=16 + foot + 19 * len(half),
         )
         for (j, case), (i, name) in product(enumerate(half), enumerate(names)):
-            cell = cells[case, name]
-            says = f"{_readable(case)}, {name}: {cell['result']}; {cell['measure']} {short(cell['value'])}, tolerance "
-            sign, kind = SIGNS[cell["sign"]]
-            chart.cell(i, j, kind, sign, f"{says}{short(cell['tolerance'])}; finer levels: {cell['remedy']}")
+            sign, kind, says = _told(cells[case, name], case, name)
+            chart.cell(i, j, kind, sign, says)
         charts.append(chart)
-    return figure(charts, caption)
+    return charts
+
+
+def _told(cell, case, name):
+    """(sign, class, what it tells under the pointer) of a cell."""
+    sign, kind = SIGNS[cell["sign"]]
+    found = f"{cell['measure']} {short(cell['value'])}, tolerance {short(cell['tolerance'])}"
+    return sign, kind, f"{_readable(case)}, {name}: {cell['result']}; {found}; finer levels: {cell['remedy']}"
 
 
 def _short(variant):
