@@ -75,8 +75,8 @@ def page(result: Result) -> Page:
                 within,
                 chosen,
                 "Default levels. Blank or ✓ right, ~ differs, ≠ another outcome, ✗ failed; under the pointer: the "
-                "measure farthest outside its tolerance. 2nd code: the independent second implementation; steps: plain time "
-                "stepping of the equations. –: not run, or not modelled, as these two know no friction.",
+                "measure farthest outside its tolerance. 2nd code: the independent second implementation; steps: plain "
+                "time stepping of the equations. –: not run, or not modelled, as these two know no friction.",
             ),
             table(
                 "Results at default levels",

@@ -137,7 +137,8 @@ def test_hard_cases_have_a_column_for_the_engines_in_question_as_they_come():
     result, says = stored("stability"), told("stability")
     within = [case for case in result.settings["cases"].values() if not case.get("outside")]
     shown = [one for one in result.settings["variants"] if one["best"] or one["tier"] == "defaults"]
-    assert len(says) == len(within) * len(shown) and {one["tier"] for one in shown} > {"tuned", "defaults"}
+    assert len(says) == 2 * len(within) * len(shown)  # on a wide page, and on a phone
+    assert {one["tier"] for one in shown} > {"tuned", "defaults"}
 
 
 @pytest.mark.parametrize("name", ["restitution", "autopsy"])
