@@ -117,9 +117,9 @@ def _motion(result):
     return Page(
         f"The Caryatid under {label}: {_outcomes(where(runs, part='run'))}",
         (
-            "The paper prints no slenderness. Its three claims (free-standing the statue overturns, it is vulnerable "
-            "below a rocking period of about 4 s, isolated it does not rock) hold together under this motion for γ "
-            f"[rad]: {together}. Used here is {result.settings['slenderness']:g} rad.",
+            "The paper prints no slenderness. It makes three claims: free-standing, the statue overturns; it is "
+            "vulnerable below a rocking period of about 4 s; isolated, it does not rock. All three hold under this "
+            f"motion for γ [rad] of {together}. This study uses {result.settings['slenderness']:g} rad.",
             *([f"Not installed, and so not compared: {'; '.join(missing)}"] if missing else ()),
         ),
         more=(

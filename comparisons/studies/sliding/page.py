@@ -53,8 +53,8 @@ def page(result: Result) -> Page:
     return Page(
         _title(every[0]),
         (
-            "Each scene is run in the model with its friction, and again as if no corner could slide: what changes is "
-            "what sliding does. Engines run scenes in which the friction does not suffice.",
+            "The model runs each scene with its friction, and again as if no corner could slide. The difference is the "
+            "effect of sliding. Engines run scenes in which the friction does not suffice.",
         ),
         first=(
             _shares(cells),
