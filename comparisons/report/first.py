@@ -80,7 +80,8 @@ def _restitution(setups, judgements):
         marks = {one.engine: one.marks[head] for one in _columns(setups, tier)}
         known = {engine: mark for engine, mark in marks.items() if mark.value is not None}
         deaf = [engine for engine, mark in known.items() if "missed" in mark.words]
-        missed = ", and both miss impacts" if len(deaf) == 2 else f", and {listed(deaf)} misses impacts" if deaf else ""
+        who = "both" if len(deaf) == len(known) == 2 else listed(deaf)
+        missed = f", and {who} miss{'es' * (len(deaf) == 1)} impacts" if deaf else ""
         if known:
             errors = listed([f"{number(mark.value, 2)} in {engine}" for engine, mark in known.items()])
             begin = f"{how.capitalize()}, it is" if parts else f"{how}, the rms error of the coefficient (below 1) is"
