@@ -259,9 +259,9 @@ def _held_down(edges, shifts, held):
     pulled = [edge for edge in edges if edge["min_normal"] < 0]
     if pulled:
         yield (
-            "Here the normal force of the analytic model becomes negative. A block in contact slides or leaves its "
+            "Here the normal force of the analytic model becomes negative. A block in contact would slide or leave its "
             "base, as it does in the engines, so these boundaries say nothing about the engines. Variants whose "
-            "adapter holds the corner down, as the model does, show whether contact or integration moves them."
+            "adapter holds the corner down, as the model does, show whether contact or integration shifts them."
         )
     yield _boundaries("Boundaries at which the analytic model holds the corner down", pulled, [*shifts, *held])
 

@@ -322,8 +322,8 @@ def _slips(runs: Sequence[Mapping[str, Any]]) -> Figure | None:
         rows,
         SLIP,
         Column("share of runs [-]", "share"),
-        "Share of the runs of blocks that stay upright whose error of the largest slip is at most so much; what is "
-        "missing from 1 failed or overturned.",
+        "Of the runs of blocks that stay upright, the share whose error of the largest slip is at most the value on "
+        "the axis. The remaining runs failed or overturned.",
         panel="tier",
         log="x",
     )
