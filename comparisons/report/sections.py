@@ -305,8 +305,8 @@ def earthquake(result: Result) -> Section:
     return Section(
         f"{'One earthquake' if motion else 'One scene'}: {found}",
         (
-            f"{under}Each solver runs until its outcome is decided. Tilt is compared up to one sensitivity horizon "
-            "for all solvers. After it, a change of the scene by 10⁻⁴ visibly changes the motion.",
+            f"{under}Each solver runs until its outcome is decided. Tilt is compared up to the common sensitivity "
+            "horizon.",
         ),
         (_table(result), told) if warnings else (_table(result),),
         (

@@ -66,10 +66,10 @@ def page(result: Result) -> Page:
     return Page(
         _title(both, equal),
         (
-            "The outcome is compared: whether the block stands, rocks or overturns, and in which swing it falls. "
-            f"“Equal” means that the upper limit of the 95 % interval is below {equal}. A failed run counts as "
-            "differing. Runs under one record are not independent, so the interval counts records. A result is "
-            "inconclusive if so few records could not show equality even without a difference.",
+            "The outcome is whether the block stands, rocks or overturns, and in which swing it falls. “Equal” means "
+            f"that the upper limit of the 95 % interval is below {equal}. A failed run counts as differing. Runs under "
+            "one record are not independent, so the interval counts records. Inconclusive: too few records to show "
+            "equality even without a difference.",
         ),
         first=(
             _tilts(runs),

@@ -223,8 +223,7 @@ def _over_slenderness(cells, defaults):
         GAMMA,
         ERROR,
         "Rms error of restitution by swings; on the base, for the worst base mass. Coloured: main variants, and "
-        "defaults of the engines in question. Open marks: defaults. Grey: other variants, named under the pointer. No "
-        "mark: all runs failed.",
+        "defaults of the engines in question. Open marks: defaults. Grey: other variants. No mark: all runs failed.",
         panel=lambda row: f"{row['ground']}: restitution",
         by=lambda row: row["variant"] if grey(row) else row["tier"],
         grey=grey,

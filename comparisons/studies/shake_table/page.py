@@ -175,6 +175,10 @@ def _bars(result: Result, engines: Sequence[dict[str, Any]]) -> Figure | None:
         for row in where(engines, specimen=one["name"]):
             failed = f" ({row['failed']} failed)" if row["failed"] else ""
             rows.append(_bar(row, name_of(row) + failed, *_between(row, same)))
+    hidden = (
+        " Where an engine differs from the model in fewer than five tests, its right answers are not given: the line "
+        "spans what is possible."
+    ) * any(row["right"] is None for row in engines)
     agree = result.settings["agree"]
     rules = () if agree is None else ((agree / len(result.settings["tests"]), "the other boulder"),)
     first = math.floor(10 * min(low for row in rows for low in row["within"]))  # tenths
@@ -184,9 +188,7 @@ def _bars(result: Result, engines: Sequence[dict[str, Any]]) -> Figure | None:
         Column("predicted by", "name"),
         SHARE,
         "Share of outcomes predicted, with 95 % intervals by record. “model, as engines” and the engines use one "
-        "slenderness, fitted to all tests; the rest are held out by record. Where an engine differs from the model in "
-        "fewer than five tests, its right answers are not given, and the line spans what is possible. A failed run is "
-        "not right.",
+        f"slenderness, fitted to all tests; the rest are held out by record. A failed run is not right.{hidden}",
         Axis(SHARE.head, first / 10, 1.0, ticks=tuple((tenth / 10, str(10 * tenth)) for tenth in marked)),
         panel="specimen",
         rules=rules,

@@ -57,8 +57,8 @@ def page(result: Result) -> Page:
         (
             "Real integrators have failed on these scenes: pulses at the boundary, grazing impacts, a base of a "
             "ten-thousandth of the block’s mass, ten minutes of shaking, a block that barely slides. A result is right "
-            "if every measure is within its tolerance. It differs if the run ends but is not right. It fails if the "
-            "solver gives up, exceeds its time limit or moves the block in a physically impossible way.",
+            "if every measure is within its tolerance; otherwise it differs. It fails if the solver gives up, exceeds "
+            "its time limit or moves the block in a physically impossible way.",
             _most(where(counts, kind="stepping")),
             *(
                 [
