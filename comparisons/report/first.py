@@ -96,8 +96,8 @@ def _outcomes(shares):
     for tier, who in ((TUNED, "tuned engines"), (DEFAULTS, "engines with defaults")):
         some = [one for one in shares if one.motions == motions and one.kind == tier]
         if some:
-            differ = listed([f"{one.differing} of {one.runs} runs ({one.engine})" for one in some])
-            first = f"under {motions}, {who} differ from the analytic model or fail in {differ}."
+            differ = listed([f"{one.differing} of {one.runs} ({one.engine})" for one in some])
+            first = f"under {motions}, {who} differ from the analytic model or fail in {differ} runs."
             parts.append(f"{who.capitalize()} do so in {differ}." if parts else first)
     if not parts:
         return ""

@@ -28,11 +28,11 @@ def sentence(result: Result, engines: Sequence[dict[str, Any]]) -> str:
     words = [f"The model is wrong in {wrong} of {len(result.settings['tests'])} tests ({names})."]
     together = where(engines, specimen=ALL) or engines
     if tuned := where(together, tier="tuned"):
-        said = [f"{apart(row)} of {row['size']} runs ({row['engine']})" for row in tuned]
+        said = [f"{apart(row)} of {row['size']} ({row['engine']})" for row in tuned]
         fits = [one for row in where(result.rows, part="fit", change=AS_IT_IS) for one in row["neighbours"]]
         first, second, *_ = result.settings["specimens"][0]["grid"]
         words.append(
-            f"Tuned engines differ from the model in {listed(said)}. A slenderness "
+            f"Tuned engines differ from the model in {listed(said)} runs. A slenderness "
             f"{number(math.degrees(second - first), 1)} deg smaller or larger changes {min(fits)} to {max(fits)} of "
             f"{len(result.settings['tests'])} outcomes of the model itself."
         )

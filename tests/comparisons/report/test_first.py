@@ -42,8 +42,8 @@ def test_the_lines_say_the_numbers_of_the_studies_and_only_of_engines_in_questio
         "and exudyn misses impacts."
     )
     outcomes = (
-        "under recorded motions, tuned engines differ from the analytic model or fail in 1 of 170 runs (exudyn). "
-        "Engines with defaults do so in 10 of 50 runs (exudyn). Over all motions, defaults miss 3 overturnings and add "
+        "under recorded motions, tuned engines differ from the analytic model or fail in 1 of 170 (exudyn) runs. "
+        "Engines with defaults do so in 10 of 50 (exudyn). Over all motions, defaults miss 3 overturnings and add "
         "2."
     )
     assert found == [
