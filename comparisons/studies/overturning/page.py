@@ -215,7 +215,7 @@ def _title(best, tuned):
     rated = [row for row in best if (row["engine"], row["variant"]) in tuned]
     how, rated = ("tuned engines", rated) if rated else ("engines not tuned", best)
     largest = max((row["largest"] for row in rated if row["largest"] is not None), default=None)
-    lost = [f"{row['engine']} finds {row['found']} of {row['of']}" for row in rated if row["found"] < row["of"]]
+    lost = [f"{row['found']} of {row['of']} found ({row['engine']})" for row in rated if row["found"] < row["of"]]
     words = f"Many pulses: {how} shift the overturning boundary by {percent(largest)} at most"
     return "; ".join(filter(None, [words, listed(lost)]))
 

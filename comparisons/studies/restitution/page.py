@@ -206,7 +206,7 @@ def _title(ranked):
     good = [row for row in ranked if rating(_error(row), _wrong(row)) == "good"]
     missed = max((row["rms"] for row in ranked if row not in good and row["rms"]), default=None)
     return f"One impact: {len(good)} of {len(ranked)} engine variants reproduce restitution to within {TRUSTED:g}" + (
-        f"; the others are off by up to {number(missed, 2)}" if missed else ""
+        f"; the worst is off by {number(missed, 2)}" if missed else ""
     )
 
 
