@@ -214,15 +214,12 @@ def not_to_do(setups: Sequence[Setup]) -> list[str]:
     lines = []
     if defaults:
         bad = sum(one.rating.level == "bad" for one in defaults)
-        lines.append(
-            f"Do not use an engine with its defaults: of {len(defaults)} that were tested {bad} are not to be trusted."
-        )
+        lines.append(f"Do not use an engine with its defaults: {bad} of {len(defaults)} tested are not to be trusted.")
     lines.append(
-        "Check how close the outcome is to changing (rocking margin SCENE), and do not rely on it if your data are "
-        "less certain than that."
+        "Do not rely on an outcome whose margin (rocking margin SCENE) is smaller than the uncertainty of your data."
     )
     lines.append(
-        "Do not compare tilts point by point beyond the sensitivity horizon. Trust a level only once a finer one no "
-        "longer changes the result."
+        "Do not compare tilts point by point beyond the sensitivity horizon. Trust a level only if a finer one gives "
+        "the same result."
     )
     return lines

@@ -107,15 +107,15 @@ GLOSSARY = {
     "isolation period": "2π times the root of mass over the bearings' stiffness",
     "lead-rubber bearing": "rubber with a lead core: stiff k_a at first and after each reversal, then k_b",
     "friction demand": "horizontal over normal force under the block: the friction needed not to slide",
-    "slip u": "displacement of the block along its support, where the scene gives a friction μ that is used up",
+    "slip u": "displacement of the block along its support, where the friction demand exceeds the scene's μ",
     "sensitivity horizon": "time after which a change of the scene by 10⁻⁴ visibly changes the motion; a solver’s "
     "own: a change as large as its errors",
     "analytic model": "the rocking equations solved directly from event to event; its compiled part is the kernel",
     "second implementation": "a second implementation of the same equations, independent and simple, to check the "
     "first",
     "accuracy parameter": "the setting of a solver that trades time for error; its levels: the values tried",
-    "defaults, tuned, assisted": "settings of a first script; settings of a skilled user, with all motion computed "
-    "by the engine; a velocity, position or constraint set by the adapter at the model's event",
+    "defaults, tuned, assisted": "as in a first script; as a skilled user can set it, with all motion computed by the "
+    "engine; with a velocity, position or constraint set by the adapter at the model's event",
     "root mean square (rms)": "root of the mean of squares of all errors",
     "kappa": "Cohen's measure of agreement of two yes-or-no judges: 1 always, 0 as by chance",
     "McNemar's test": "whether two solvers that judge the same motions differ by more than chance; for many tests "
@@ -155,11 +155,12 @@ def frames() -> list[tuple[Markup, str]]:
     depth = 1e3 * 2 * block.half_width * math.sin(abs(inside))  # of the far corner below the ground, mm
     rate = run.impacts[0].rate_after / exact.rate_after - 1
     late = 1e3 * (run.impacts[0].time - exact.time)
+    when = "late" if late > 0 else "early"
     words = (
-        f"1. The step straddles the impact: steps of {STEP * 1e3:g} ms see it {number(late, 2)} ms off.",
-        f"2. The corner sinks in, here by {number(depth, 2)} mm, turning on about the old one.",
-        "3. Pushed out again it may bounce or slide, which Housner's corner does not.",
-        f"4. It turns on about the new corner at a rate off by {number(100 * rate, 2)} %: an error of the step.",
+        f"1. The step straddles the impact: with steps of {STEP * 1e3:g} ms it is {number(abs(late), 2)} ms {when}.",
+        f"2. The new corner penetrates, here by {number(depth, 2)} mm; the block still turns about the old one.",
+        "3. Pushed out again, it may bounce or slide. Housner’s corner does neither.",
+        f"4. The block turns about the new corner. Its rate is off by {number(100 * rate, 2)} %, an error of the step.",
     )
     feet = (
         _foot(before, 1, "above the ground"),

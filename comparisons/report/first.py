@@ -50,7 +50,7 @@ def title(setups: Sequence[Setup]) -> str:
     """The answer in a sentence, where it is as clear as that; else the question."""
     levels = {tier: {one.rating.level for one in _columns(setups, tier)} for tier in (TUNED, DEFAULTS)}
     if levels[TUNED] and levels[DEFAULTS] == {"bad"} and "bad" not in levels[TUNED]:
-        return "With defaults a physics engine misjudges a rocking block; tuned, it seldom does."
+        return "With its defaults, a physics engine misjudges a rocking block; tuned, it seldom does."
     return QUESTION
 
 
@@ -80,27 +80,27 @@ def _restitution(setups, judgements):
         marks = {one.engine: one.marks[head] for one in _columns(setups, tier)}
         known = {engine: mark for engine, mark in marks.items() if mark.value is not None}
         deaf = [engine for engine, mark in known.items() if "missed" in mark.words]
-        missed = ", and both miss impacts" if len(deaf) == 2 else f", and {listed(deaf)} misses impacts" if deaf else ""
+        who = "both" if len(deaf) == len(known) == 2 else listed(deaf)
+        missed = f", and {who} miss{'es' * (len(deaf) == 1)} impacts" if deaf else ""
         if known:
-            errors = listed([number(mark.value, 2) for mark in known.values()])
-            whose = how if parts else f"{how}, {listed(list(known))} {'err' if len(known) > 1 else 'errs'}"
-            parts.append(f"{whose} by {errors}{missed}")
-    return f"{'; '.join(parts)} (rms, of a number below 1)." if parts else ""
+            errors = listed([f"{number(mark.value, 2)} in {engine}" for engine, mark in known.items()])
+            begin = f"{how.capitalize()}, it is" if parts else f"{how}, the rms error of the coefficient (below 1) is"
+            parts.append(f"{begin} {errors}{missed}.")
+    return " ".join(parts)
 
 
 def _outcomes(shares):
     """How many runs end otherwise under recorded motions, or under the first others that were run; and which way."""
     motions = next((one.motions for one in shares if "record" in one.motions), shares[0].motions if shares else "")
     parts = []
-    for tier, how in HOW:
+    for tier, who in ((TUNED, "tuned engines"), (DEFAULTS, "engines with defaults")):
         some = [one for one in shares if one.motions == motions and one.kind == tier]
-        runs = listed(list(dict.fromkeys(str(one.runs) for one in some)))
         if some:
-            differ = listed([str(one.differing) for one in some])
-            whose = f"{how}, {listed([one.engine for one in some])}" if not parts else how
-            parts.append(f"{whose} in {differ} of {runs}")
+            differ = listed([f"{one.differing} of {one.runs} ({one.engine})" for one in some])
+            first = f"under {motions}, {who} differ from the analytic model or fail in {differ} runs."
+            parts.append(f"{who.capitalize()} do so in {differ}." if parts else first)
     if not parts:
         return ""
     ways = [sum(getattr(one, way) for one in shares if one.kind == DEFAULTS) for way in ("missed", "added")]
-    unsafe = f" In all, defaults miss {ways[0]} overturnings and add {ways[1]}." if any(ways) else ""
-    return f"under {motions} they differ from the analytic model’s: {'; '.join(parts)}.{unsafe}"
+    unsafe = f" Over all motions, defaults miss {ways[0]} overturnings and add {ways[1]}." if any(ways) else ""
+    return f"{' '.join(parts)}{unsafe}"

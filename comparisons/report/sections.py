@@ -31,8 +31,8 @@ def scene_sections(result: Result) -> list[Section]:
     ]
     if shown := [picture for name in scenes for picture in _histories(result, name)]:
         words = (
-            "Left: all solvers over each other; right: by how much they differ from the analytic model. A block that "
-            "never lifts in any solver has no tilt to show."
+            "Left: all solvers overlaid; right: difference from the analytic model. Tilt is not drawn for a block that "
+            "never lifts in any solver."
         )
         if not own:
             words += (
@@ -73,17 +73,17 @@ def outcome_section(result: Result) -> Section:
             f"Each solver on the same scenes under {motion}. A block that never lifts “stands”, or “slides” on its "
             "support; one that lifts and stays upright “rocks”; it “overturns” at |φ| = 90°. |H|/N, horizontal over "
             "normal force under the block, is the friction coefficient needed not to slide; where the normal force N "
-            "falls to 0 the block jumps. In the model it does both only where the scene gives a friction. Both are "
-            "taken over the run, but for the fall of a block that overturns.",
-            "A run goes on until its outcome is decided: until nothing that may still come can make the block "
-            "overturn or keep it from it. One that ended earlier is “undecided”, with what it was so far. A "
-            "warning names what lies outside what the model describes, or is odd about the record; do not rely on "
-            "the outcome beside it. Every engine's run is compared with the analytic model's.",
-            "Impact times and tilt graphs are compared up to the end, or up to a sensitivity horizon where that comes "
-            "first. The common one is that of a change of restitution, motion or start by 10⁻⁴, the same for all; a "
-            "solver's own is that of a change as large as its errors: beyond it a difference says no more about it. "
-            "The distance of two tilt graphs (Hausdorff) is how far a point of one can lie from the other, time in "
-            "units of 2 π/ω_r and tilt in units of γ.",
+            "falls to 0 the block jumps. In the model it slides or jumps only if the scene gives a friction "
+            "coefficient. Both quantities are taken over the run, without the fall of a block that overturns.",
+            "A run continues until its outcome is decided: nothing that may still come can make the block overturn or "
+            "prevent it. A run that ended earlier is “undecided”, with its outcome so far. A warning names what lies "
+            "outside the model, or is unusual about the record; do not rely on the outcome beside it. Every engine's "
+            "run is compared with the analytic model's.",
+            "Impact times and tilt graphs are compared up to the end of the run or the sensitivity horizon, whichever "
+            "is first. The common horizon is that of a change of restitution, motion or start by 10⁻⁴, the same for "
+            "all. A solver's own horizon is that of a change as large as its errors; a difference beyond it says "
+            "nothing about the solver. The distance of two tilt graphs (Hausdorff) is the largest distance of a point "
+            "of one from the other, with time in units of 2 π/ω_r and tilt in units of γ.",
         ),
         tuple(
             table
@@ -263,7 +263,7 @@ def restitution_section(result: Result, given: bool = False) -> Section:
             "Restitution is φ̇⁺/φ̇⁻, from the states at the impact, and is compared with eq. (7). Error and CPU time "
             f"are those of the same runs. Trusted: error, root mean square, at most {TRUSTED:g}, no failed run and no "
             f"missed impact; usable: at most {USABLE:g}.",
-            *(["The scene's restitution is given; here it is left out, as it rates no engine."] if given else []),
+            *(["The scene gives a restitution; it is left out here, as it rates no engine."] if given else []),
         ),
         (
             table(
@@ -285,8 +285,8 @@ def restitution_section(result: Result, given: bool = False) -> Section:
 
 
 CAPTION = (
-    "Left: all solvers over each other. Right: how far the engines are from the analytic model, 10⁻⁹ at least. A "
-    "block that never lifts in any solver has no tilt to show."
+    "Left: all solvers overlaid. Right: difference from the analytic model, at least 10⁻⁹. Tilt is not drawn where the "
+    "block lifts in no solver."
 )
 
 
@@ -294,7 +294,7 @@ def earthquake(result: Result) -> Section:
     scenes, motion = result.settings["scenes"], result.settings["motion"]
     charts = [chart for name in scenes for pair in pairs(result, name) for chart in pair]
     found = "; ".join(
-        f"{scene['name']}: {outcomes([row for row in result.rows if row['scene'] == name])}"
+        f"{scene['name']}: {outcomes([{**row, 'differences': ()} for row in result.rows if row['scene'] == name])}"
         for name, scene in scenes.items()
     )
     under = f"Under {motion['label']}, peak {number(motion['peak'] / G)} g. " if motion else ""
@@ -305,8 +305,8 @@ def earthquake(result: Result) -> Section:
     return Section(
         f"{'One earthquake' if motion else 'One scene'}: {found}",
         (
-            f"{under}Each solver runs until its outcome is decided. Tilt is compared up to the sensitivity horizon, "
-            "the same for all: after it a change of the scene by 10⁻⁴ visibly changes the motion.",
+            f"{under}Each solver runs until its outcome is decided. Tilt is compared up to the common sensitivity "
+            "horizon.",
         ),
         (_table(result), told) if warnings else (_table(result),),
         (
@@ -320,10 +320,10 @@ def earthquake(result: Result) -> Section:
         else (),
         evidence=failures(result),
         measured=(
-            "Distance of tilt graphs (Hausdorff): how far a point of one can lie from the other, time in units of "
-            "2π/ω_r and tilt in units of γ. Friction demand and normal force are taken over the run, but for the fall "
-            "of a block that overturns; engines' are computed from their states by the model's equations. All that was "
-            "measured of these runs, the bearings' loops among it, is on the page of the runs.",
+            "Distance of tilt graphs (Hausdorff): the largest distance of a point of one from the other, with time in "
+            "units of 2π/ω_r and tilt in units of γ. Friction demand and normal force are taken over the run, without "
+            "the fall of a block that overturns; for engines they are computed from the states by the model's "
+            "equations. The page of the runs has all measurements, including the bearing loops.",
         ),
     )
 

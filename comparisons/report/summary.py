@@ -14,7 +14,7 @@ def summary(scenes: Result, block: Result | None) -> list[str]:
     sentences = []
     for name, scene in scenes.settings["scenes"].items():
         rows = [row for row in scenes.rows if row["scene"] == name]
-        sentences.append(f"{scene['name']}: {outcomes(rows)}{_times(rows)}{_displacement(rows)}.{_warned(rows)}")
+        sentences.append(f"{scene['name']}: {outcomes(rows)}.{_times(rows)}{_displacement(rows)}{_warned(rows)}")
     sentences += [f"Not in this report: {words}." for words in missing_words(scenes.settings["missing"])]
     failed = [
         f"{row['engine']} on {row['scene']} ({row['failure']['reason']})" for row in scenes.rows if row["failure"]
@@ -43,15 +43,16 @@ def _times(rows):
     if not times:
         return ""
     low, high = number(min(times), 4), number(max(times), 4)
-    return f", at {low} s" if low == high else f", between {low} and {high} s"
+    return f" Overturning at {low if low == high else f'{low} to {high}'} s."
 
 
 def _displacement(rows):
     peaks = {row["engine"]: row["peak_base_displacement"] for row in rows if row.get("peak_base_displacement")}
     if "analytic" not in peaks:
         return ""
-    text = f"; the base moves by at most {number(peaks['analytic'], 4)} m"
+    text = f" In the model the base moves by at most {number(peaks['analytic'], 4)} m"
     apart = {solver: abs(peak / peaks["analytic"] - 1) for solver, peak in peaks.items() if solver != "analytic"}
     if apart:
-        text += " (" + ", ".join(f"{solver} off by {percent(value)}" for solver, value in apart.items()) + ")"
-    return text
+        worst = max(apart, key=lambda solver: apart[solver])
+        text += f"; engines are off by up to {percent(apart[worst])} ({worst})"
+    return f"{text}."

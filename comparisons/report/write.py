@@ -216,11 +216,11 @@ def _at(track, name, frame):
 def _contents(scenes: Result, stored: list[Stored]) -> list[Part]:
     """The sections of the page in the order in which one reads them."""
     setting = Section(
-        "The scene and its equations: a block that tips about its corners, and a base that gives",
+        "Scene and equations: a block that rocks about its corners, on a base carried by bearings",
         (
-            "The block is rigid and planar; each impact is over at once. It slides where a scene gives a friction that "
-            "is used up, equations (S) and (I), else not. Its base moves on bearings whose force depends on their last "
-            "reversal. Plain numbers are those of the paper’s equations.",
+            "The block is rigid and planar, and impacts are instantaneous. It slides only where the demand "
+            "exceeds a friction coefficient given by the scene: equations (S) and (I). The force of the bearings "
+            "depends on their last reversal. Equation numbers without a letter are those of the paper.",
         ),
     )
     parts = [Part("equations", "Scene and equations", setting)]

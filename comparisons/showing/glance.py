@@ -91,10 +91,10 @@ COLUMNS: tuple[tuple[int, str, Callable[[Endings], str]], ...] = (
     (260, "failed", lambda one: str(one.failed)),
 )  # beside the bars: where a column ends, its head, its words
 WAYS = {
-    "missed": "an overturning is missed",
-    "added": "one is added",
-    "other": "another difference",
-    "failed": "the run fails",
+    "missed": "overturning missed",
+    "added": "overturning added",
+    "other": "other difference",
+    "failed": "run failed",
 }
 CLASSES = {"missed": "missed", "added": "added", "other": "other", "failed": "lost-run"}
 
@@ -135,8 +135,8 @@ class Box(NamedTuple):
 def costs(curves: Sequence[Curve]) -> Figure:
     """Error over cost of every solver, its levels joined, its name beside it."""
     caption = (
-        "One mark for each step, stiffness or tolerance; open: defaults; cross: impacts missed; on the frame: "
-        "off the scale. Lower left is better."
+        "Each mark is one step size, stiffness or tolerance. Open marks: defaults; crosses: missed impacts; marks on "
+        "the frame: off the scale. Lower left is better."
     )
     return broad(_costs(curves, WIDE), [_costs(curves, WIDTH)], caption)
 
@@ -224,8 +224,8 @@ def endings(found: Iterable[Endings]) -> Figure:
     """Shares of runs that end otherwise than the model's, motion by motion."""
     rows = list(found)
     caption = (
-        "Bars: share of runs; lines: 95 % intervals. “Other”: rocks or stands, or falls at another time. Defaults were "
-        "run on fewer of the same scenes."
+        "Bars: share of runs; lines: 95 % intervals. “Other”: overturns at another time, or differs without "
+        "overturning. Fewer runs of defaults: some of the same scenes."
     )
     return broad(_endings(rows, WIDE), [_endings(rows, WIDTH)], caption)
 

@@ -15,7 +15,7 @@ FRAMES = {
     "straddle": ("1. the steps straddle the impact", "landing", 1e3, "height of the corner [mm]"),
     "penetration": ("2. the corner sinks in", "landing", 1e3, "height of the corner [mm]"),
     "rebound": ("3. it is pushed out again", "speed", 1.0, "speed away from the ground [-]"),
-    "energy": ("4. energy is lost, or made", "energy", 1.0, "energy over that before [-]"),
+    "energy": ("4. energy is lost or gained", "energy", 1.0, "energy over that before [-]"),
 }
 ERROR = Column("error of restitution [-]", "error")
 
@@ -38,11 +38,11 @@ def page(result: Result) -> Page:
     causes = ", ".join(dict.fromkeys(row["cause"] for row in wrong)) or "none"
     return Page(
         f"Why engines err: {len(sound)} of {len(best)} impacts of main variants are within {settings['least']:g}; "
-        f"causes elsewhere: {causes}",
+        f"causes found: {causes}",
         (
-            "Newton’s laws give the impulses that an engine must have used between two steps, whatever its solver "
-            "calls them. They split the error of restitution into parts that add up to it. The parts show the cause, "
-            "without the engine’s settings.",
+            "Newton’s laws give the impulses that an engine must have applied between two steps. These impulses split "
+            "the error of restitution into parts that add up to it. The parts show the cause without knowledge of the "
+            "solver or its settings.",
         ),
         first=(
             _frames([row for row in where(told, ground=RIGID) if row["best"] or row["tier"] == "defaults"]),
@@ -106,9 +106,9 @@ def _frames(rows):
                 chart.dots(time[inside], values[inside], who, grey=grey, filled=filled, says=says, beyond=True)
         charts.append(chart)
     caption = (
-        "The first impact on rigid ground. Coloured: each engine’s main variant, and the defaults of those in "
-        "question; grey: other defaults. Open marks: defaults; an arrowhead: beyond the frame. Only engines whose "
-        "position of the block is read have frames 2 and 3."
+        "First impact on rigid ground. Coloured: main variants, and defaults of the engines in question. Grey: other "
+        "defaults. Open marks: defaults; arrowheads: beyond the frame. Frames 2 and 3 show only engines whose block "
+        "position is read."
     )
     keys = {kind(row): key_of(kind(row), filled=not as_it_comes(row)) for row in rows if _coloured(row)}
     return figure(charts, caption, keys, keys)

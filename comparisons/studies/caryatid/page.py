@@ -117,9 +117,9 @@ def _motion(result):
     return Page(
         f"The Caryatid under {label}: {_outcomes(where(runs, part='run'))}",
         (
-            "The paper prints no slenderness. Its three claims (free-standing the statue overturns, it is vulnerable "
-            "below a rocking period of about 4 s, isolated it does not rock) hold together under this motion for γ "
-            f"[rad]: {together}. Used here is {result.settings['slenderness']:g} rad.",
+            "The paper prints no slenderness. It makes three claims: free-standing, the statue overturns; it is "
+            "vulnerable below a rocking period of about 4 s; isolated, it does not rock. Values of γ [rad] for which "
+            f"all three hold under this motion: {together}. This study uses {result.settings['slenderness']:g} rad.",
             *([f"Not installed, and so not compared: {'; '.join(missing)}"] if missing else ()),
         ),
         more=(
@@ -223,8 +223,8 @@ def _agreement(runs):
         [row for row in rows if row["engine"] != "analytic"],
         Column("period [s]", "period", digits=3),
         Column("relative difference [-]", lambda row: max(row["apart"], FLOOR)),
-        "What an engine differs by from the analytic model: in the time of overturning, where it overturns, else in "
-        "the peak. 1: another outcome.",
+        "Relative difference of an engine from the analytic model: in the overturning time if it overturns, otherwise "
+        "in the peak. 1: another outcome.",
         panel="panel",
         by=lambda row: "",
         log="y",
@@ -291,8 +291,8 @@ def _benefit(result):
     chart.dots([result.settings["slenderness"]], [1.0], says=["the Caryatid"], mark="D", tone="var(--ink)")
     return figure(
         [chart],
-        "Does isolation help? Diamond: the Caryatid. Above the lines the isolated block lifts, and its bearings need "
-        "more than their 0.30 m, where the law describes no built bearing.",
+        "Diamond: the Caryatid. Above the lines the isolated block lifts, and its bearings need more than their "
+        "0.30 m; there the law describes no built bearing.",
         keys,
         keys,
     )
@@ -352,7 +352,7 @@ def _histories(result):
             charts[2].line(at[::KEPT], x[::KEPT], row["engine"])
     solvers = dict.fromkeys(row["engine"] for row in ended)
     caption = (
-        "All solvers over each other. Dashed: peak of the motion; |φ| = γ; the design displacement. Largest tilt of "
+        "All solvers overlaid. Dashed: peak of the motion; |φ| = γ; the design displacement. Largest tilt of "
         f"the isolated Caryatid: {number(most, 2)} slendernesses."
     )
     title = f"The Caryatid over time under {motion['label']}: {_outcomes(result.rows)}"

@@ -24,7 +24,7 @@ def page(result: Result) -> Page:
         f"{'move' if len(much) > 1 else 'moves'} an outcome, or an error more than twofold",
         (
             "Numbers that were chosen in the engines’ tuned variants, by experience and not by a formula, each halved "
-            "and doubled, all else as it is. No number was set to a scene; large effects are reported, not tuned away.",
+            "and doubled alone. No number was set to a scene; large effects are reported, not tuned away.",
             f"{len(still)} change no run at all, bit for bit: they concern round-off, or a limit that none of these "
             "scenes reaches.",
         ),

@@ -56,19 +56,19 @@ def page(result: Result) -> Page:
     return Page(
         _title(found),
         (
-            "Over a whole motion the rocking of a block cannot be predicted point by point, but probabilities can. "
-            f"Engines are compared with the analytic model run by run. “Equal” means that at most {100 * EQUAL:g} % of "
-            "runs end otherwise, by the upper limit of the 95 % interval; a failed run counts as differing.",
-            *([f"Too few motions to tell: {'; '.join(few)}."] if few else ()),
+            "Rocking cannot be predicted point by point over a whole motion, but probabilities can. Engines are "
+            f"compared with the analytic model run by run. “Equal” means that at most {100 * EQUAL:g} % of outcomes "
+            "differ, by the upper limit of the 95 % interval. A failed run counts as differing.",
+            *([f"Inconclusive (too few motions): {'; '.join(few)}."] if few else ()),
         ),
         first=(
             beside(
                 _shares(
                     chosen,
                     tones,
-                    "Left: the analytic model’s share of runs that exceed each limit state, with 95 % Wilson "
+                    "Left: share of runs of the analytic model that exceed each limit state, with 95 % Wilson "
                     "intervals, over the measure of least dispersion for overturning. A lognormal curve is drawn where "
-                    f"it fits, p ≥ {LEVEL:g}. Overturning: the small marks.",
+                    f"it fits (p ≥ {LEVEL:g}). Small marks: overturning.",
                 ),
                 _differing([{**row, "tier": tiers[NAME.of(row)]} for row in found]),
             ),
@@ -194,7 +194,7 @@ def _differing(found):
         sorted((row for row in found if row["runs"]), key=lambda row: (not subject(row), row["engine"] == REFERENCE)),
         NAME,
         Column("runs that differ or fail", "share", percent=True, within="interval"),
-        "Right: runs of each variant that end otherwise than the model’s or fail, all scenes together; open: defaults.",
+        "Right: share of runs of each variant that differ from the model or fail, all scenes together; open: defaults.",
         Axis("runs that differ or fail", 0.0, 1.0, ticks=tuple((k / 4, f"{25 * k} %") for k in range(5))),
         panel=lambda row: "all scenes: engines",
         opened=as_it_comes,
@@ -203,9 +203,9 @@ def _differing(found):
 
 def _title(found):
     words = [row["equal"] for row in found]
-    count = f"{words.count('yes')} of {len(found)} variants of engines"
-    title = f"Many earthquakes: outcomes equal to the model's, to {100 * EQUAL:g} %, in {count}"
-    return title + (f"; too few motions to tell for {words.count(TOO_FEW)}" if TOO_FEW in words else "")
+    title = f"Many earthquakes: {words.count('yes')} of {len(found)} engine variants are shown to differ in at "
+    title += f"most {100 * EQUAL:g} % of outcomes"
+    return title + (f"; {words.count(TOO_FEW)} inconclusive (too few motions)" if TOO_FEW in words else "")
 
 
 def _fits(row):

@@ -26,18 +26,18 @@ def page(result: Result) -> Page:
     quiet = [row for row in made if not row["lost"] and row["error"] is not None and row["error"] <= TRUSTED]
     worst = max(quiet, key=lambda row: row["graph"], default=None)
     says = [
-        "The scripts that rocking script writes agree with the analytic model. Here one thing in them is done as a "
-        "first script may do it, all else as it is."
+        "The scripts that rocking script writes agree with the analytic model. Here one thing in them is changed to "
+        "what a first script may do; all else stays."
     ]
     if worst:
         says.append(
-            f"The error of restitution does not show all: with {worst['mistake']} in {worst['engine']} it is "
-            f"{number(worst['error'], 1)} at most, and the tilt is off by {number(worst['graph'], 2)} of the "
+            f"The error of restitution does not show every mistake: with {worst['mistake']} in {worst['engine']} it is "
+            f"{number(worst['error'], 1)} at most, but the tilt is off by {number(worst['graph'], 2)} of the "
             "slenderness."
         )
     return Page(
-        f"What a mistake costs: of {len(made)} in scripts for {listed(list(found)) or 'no engine'}, {len(lost)} give "
-        "another outcome in a scene, or a run that fails",
+        f"What a mistake costs: of {len(made)} in scripts for {listed(list(found)) or 'no engine'}, {len(lost)} change "
+        "an outcome or make a run fail",
         tuple(says),
         first=(
             _dots(found, result.settings["no_matter"]),
@@ -152,9 +152,9 @@ def _dots(found: dict[str, list[dict[str, Any]]], no_matter: str) -> Figure | No
         if name != "lost"
     }
     caption = (
-        "Each mistake in its worst scene, costliest first. Filled: largest difference of the tilt; open: error of "
-        "restitution at impacts. A cross at the right: another outcome than the model’s, or a run that fails. Last: "
-        "the script as it is. What does not matter is in the tables of the study’s page."
+        "Each mistake in its worst scene, costliest first; last, the script without one. Filled: largest difference of "
+        "the tilt; open: error of restitution at impacts. Cross at the right: another outcome than the model’s, or a "
+        "failed run. Changes that do not matter are on the study’s page."
     )
     return figure(charts, caption, keys, keys)
 

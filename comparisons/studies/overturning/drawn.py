@@ -45,13 +45,13 @@ def shifts(result: Result) -> Figure | None:
     left_out = "; ".join(NAME.of(one) for one in every if one not in shown)
     strip = _strip(shown, rows, pressed(result), list(settings["grounds"]))
     caption = (
-        f"Left: all boundaries at their shifts, known to ±\u00a0{percent(settings['tolerance'] / 2, 1)}; within a row "
-        f"from above: {', '.join(settings['grounds'])}, drawn blocks. Filled: tuned; open: defaults; bars: boundaries "
-        "with N\u00a0<\u00a00, which do not count. Cross at the frame: not found, with their number, + those with "
-        "N\u00a0<\u00a00. Arrowhead: nearer to 0." + f" Not drawn, but in the table: {left_out}." * bool(left_out)
+        f"Left: shift of each boundary, known to ±\u00a0{percent(settings['tolerance'] / 2, 1)}; in a row from above: "
+        f"{', '.join(settings['grounds'])}, drawn blocks. Filled: tuned; open: defaults; bars: boundaries with "
+        "N\u00a0<\u00a00, which do not count. Cross at the frame: number not found, + those with N\u00a0<\u00a00. "
+        "Arrowhead: nearer to 0." + f" Not drawn, but in the table: {left_out}." * bool(left_out)
     )
     ground, shape = next(iter(settings["grounds"])), settings["shapes"][0]
-    words = " Right: the analytic model under one of the pulses; shaded: overturns; dots: boundaries that are sought."
+    words = " Right: analytic model under one pulse; shaded: overturns; dots: boundaries."
     return beside(figure([strip], caption + words), figure([_model(result, ground, shape)], caption + words))
 
 

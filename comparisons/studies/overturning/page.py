@@ -20,6 +20,7 @@ from ...showing.parts import (
     table,
     where,
 )
+from ...showing.wording import listed
 from .drawn import AMPLITUDE, FAIR, FREQUENCY, GROUND, LIMIT, PULSE, maps, over_frequency, place, pressed
 from .drawn import shifts as drawn_shifts
 from .edges import APART, JUMPS
@@ -52,18 +53,18 @@ def page(result: Result) -> Page:
     return Page(
         _title([row for row in rated if own[row["engine"]] == row["variant"]], tuned),
         (
-            "A pulse overturns a block above some amplitude. At larger amplitudes there may be a safe gap, in which "
-            "the first impact dissipates so much energy that the block does not overturn. Engines are rated by where "
-            "they put these boundaries, as long as the analytic model keeps the block pressed on its base. An "
-            "outcome nearer to a boundary than the engine's shift is not certain.",
+            "A pulse overturns a block above some amplitude. At larger amplitudes there may be a safe gap: the first "
+            "impact dissipates so much energy that the block does not overturn. Engines are rated by the shift of "
+            "these boundaries, as long as the analytic model keeps the block pressed on its base. An outcome nearer "
+            "to a boundary than the engine's shift is uncertain.",
             *_under_jumps(result),
         ),
         first=(
             drawn_shifts(result),
             table(
                 f"Boundaries under all pulses on both grounds, and of {len(drawn)} blocks drawn in the promised range, "
-                f"block pressed on its base; outcomes further than {band} from those on both grounds; a boundary where "
-                "the normal force N would be negative is shown, and does not count",
+                f"with the block pressed on its base; outcomes further than {band} from those on both grounds. "
+                "Boundaries where the normal force N would be negative are shown but do not count",
                 rated,
                 NAME,
                 Column("rating", lambda row: RATINGS[row["rating"]]),
@@ -212,11 +213,11 @@ def _summary(rows):
 def _title(best, tuned):
     """The title: over the engines' main variants that are tuned; over all main variants if none is tuned."""
     rated = [row for row in best if (row["engine"], row["variant"]) in tuned]
-    how, rated = ("tuned", rated) if rated else ("not tuned", best)
+    how, rated = ("tuned engines", rated) if rated else ("engines not tuned", best)
     largest = max((row["largest"] for row in rated if row["largest"] is not None), default=None)
-    lost = [f"{row['engine']} finds {row['found']} of {row['of']}" for row in rated if row["found"] < row["of"]]
-    words = f"Many pulses: {how}, engines move the overturning boundary by {percent(largest)} at most"
-    return "; ".join([words, *lost])
+    lost = [f"{row['found']} of {row['of']} found ({row['engine']})" for row in rated if row["found"] < row["of"]]
+    words = f"Many pulses: {how} shift the overturning boundary by {percent(largest)} at most"
+    return "; ".join(filter(None, [words, listed(lost)]))
 
 
 def _boundaries(caption, edges, shifts, *columns):
@@ -258,9 +259,9 @@ def _held_down(edges, shifts, held):
     pulled = [edge for edge in edges if edge["min_normal"] < 0]
     if pulled:
         yield (
-            "Here the normal force of the analytic model becomes negative. A block in contact slides or leaves its "
+            "Here the normal force of the analytic model becomes negative. A block in contact would slide or leave its "
             "base, as it does in the engines, so these boundaries say nothing about the engines. Variants whose "
-            "adapter holds the corner down, as the model does, show whether contact or integration moves them."
+            "adapter holds the corner down, as the model does, show whether contact or integration shifts them."
         )
     yield _boundaries("Boundaries at which the analytic model holds the corner down", pulled, [*shifts, *held])
 
@@ -287,9 +288,9 @@ def _under_jumps(result):
         mine = [row for row in where(rows, engine=engine, variant=own[engine]) if row["shift"] and place(row) in sound]
         worst = max(mine, key=lambda row: abs(row["shift"]), default=None)
         if worst and worst["shape"] in JUMPS:
-            found.append(f"{engine}: {percent(worst['shift'])} under a {worst['shape']} pulse")
+            found.append(f"{percent(worst['shift'])} under a {worst['shape']} pulse ({engine})")
     if found:
-        yield f"Largest where the ground’s acceleration begins with a jump: {'; '.join(found)}."
+        yield f"The shift is largest where the acceleration of the ground jumps at the start: {listed(found)}."
 
 
 def _confusions(result, band):

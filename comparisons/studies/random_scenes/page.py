@@ -14,7 +14,7 @@ TRUSTED = 0.95  # share of right runs, of those not left out
 LEAST = 1e-3  # that the figure's axis begins at
 TICKS = ((1e-3, "≤ 0.1 %"), (1e-2, "1 %"), (0.1, "10 %"), (1.0, "100 %"))
 WRONG = Column("runs that differ or fail", "wrong", percent=True, within="wrong_within")
-TOLD = "Every run that differs is reported as one, wherever it is shown."
+TOLD = "A run that differs from the analytic model is reported as differing wherever it is shown."
 
 
 def page(result: Result) -> Page:
@@ -33,7 +33,7 @@ def page(result: Result) -> Page:
                 NAME,
                 WRONG,
                 "Share of runs that differ from the analytic model or fail, with 95 % Wilson intervals. Open marks: "
-                "defaults; an arrowhead: none.",
+                "defaults; arrowheads: none.",
                 Axis("runs that differ or fail", LEAST, 1.0, "log", TICKS),
                 opened=as_it_comes,
             ),

@@ -66,10 +66,10 @@ def page(result: Result) -> Page:
     return Page(
         _title(both, equal),
         (
-            "What counts is how the block ends: whether it stands, rocks or overturns, and in which swing it falls. "
-            f"“Equal” means that the upper limit of the 95 % interval is below {equal}; a failed run counts as "
-            "differing. Runs under one record are not independent, so the interval counts records. A number of records "
-            "that could not show equality even if no run differed is inconclusive.",
+            "The outcome is whether the block stands, rocks or overturns, and in which swing it falls. “Equal” means "
+            f"that the upper limit of the 95 % interval is below {equal}. A failed run counts as differing. Runs under "
+            "one record are not independent, so the interval counts records. Inconclusive: too few records to show "
+            "equality even without a difference.",
         ),
         first=(
             _tilts(runs),
@@ -183,8 +183,8 @@ def _peak_mark(errors):
 
 def _title(both: list[dict[str, Any]], equal: str) -> str:
     words = [row["equal"] for row in both]
-    title = f"Recorded motions: {words.count('yes')} of {len(words)} variants of engines end as the model does, "
-    title += f"within {equal}"
+    title = f"Recorded motions: {words.count('yes')} of {len(words)} engine variants are shown to differ in at most "
+    title += f"{equal} of outcomes"
     few = words.count(TOO_FEW)
     return title + (f"; {few} inconclusive (too few records)" if few else "")
 
@@ -217,8 +217,8 @@ def _tilts(runs: list[dict[str, Any]]) -> Figure | None:
     keys = {kind(row): key_of(kind(row), filled=not as_it_comes(row), joined=False) for row in firsts}
     left_out = "; ".join(NAME.of(members[0]) for members in groups if members not in shown)
     caption = (
-        "One mark for each component that is judged: on the line, engine and model agree; where one of the two stands "
-        "at “overturns”, the outcome is another one. Open: defaults, of fewer records; at the upper frame: failed runs."
+        "One mark for each component that is judged. On the line engine and model agree; if only one is at "
+        "“overturns”, the outcomes differ. Open: defaults, with fewer records; upper frame: failed runs."
         + f" Not drawn, but in the table: {left_out}."
         * bool(left_out)
     )

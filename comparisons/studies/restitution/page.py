@@ -61,9 +61,8 @@ def page(result: Result) -> Page:
         _title(ranked),
         (
             "A released block loses speed at every impact. Eq. (7) gives the loss from angular momentum alone. The "
-            "engines are not given that number: it follows from their contact. It is wrong where the impact falls "
-            "within a step, where the corner sinks in or bounces, or where built-in damping dissipates energy in "
-            "flight.",
+            "engines are not given this number; it follows from their contact. It is wrong where a step straddles the "
+            "impact, where the corner penetrates or bounces, or where built-in damping dissipates energy in flight.",
         ),
         first=(
             _over_slenderness(cells, result.settings["default_variants"]),
@@ -206,9 +205,8 @@ def _rated(variant, rows, orders):
 def _title(ranked):
     good = [row for row in ranked if rating(_error(row), _wrong(row)) == "good"]
     missed = max((row["rms"] for row in ranked if row not in good and row["rms"]), default=None)
-    return (
-        f"One impact: {len(good)} of {len(ranked)} variants of engines reproduce restitution to within {TRUSTED:g}"
-        + (f"; the others are off by up to {number(missed, 2)}" if missed else "")
+    return f"One impact: {len(good)} of {len(ranked)} engine variants reproduce restitution to within {TRUSTED:g}" + (
+        f"; the worst is off by {number(missed, 2)}" if missed else ""
     )
 
 
@@ -224,9 +222,8 @@ def _over_slenderness(cells, defaults):
         worst,
         GAMMA,
         ERROR,
-        "Error of restitution, root mean square; on the base the worst of its masses. Coloured: each engine’s main "
-        "variant, and the defaults of those in question; open marks: defaults. Grey: others, named under the pointer. "
-        "Where all runs failed there is no mark.",
+        "Rms error of restitution by swings; on the base, for the worst base mass. Coloured: main variants, and "
+        "defaults of the engines in question. Open marks: defaults. Grey: other variants. No mark: all runs failed.",
         panel=lambda row: f"{row['ground']}: restitution",
         by=lambda row: row["variant"] if grey(row) else row["tier"],
         grey=grey,

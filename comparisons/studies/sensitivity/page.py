@@ -49,8 +49,8 @@ def page(result: Result) -> Page:
         _title(shown),
         (
             "Near the overturning boundary small changes decide the outcome. Each motion and block is changed in one "
-            "way at a time; engines run them unchanged. Counted are outcomes that differ from the analytic model's "
-            "of the unchanged scene.",
+            "way at a time; engines run them unchanged. An outcome counts as changed if it differs from the analytic "
+            "model's of the unchanged scene.",
             *(_against_engines(scene, where(shown, scene=scene)) for scene in ranked),
         ),
         first=(
@@ -58,8 +58,9 @@ def page(result: Result) -> Page:
                 shown,
                 WHAT,
                 SHARE,
-                "Share of outcomes that each change alters, with 95 % Wilson intervals. Ink: changes of the scene in "
-                "the analytic model; coloured: the engines’ main variants, on the unchanged scene. Arrowhead: none.",
+                "Share of outcomes that each change alters, with 95 % Wilson intervals. Not coloured: changes of the "
+                "scene in the analytic model; coloured: the engines’ main variants, on the unchanged scene. "
+                "Arrowhead: none.",
                 Axis("outcomes changed", LEAST, 1.0, "log", TICKS),
                 panel=lambda row: f"{row['scene']}: outcomes changed",
             ),
@@ -112,7 +113,7 @@ def _title(shown):
     first = _most(grouped(where(shown, engine=REFERENCE), "scene")[shown[0]["scene"],])
     title = f"What matters more than the engine: {WHAT.of(first)} changes {percent(SHARE.of(first))} of outcomes"
     if most := _most([row for row in shown if row["engine"] != REFERENCE and row["runs"]]):
-        title += f", engines’ main variants {percent(SHARE.of(most))} (95 % upper bound {percent(most['high'])})"
+        title += f", a main variant at most {percent(SHARE.of(most))} (95 % upper bound {percent(most['high'])})"
     return title
 
 
@@ -121,12 +122,12 @@ def _against_engines(scene, shown):
     changes = where(shown, engine=REFERENCE)
     engines = [row for row in shown if row["engine"] != REFERENCE and row["runs"]]
     if not engines:
-        return f"{scene.capitalize()}: no engine took part."
+        return f"{scene.capitalize()}: no engine was run."
     worst = max(engines, key=lambda row: row["high"])
     above = sum(row["low"] > worst["high"] for row in changes)
     return (
-        f"{scene.capitalize()}: {above} of {len(changes)} changes alter more outcomes than any engine’s main variant, "
-        f"with 95 % certainty; the least certain is {NAME.of(worst)}, up to {percent(worst['high'])}."
+        f"{scene.capitalize()}: {above} of {len(changes)} changes alter more outcomes than any engine’s main variant; "
+        f"their 95 % intervals lie above the highest limit of these, {percent(worst['high'])} ({NAME.of(worst)})."
     )
 
 

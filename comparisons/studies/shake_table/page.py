@@ -175,6 +175,10 @@ def _bars(result: Result, engines: Sequence[dict[str, Any]]) -> Figure | None:
         for row in where(engines, specimen=one["name"]):
             failed = f" ({row['failed']} failed)" if row["failed"] else ""
             rows.append(_bar(row, name_of(row) + failed, *_between(row, same)))
+    hidden = (
+        " Where an engine differs from the model in fewer than five tests, its right answers are not given: the line "
+        "spans what is possible."
+    ) * any(row["right"] is None for row in engines)
     agree = result.settings["agree"]
     rules = () if agree is None else ((agree / len(result.settings["tests"]), "the other boulder"),)
     first = math.floor(10 * min(low for row in rows for low in row["within"]))  # tenths
@@ -183,9 +187,8 @@ def _bars(result: Result, engines: Sequence[dict[str, Any]]) -> Figure | None:
         rows,
         Column("predicted by", "name"),
         SHARE,
-        "Share of outcomes predicted, with 95 % intervals by record. “model, as engines” and the engines: at one "
-        "slenderness, fitted to all tests; the rest held out by record. Where an engine differs from the model in fewer"
-        " than five tests, its right answers are not told: the line spans what is possible. A failed run is not right.",
+        "Share of outcomes predicted, with 95 % intervals by record. “model, as engines” and the engines use one "
+        f"slenderness, fitted to all tests; the rest are held out by record. A failed run is not right.{hidden}",
         Axis(SHARE.head, first / 10, 1.0, ticks=tuple((tenth / 10, str(10 * tenth)) for tenth in marked)),
         panel="specimen",
         rules=rules,
@@ -209,9 +212,9 @@ def _between(row, model):
 def _table_of_engines(result, engines):
     return table(
         "Engines and the model at the same slenderness. Equal: at most 5 % of outcomes differ, by the upper end of the "
-        f"95 % interval (Wilson, by record){_undecidable(result)}. In brackets, records in which most differences go "
-        "that way. Last, how many differences are among the runs in which a change of the scene by 10⁻⁴ changes the "
-        "model’s own outcome or time of a fall",
+        f"95 % interval (Wilson, by record){_undecidable(result)}. In brackets: records in which most differences go "
+        "that way. Last column: differences among the runs in which a change of the scene by 10⁻⁴ changes the model’s "
+        "own outcome or time of a fall",
         where(engines, specimen=ALL) or engines,
         NAME,
         Column("kind", "tier"),

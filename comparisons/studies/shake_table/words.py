@@ -17,7 +17,7 @@ def title(scores: Sequence[dict[str, Any]], settings: dict[str, Any]) -> str:
         return listed([str(row["right"]) for row in where(scores, forecast=name, judged=BY_RECORD)])
 
     count = len(settings["tests"])
-    return f"Shake table: the model predicts {right(MODEL)} of {count} outcomes, a threshold of PGV {right(THRESHOLD)}"
+    return f"Shake table: the model predicts {right(MODEL)} of {count} outcomes, a PGV threshold {right(THRESHOLD)}"
 
 
 def sentence(result: Result, engines: Sequence[dict[str, Any]]) -> str:
@@ -28,19 +28,20 @@ def sentence(result: Result, engines: Sequence[dict[str, Any]]) -> str:
     words = [f"The model is wrong in {wrong} of {len(result.settings['tests'])} tests ({names})."]
     together = where(engines, specimen=ALL) or engines
     if tuned := where(together, tier="tuned"):
-        said = [f"{name_of(row)}, {apart(row)} of {row['size']}" for row in tuned]
+        said = [f"{apart(row)} of {row['size']} ({row['engine']})" for row in tuned]
         fits = [one for row in where(result.rows, part="fit", change=AS_IT_IS) for one in row["neighbours"]]
         first, second, *_ = result.settings["specimens"][0]["grid"]
         words.append(
-            f"Runs that end differently from it: {listed(said)}; the model itself, with a slenderness "
-            f"{number(math.degrees(second - first), 1)} deg smaller or larger, {min(fits)} to {max(fits)} of "
-            f"{len(result.settings['tests'])}."
+            f"Tuned engines differ from the model in {listed(said)} runs. A slenderness "
+            f"{number(math.degrees(second - first), 1)} deg smaller or larger changes {min(fits)} to {max(fits)} of "
+            f"{len(result.settings['tests'])} outcomes of the model itself."
         )
-    for row in where(together, tier="defaults"):
-        failed = f" and fails in {row['failed']} runs" if row["failed"] else ""
-        unsafe = f", on the unsafe side (p = {number(row['p_records'], 2)} by record)" if _unsafe(row) else ""
-        added = f"misses {row['only_a']} of the model’s overturnings, adds {row['only_b']}{failed}"
-        words.append(f"{name_of(row)}, {added}{unsafe}.")
+    if unsafe := [row for row in where(together, tier="defaults") if _unsafe(row)]:
+        chances = listed([f"{number(row['p_records'], 2)} in {row['engine']}" for row in unsafe])
+        words.append(
+            "With defaults, engines err on the unsafe side: they miss more overturnings than they add (p by record: "
+            f"{chances})."
+        )
     return " ".join(words)
 
 
@@ -54,11 +55,12 @@ def at_a_glance(result: Result) -> str:
     guess = listed([percent(one / len(result.settings["tests"])) for one in right[FREQUENT]])
     own = [row["right"] for row in where(result.rows, part="engine", tier="tuned") if row["right"] is not None]
     engines = [percent(one / len(result.settings["tests"])) for one in (min(own), max(own))] if own else []
-    tuned = f", tuned engines {' to '.join(dict.fromkeys(engines))}" if engines else ""
+    tuned = f", and tuned engines {' to '.join(dict.fromkeys(engines))}" if engines else ""
+    always = f" Always predicting the more frequent outcome gives {guess}." if guess else ""
     names = listed([one["name"] for one in result.settings["specimens"]])
     return (
-        f"on a shake table the model predicts {shares} of the outcomes ({names}){tuned}, the commoner outcome {guess}; "
-        "restitution was not measured."
+        f"on a shake table, the model predicts {shares} of the outcomes ({names}){tuned}.{always} Restitution was not "
+        "measured."
     )
 
 
@@ -88,18 +90,18 @@ def bounds(result: Result) -> str:
     each = where(result.rows, part="score", forecast=EACH)
     model = where(result.rows, part="score", forecast=MODEL, judged=BY_RECORD)
     words += (
-        " One threshold of PGA for each record, fitted to these very tests, is right in "
+        " A PGA threshold for each record, fitted to the same tests, is right in "
         f"{listed([str(row['right']) for row in each])}"
     )
     own = all(
         2 * (one["size"] - one["right"]) < row["size"] - row["right"] for one, row in zip(each, model, strict=True)
     )
-    words += ": most of the model’s errors are its own, not chance." if own else "."
+    words += ". Most of the model’s errors are therefore its own, not chance." if own else "."
     if settings["agree"] is not None:
-        words += f" The two blocks, of unlike shape, end alike in {settings['agree']}."
+        words += f" The two blocks differ in shape and have the same outcome in {settings['agree']}."
     return words + (
-        " The model is planar, the block is not. Its slenderness and the spread of that are fitted, and judged on "
-        "records that they were not fitted to."
+        " The model is planar; the block is not. The mean and the spread of its slenderness are fitted, and judged on "
+        "records not used in the fit."
     )
 
 

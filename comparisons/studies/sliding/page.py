@@ -53,8 +53,8 @@ def page(result: Result) -> Page:
     return Page(
         _title(every[0]),
         (
-            "Each scene is run in the model with its friction, and again as if no corner could slide: what changes is "
-            "what sliding does. Engines run scenes in which the friction does not suffice.",
+            "The model runs each scene with its friction, and again as if no corner could slide. The difference is the "
+            "effect of sliding. Engines run scenes in which the friction does not suffice.",
         ),
         first=(
             _shares(cells),
@@ -322,8 +322,8 @@ def _slips(runs: Sequence[Mapping[str, Any]]) -> Figure | None:
         rows,
         SLIP,
         Column("share of runs [-]", "share"),
-        "Share of the runs of blocks that stay upright whose error of the largest slip is at most so much; what is "
-        "missing from 1 failed or overturned.",
+        "Of the runs of blocks that stay upright, the share whose error of the largest slip is at most the value on "
+        "the axis. The remaining runs failed or overturned.",
         panel="tier",
         log="x",
     )

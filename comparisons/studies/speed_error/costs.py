@@ -237,10 +237,10 @@ def advice(result: Result) -> Table | None:
         for name, row in list(subjects.items())[:1] or [("", None)]:
             rows.append([f"{percent(error, 1)}", *_advised(name, row, found)])
     names = listed([name for name, engine in ENGINES.items() if engine.subject])
-    heads = ("accuracy", "use", "setting", "CPU time per simulated second", "cheaper elsewhere", "as a script")
+    heads = ("accuracy", "variant", "level", "CPU time per simulated second", "cheaper in another engine", "script")
     caption = (
-        f"What to use: the cheaper of {names}, tuned, whose peak tilt in an earthquake and whose smallest overturning "
-        "pulse are that accurate"
+        f"Recommended: the cheaper of {names}, tuned, that keeps the peak tilt in an earthquake and the smallest "
+        "overturning pulse within the accuracy"
     )
     return Table(caption, heads, rows)
 
@@ -267,7 +267,5 @@ def _words(result):
     }
     if not told:
         return ""
-    times = listed([number(ratio, 2) for ratio in told.values()])
-    return (
-        f"for {percent(ASKED, 1)} of peak tilt, {listed(list(told))}, tuned, take {times} times the model’s CPU time."
-    )
+    times = listed([f"{number(ratio, 2)} ({engine})" for engine, ratio in told.items()])
+    return f"tuned, a peak tilt within {percent(ASKED, 1)} takes {times} times the analytic model’s CPU time."

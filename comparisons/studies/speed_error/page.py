@@ -10,6 +10,7 @@ from ...running.provenance import Result
 from ...showing.figures import beside, lines
 from ...showing.parts import NAME as SOLVER
 from ...showing.parts import Column, Head, Page, grouped, number, percent, short, table, where
+from ...showing.wording import listed
 from .cases import NEEDED, PLAIN
 from .costs import (
     ASKED,
@@ -58,9 +59,9 @@ def page(result: Result) -> Page:
     return Page(
         _title(result),
         (
-            "Every solver runs through levels of its accuracy parameter; error and CPU time come from the same runs. "
-            "Costs are compared at an equal error, interpolated between levels, and only where all finer levels keep "
-            f"it, too. Costs within a factor of {number(_noise(every), 3)} are not distinguished.",
+            "Every solver is run at several levels of its accuracy parameter. Error and CPU time come from the same "
+            "runs. Costs are compared at equal error, interpolated between levels, and only where all finer levels "
+            f"keep that error too. Costs within a factor of {number(_noise(every), 3)} are not distinguished.",
         ),
         first=(_figure([row for key in first for row in errors[key]], CPU, CAPTION, rows), asked),
         more=(
@@ -124,9 +125,9 @@ def _shares(result):
 
 
 CAPTION = (
-    "Left and low is better. Coloured: solvers of which a level and all finer ones keep 0.001; grey: the others, named "
-    "under the pointer. Levels that failed, missed impacts or found no boundary have no error: table “Levels without "
-    "an error” of the study’s page. Errors below 10⁻⁹ are drawn there."
+    "Lower left is better. Coloured: solvers that keep 0.001 at a level and all finer ones. Grey: the others, named "
+    "under the pointer. No error is given for levels that failed, missed impacts or found no boundary; the study’s "
+    "page lists them. Errors below 10⁻⁹ are drawn there."
 )
 
 FINE_CAPTION = (
@@ -147,10 +148,8 @@ def _title(result):
     place = f"Cost against error: {percent(ASKED, 1)} of peak tilt"
     if not found:
         return f"{place} is reached by no engine in question"
-    least, most = min(found.values()), max(found.values())
-    whose = " and ".join(found)
-    times = " to ".join(dict.fromkeys((number(least, 2), number(most, 2))))
-    return f"{place} costs {whose} {times} times the analytic model's CPU time"
+    times = listed([f"{number(ratio, 2)} ({engine})" for engine, ratio in found.items()])
+    return f"{place} takes {times} times the model’s CPU time"
 
 
 def _ratios_of_subjects(result):

@@ -55,15 +55,15 @@ def page(result: Result) -> Page:
     return Page(
         _title(cells, within, apart, where(variants, kind="stepping", best=True)),
         (
-            "Scenes at which real integrators have failed: pulses at the boundary, grazing impacts, a base of a "
-            "ten-thousandth of the block, ten minutes of shaking, a block that just slides. A result is right if every "
-            "measure is within its tolerance. It differs if the run ends but is not right. It failed if the solver "
-            "gives up, exceeds its time limit or moves the block in a physically impossible way.",
+            "Real integrators have failed on these scenes: pulses at the boundary, grazing impacts, a base of a "
+            "ten-thousandth of the block’s mass, ten minutes of shaking, a block that barely slides. A result is right "
+            "if every measure is within its tolerance; otherwise it differs. It fails if the solver gives up, exceeds "
+            "its time limit or moves the block in a physically impossible way.",
             _most(where(counts, kind="stepping")),
             *(
                 [
                     f"{len(apart)} of the {len(cases)} cases lie outside the range for which engines are tested "
-                    f"({in_words()}): they are run as all others, and counted apart."
+                    f"({in_words()}). They are run like the others, but counted separately."
                 ]
                 if apart
                 else []
@@ -74,9 +74,9 @@ def page(result: Result) -> Page:
                 cells,
                 within,
                 chosen,
-                "Default levels. Blank or ✓ right, ~ differs, ≠ another outcome, ✗ failed; under the pointer: the "
+                "Default levels. Blank or ✓: right; ~: differs; ≠: another outcome; ✗: failed. Under the pointer: the "
                 "measure farthest outside its tolerance. 2nd code: the independent second implementation; steps: plain "
-                "time stepping of the equations. –: not run, or not modelled, as these two know no friction.",
+                "time stepping of the equations. –: not run, or not modelled: these two have no friction.",
             ),
             table(
                 "Results at default levels",
@@ -270,8 +270,8 @@ def _most(counts):
     names = " and ".join(NAME.of(row) for row in counts if row[RIGHT] == most)
     run, right, tried, cured = (sum(row[key] for row in counts) for key in ("run", RIGHT, "tried", FINER))
     return (
-        f"Of the solvers that step, most cases are right in {names}: {most}. Of their {run - right} results that are "
-        f"not right, finer levels were run for {tried} and are right in {cured}."
+        f"Among time-stepping solvers, most cases are right in {names}: {most}. Of their {run - right} results that "
+        f"are not right, {tried} were run again at finer levels, and {cured} became right."
     )
 
 

@@ -26,8 +26,8 @@ def page(result: Result) -> Page:
         _title(first),
         (
             "Each point is the share of synthetic motions that overturn a block of that slenderness when they are "
-            "scaled to that peak ground acceleration. A stronger motion is not always the worse one: at slenderness "
-            f"{GAMMA.text(worst)} the share falls again by {FALLS.text(worst)} on the way up.",
+            "scaled to that peak ground acceleration. A stronger motion is not always worse: at slenderness "
+            f"{GAMMA.text(worst)} the share drops by {FALLS.text(worst)} as the acceleration increases.",
         ),
         more=(
             figure(

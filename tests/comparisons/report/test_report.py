@@ -137,7 +137,7 @@ def test_outside_the_range_no_engine_is_recommended(copied, studies):
 
 def test_every_number_of_the_first_table_is_that_of_a_study(copied, studies):
     page = Page(write_page(copied, studies))
-    found = page.table("With counts") | page.table("The same of the others")
+    found = page.table("With counts") | page.table("All tests of the others")
     summaries = where(read_result(studies / "restitution.json").rows, scope="all")
     marks = get_study("stability").judgements(read_result(studies / "stability.json"))[0].marks
     columns = {column for _, column in found if column != "engine"}
@@ -157,9 +157,9 @@ def test_every_number_of_the_first_table_is_that_of_a_study(copied, studies):
             assert bool(re.search(rf"[(, ]{count} {words}[,)]", cell)) == (count > 0)
         known = marks.get((engine, variant))
         assert found["hard cases right", column].startswith(known.words if known else "not tested")
-    brief = page.table("All that was tested")
+    brief = page.table("All tests of the engines")
     assert all(found[row, column].startswith(cell) for (row, column), cell in brief.items() if column != "engine")
-    assert "All that was tested" not in " ".join(Page(write_page(copied, studies=NO_STUDIES)).tables)
+    assert "All tests of the engines" not in " ".join(Page(write_page(copied, studies=NO_STUDIES)).tables)
 
 
 def test_pages_need_nothing_but_themselves(folder):

@@ -258,5 +258,6 @@ def test_a_largest_shift_under_a_jump_is_said():
             rows.append({**edge, "part": "shift", "engine": engine, "variant": "v", "shift": shift})
     settings = {"engines": ["exudyn", "pybullet"], "default_variants": {"exudyn": "v", "pybullet": "v"}}
     assert list(_under_jumps(SimpleNamespace(rows=rows, settings=settings))) == [
-        "Largest where the ground’s acceleration begins with a jump: exudyn: −0.20 % under a one-cosine pulse."
+        "The shift is largest where the acceleration of the ground jumps at the start: −0.20 % under a one-cosine "
+        "pulse (exudyn)."
     ]
