@@ -204,10 +204,7 @@ def _rated(variant, rows, orders):
 
 def _title(ranked):
     good = [row for row in ranked if rating(_error(row), _wrong(row)) == "good"]
-    missed = max((row["rms"] for row in ranked if row not in good and row["rms"]), default=None)
-    return f"One impact: {len(good)} of {len(ranked)} engine variants reproduce restitution to within {TRUSTED:g}" + (
-        f"; the worst is off by {number(missed, 2)}" if missed else ""
-    )
+    return f"One impact: {len(good)} of {len(ranked)} engine variants reproduce restitution to within {TRUSTED:g}"
 
 
 def _over_slenderness(cells, defaults):
