@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from ..showing.glance import WAYS, Endings, Glance, costs, endings, swatches
+from ..showing.glance import Endings, Glance, costs, endings, swatches
 from ..showing.parts import RESTITUTION, Judgement, number
 from ..showing.wording import listed
 from .answer import Setup
@@ -26,14 +26,9 @@ def screen(setups: Sequence[Setup], judgements: Sequence[Judgement], glances: It
         "scene": curves and curves.scene,
         "costs": curves and costs(curves.curves),
         "endings": endings(shares) if shares else None,
-        "swatches": [one for one in swatches() if any(getattr(share, way_of(one[1])) for share in shares)],
+        "swatches": swatches(shares),
         "advice": next((one.advice for one in found if one.advice), None),
     }
-
-
-def way_of(words: str) -> str:
-    """The field of `Endings` that a swatch is of."""
-    return next(way for way, other in WAYS.items() if other == words)
 
 
 def shown(found: Sequence[Endings], setups: Sequence[Setup]) -> list[Endings]:

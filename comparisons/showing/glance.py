@@ -2,6 +2,7 @@
 for a wide page and once for a phone, of which a style shows one.
 """
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
@@ -78,10 +79,6 @@ TICKS = (
     (1e-1, "10 %"),
     (1.0, "100 %"),
 )
-SPEEDS = tuple(
-    (10.0**power, words)
-    for power, words in enumerate(("0.01 ms", "0.1 ms", "1 ms", "10 ms", "100 ms", "1 s", "10 s"), -5)
-)
 LINE = 15  # height of a row of the second chart
 COLUMNS: tuple[tuple[int, str, Callable[[Endings], str]], ...] = (
     (76, "differ", lambda one: f"{one.differing} of {one.runs}"),
@@ -96,7 +93,6 @@ WAYS = {
     "other": "other difference",
     "failed": "run failed",
 }
-CLASSES = {"missed": "missed", "added": "added", "other": "other", "failed": "lost-run"}
 
 
 def counted(motions: str, rows: Iterable[Mapping[str, Any]]) -> tuple[Endings, ...]:
@@ -144,8 +140,9 @@ def costs(curves: Sequence[Curve]) -> Figure:
 def _costs(curves: Sequence[Curve], width: int) -> Chart:
     shown = [one for one in curves if one.points]
     values = [cpu for one in shown for cpu, *_ in one.points]
-    low, high = max(t for t, _ in SPEEDS if t <= min(values)), min(t for t, _ in SPEEDS if t >= max(values))
-    x = Axis("CPU time per simulated second", low, high, "log", tuple(t for t in SPEEDS if low <= t[0] <= high))
+    low, high = math.floor(math.log10(min(values))), math.ceil(math.log10(max(values)))
+    decades = tuple((10.0**power, _seconds(power)) for power in range(low, high + 1))
+    x = Axis("CPU time per simulated second", 10.0**low, 10.0**high, "log", decades)
     y = Axis("error of peak tilt over the slenderness", FINEST, WORST * 1.0001, "log", TICKS)
     says = f"Error of peak tilt over CPU time of {', '.join(one.who for one in shown)}."
     chart = Chart(x, y, says, height=400 if width == WIDE else 420, width=width, left=72, right=16)
@@ -173,16 +170,18 @@ def _costs(curves: Sequence[Curve], width: int) -> Chart:
     return chart
 
 
+def _seconds(power: int) -> str:
+    """A power of ten of a second in words."""
+    return f"{10.0**power:g} s" if power >= 0 else f"{10.0 ** (power + 3):g} ms"
+
+
 def _name(chart, curves, places):
     """The name of each curve where it covers least: no other name, and no mark."""
     taken: list[Box] = []
     marks = [tuple(place) for some in places.values() for place in _dense(some)]
     for one in curves:
-        best = min(
-            ((box, at, aside, anchor) for box, at, aside, anchor in _beside(one.name, places[one.who])),
-            key=lambda found: _cover(chart, found[0], taken, marks),
-        )
-        box, place, aside, anchor = best
+        found = _beside(one.name, places[one.who])
+        box, place, aside, anchor = min(found, key=lambda one: _cover(chart, one[0], taken, marks))
         taken.append(box)
         chart.named(place, one.name, one.who, aside=aside, anchor=anchor, kind="soft" if one.subject else "soft plain")
 
@@ -254,9 +253,9 @@ def _endings(rows: Sequence[Endings], width: int) -> Chart:
         who = f"{one.engine}, {one.variant}"
         chart.beside(0, place, f"{one.engine}, {one.kind}", who=who, aside=(-6, 4.5), anchor="end")
         at = 0.0
-        for way, kind in CLASSES.items():
+        for way, words in WAYS.items():
             if count := getattr(one, way):
-                chart.bar(at, at + count / one.runs, place, who, kind, f"{count} of {one.runs}: {WAYS[way]}")
+                chart.bar(at, at + count / one.runs, place, who, f"ends-{way}", f"{count} of {one.runs}: {words}")
                 at += count / one.runs
         chart.reach([at], [place], [one.interval[0]], [one.interval[1]], along="x")
         for aside, _, text in shown:
@@ -269,8 +268,10 @@ def _told(one: Endings) -> str:
     return f"{one.motions}, {one.engine}, {one.kind}: {share} of {one.runs}; {', '.join(ways)}"
 
 
-def swatches() -> list[tuple[Markup, str]]:
-    """(picture, words) of the parts of a bar."""
-    shape = '<rect class="{}" width="31" height="12" x=".5" y="1"/></svg>'
+def swatches(found: Iterable[Endings]) -> list[tuple[Markup, str]]:
+    """(picture, words) of the parts that the bars have."""
+    rows = list(found)
+    shape = '<rect class="ends-{}" width="31" height="12" x=".5" y="1"/></svg>'
     picture = f'<svg class="chart mini" viewBox="0 0 32 14" aria-hidden="true" style="--c:var(--soft)">{shape}'
-    return [(Markup(picture.format(CLASSES[way])), words) for way, words in WAYS.items()]
+    shown = {way: words for way, words in WAYS.items() if any(getattr(one, way) for one in rows)}
+    return [(Markup(picture.format(way)), words) for way, words in shown.items()]

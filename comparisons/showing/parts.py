@@ -9,7 +9,7 @@ The same `Column` is an axis of a figure (`comparisons.showing.figures`).
 
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -244,15 +244,18 @@ def grouped(rows: Iterable[Any], *keys: Key) -> dict[tuple[Any, ...], list[Any]]
     return groups
 
 
+def kept_from(rows: Sequence[Row], keeps: Callable[[Row], bool]) -> Sequence[Row]:
+    """Of rows from coarse to fine those from which on all keep: a coarse one that keeps by chance is none of them."""
+    bad = [k for k, row in enumerate(rows) if not keeps(row)]
+    return rows[bad[-1] + 1 :] if bad else rows
+
+
 def cheapest(
     rows: Iterable[Row], name: Key, keeps: Callable[[Row], bool], cost: Callable[[Row], float]
 ) -> dict[Any, Row]:
-    """{name: cheapest of its rows, which come from coarse to fine, that keeps with all finer ones}, cheapest first."""
-    found = {}
-    for (who,), some in grouped(rows, name).items():
-        bad = [k for k, row in enumerate(some) if not keeps(row)]
-        if good := some[bad[-1] + 1 :] if bad else some:
-            found[who] = min(good, key=cost)
+    """{name: cheapest of its rows that keep, see `kept_from`}, cheapest first."""
+    kept = ((who, kept_from(some, keeps)) for (who,), some in grouped(rows, name).items())
+    found = {who: min(good, key=cost) for who, good in kept if good}
     return dict(sorted(found.items(), key=lambda item: cost(item[1])))
 
 

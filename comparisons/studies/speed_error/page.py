@@ -4,13 +4,10 @@ import statistics
 
 import numpy as np
 
-from engines import ENGINES, get_engine
-
 from ...running.provenance import Result
 from ...showing.figures import beside, lines
 from ...showing.parts import NAME as SOLVER
 from ...showing.parts import Column, Head, Page, grouped, number, percent, short, table, where
-from ...showing.wording import listed
 from .cases import NEEDED, PLAIN
 from .costs import (
     ASKED,
@@ -28,7 +25,7 @@ from .costs import (
     levels_run,
     measures_of,
     passing,
-    ratios,
+    times,
 )
 from .growth import fit
 
@@ -144,21 +141,8 @@ def _assisted(result):
 
 
 def _title(result):
-    found = {one["engine"]: ratio for one, ratio in _ratios_of_subjects(result)}
     place = f"Cost against error: {percent(ASKED, 1)} of peak tilt"
-    if not found:
-        return f"{place} is reached by no engine in question"
-    times = listed([f"{number(ratio, 2)} ({engine})" for engine, ratio in found.items()])
-    return f"{place} takes {times} times the model’s CPU time"
-
-
-def _ratios_of_subjects(result):
-    """(variant, ratio) of the main variants of the engines in question that reach the error asked."""
-    found = ratios(result)
-    for one in result.settings["variants"]:
-        own = one["tier"] == "tuned" and not one["applies_impact"] and ENGINES[one["engine"]].subject
-        if own and get_engine(one["engine"]).default_variant == one["variant"] and found.get(SOLVER.of(one)):
-            yield one, found[SOLVER.of(one)]
+    return f"{place} takes {cost}" if (cost := times(result)) else f"{place} is reached by no engine in question"
 
 
 def _noise(rows):

@@ -89,7 +89,7 @@ def test_names_stand_inside_and_off_each_other():
 def test_bars_are_as_long_as_the_counts_and_failed_runs_stand_apart():
     svg = charts(endings(shown(SHARES, SETUPS)))[0]
     bars = {node.get("class"): float(node.get("width")) for node in ElementTree.fromstring(svg).iter("rect")}
-    assert bars["missed"] / bars["lost-run"] == pytest.approx(3 / 4, rel=0.01)
+    assert bars["ends-missed"] / bars["ends-failed"] == pytest.approx(3 / 4, rel=0.01)
     assert {"recorded motions", "exudyn, defaults", "10 of 50", "1 of 170", "0", "4", "3"} <= set(texts(svg))
     assert "mujoco, tuned" not in texts(svg)  # not in question
 

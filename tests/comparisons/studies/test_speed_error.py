@@ -14,11 +14,12 @@ from comparisons.measuring import models, scripts
 from comparisons.running.cases import Case, solver
 from comparisons.running.provenance import Result, read_result
 from comparisons.running.study import compute
-from comparisons.showing.parts import COST, Figure, Table
+from comparisons.showing.parts import COST, Figure, Table, short
 from comparisons.studies import get_study
 from comparisons.studies.speed_error import cold, growth
 from comparisons.studies.speed_error.cases import NEEDED, entries, margin, searched, trials
 from comparisons.studies.speed_error.costs import advised, cost_at, levels_run, passing
+from comparisons.studies.speed_error.page import LEVELS
 from comparisons.studies.speed_error.share import own_share, seconds_inside
 from comparisons.studies.speed_error.study import errors, measure
 from engines import ENGINES, get_engine
@@ -178,7 +179,6 @@ def test_the_share_is_of_compiled_functions_without_what_they_call_back():
     assert all(none == 0 for _, none in spent) and 10 * spent[0][0] < spent[1][0]
 
 
-@pytest.mark.slow  # beside other work the profiled run and the plain one do not get the same machine
 @pytest.mark.slow  # beside other work the profiled run and the plain one do not get the same machine
 def test_the_share_of_an_engine_is_a_part_of_its_run(free):
     pytest.importorskip("pybullet")
@@ -354,7 +354,10 @@ def test_a_study_repeats_bit_for_bit_and_the_page_comes_from_its_result_alone(st
     page = STUDY.page(result)
     opening, whole = page.opening(), page.whole()
     assert whole.parts[:2] == opening.parts and list(map(type, opening.parts)) == [Figure, Table]
-    assert all(line[1] for line in opening.tables[0].rows if line[0] == "analytic, kernel")
+    (costs,) = (part for part in whole.tables if part.columns[1:] == tuple(f"≤ {short(level)}" for level in LEVELS))
+    kernel = next(line for line in costs.rows if line[0] == "analytic, kernel")
+    assert len(kernel) == 1 + len(LEVELS) and all("(1.0 ×; tolerance" in cell for cell in kernel[1:])
+    assert any(line[0] == "analytic, kernel" and line[1] for line in opening.tables[0].rows)
     assert f"{len(result.rows)} of {len(result.rows)} levels" in " ".join(page.how)
     slower = dataclasses.replace(result, rows=[one | {"cpu_high": 3 * one["cpu_low"]} for one in result.rows])
     assert "factor of 3.00 for" in STUDY.page(slower).how[0]
