@@ -89,7 +89,8 @@ def _stored(file):
         if not f"{file.stem}-".startswith(f"{result.kind}-"):  # <study>-<part>.json where a study has several
             raise ResultError(f"a result of {result.kind}; call it {result.kind}.json")
     except ResultError as error:
-        return Stored.damaged(file.stem, f"Study {file.stem}", f"{file.name} cannot be shown: {readable(error)}")
+        why = readable(error).removeprefix(f"{file.name}: ")
+        return Stored.damaged(file.stem, f"Study {file.stem}", f"{file.name} cannot be shown: {why}")
     old, origin = age(result), origin_of(result)
     try:
         study = get_study(result.kind)

@@ -27,7 +27,8 @@ def page(result: Result) -> Page:
         (
             "Each point is the share of synthetic motions that overturn a block of that slenderness when they are "
             "scaled to that peak ground acceleration. A stronger motion is not always worse: at slenderness "
-            f"{GAMMA.text(worst)} the share drops by {FALLS.text(worst)} as the acceleration increases.",
+            f"{GAMMA.text(worst)} the share drops by {number(100 * worst['falls_by'], 2)} percentage points as the "
+            "acceleration increases.",
         ),
         more=(
             figure(

@@ -86,7 +86,7 @@ def test_a_report_goes_on_beside_damaged_results(copy_of, studies, tmp_path):
     }
     opening = unescape(re.sub("<[^>]*>", "", (shown / "report.html").read_text(encoding="utf-8")))
     for name, words in {
-        "restitution": "restitution.json: not JSON",
+        "restitution": "not JSON",
         "sensitivity": "sensitivity.npz: missing or not the one sensitivity.json was written with",
         "autopsy": "a result of surface; call it surface.json",
         "tolerances": "its page fails (KeyError(",
