@@ -88,7 +88,7 @@ def rows_with(section):
 @pytest.mark.parametrize("name", SHORT)
 def test_a_study_runs_and_shows_it(crude, tmp_path, name):
     study = get_study(name)
-    more = {"scenes": [near_overturning()]} if name == "speed-error" else {}
+    more = {"scenes": [near_overturning("one-sine")]} if name == "speed-error" else {}
     as_model = name in ("fragility", "sensitivity", "sheet")
     run = by_model(history=name == "sheet") if as_model else by_runs(tmp_path)
     found = answered(study.plan(ASK, **SHORT[name], **more), run)[-1]
@@ -116,7 +116,7 @@ def failing(**options):
 @pytest.mark.parametrize("name", sorted(SHORT.keys() - {"stability"}))  # which needs runs: test_stability
 def test_runs_of_it_that_fail_make_rows_that_are_declared_and_shown(crude, tmp_path, name):
     study = get_study(name)
-    more = {"scenes": [near_overturning()]} if name == "speed-error" else {}
+    more = {"scenes": [near_overturning("one-sine")]} if name == "speed-error" else {}
     found = answered(study.plan(ASK, **SHORT[name], **more), failing(history=name == "sheet"))[-1]
     study.page(stored(tmp_path, name, found)).whole()
 
