@@ -124,18 +124,22 @@ def equal_cost_tables(result: Result) -> list[Table | None]:
     places = list(dict.fromkeys(place for some in costs.values() for place in some))
 
     def cell(place, error):
+        model = costs.get(KERNEL, {}).get(place, {}).get(error)
+
         def text(row):
             if place not in row["costs"]:
                 return "–"
-            cost = row["costs"][place][error]
-            return "not reached" if cost is None else number(1e3 * cost, 2)
+            if (cost := row["costs"][place][error]) is None:
+                return "not reached"
+            over = f" ({number(cost / model, 2)} ×)" if model and row["name"] != KERNEL else ""
+            return f"{number(1e3 * cost, 2)}{over}"
 
         return Column(f"{scenes[place[0]]['title']}: {MEASURES[place[1]].removesuffix(' [-]')}", text)
 
     return [
         table(
-            f"CPU time per simulated second [ms] at an error of {percent(error, 1)}, between levels; “not reached” at "
-            "any level",
+            f"CPU time per simulated second [ms] (over the model’s) at an error of {percent(error, 1)}, "
+            "between levels; “not reached” at any level",
             [{"name": name, "costs": some} for name, some in costs.items()],
             Column("solver", "name"),
             *(cell(place, error) for place in places),

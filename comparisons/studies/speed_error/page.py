@@ -15,7 +15,6 @@ from .costs import (
     FINE,
     FINE_LEVELS,
     FINEST,
-    KERNEL,
     MEASURES,
     as_needed,
     equal_cost_tables,
@@ -186,10 +185,8 @@ def _costs(result, rows):
         kept = found[level]
 
         def text(row):
-            if (best := kept.get(row["name"])) is None:
-                return None
-            ratio = f"{number(CPU.of(best) / CPU.of(kept[KERNEL]), 2)} ×; " if KERNEL in kept else ""
-            return f"{number(1e3 * CPU.of(best), 2)} ({ratio}{level_words(best)})"
+            best = kept.get(row["name"])
+            return best and f"{number(1e3 * CPU.of(best), 2)} ({level_words(best)})"
 
         return Column(f"≤ {short(level)}", text)
 
