@@ -163,14 +163,11 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
 
 
 def glance(result: Result) -> Glance:
+    """Of the runs that differ, those with another outcome. A slip within its tolerance is no other outcome."""
     runs = [
         {
             **row,
-            "class": "failed"
-            if row.get("failure")
-            else "differs"
-            if row["outcome"] != row["model_outcome"]
-            else "right",
+            "class": "right" if row["class"] == "differs" and row["outcome"] == row["model_outcome"] else row["class"],
             "model_falls": row["model_outcome"] == "overturns",
             "falls": row["outcome"] == "overturns",
             "group": row["index"],

@@ -105,6 +105,21 @@ def test_cost_is_one_number_in_title_table_and_first_screen(studies, decision):
     assert advised and all(rated[name] in ("good", "part", "fair") for name in advised)  # with care: hard cases
 
 
+def test_the_chart_of_outcomes_counts_what_the_table_of_all_tests_does(studies):
+    """Of a study that rates outcomes alone, all that differ; of one that rates more, no more than are not right."""
+    compared = 0
+    for study in (one for one in studies if one.glance and one.glance.endings):
+        for judgement, ending in itertools.product(study.judgements, study.glance.endings):
+            mark = judgement.marks.get((ending.engine, ending.variant))
+            count = mark and re.match(r"(\d+) of (\d+)\b", mark.words)
+            if count and judgement.heading.startswith("outcomes"):
+                assert (ending.differing, ending.runs) == tuple(map(int, count.groups()))
+            elif count and "right" in judgement.heading:
+                assert ending.differing <= ending.runs - int(count[1]) and ending.runs == int(count[2])
+            compared += bool(count)
+    assert compared > 20
+
+
 def test_the_readme_shows_and_says_what_the_stored_results_do(studies):
     first, readme = first_screen(studies), README.read_text(encoding="utf-8")
     made, words = gallery(first), headlines(first)
