@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from analytic.records.fema import PREFIX
+from engines import get_engine
 
 from ...measuring.statistics import TOO_FEW
 from ...running.provenance import Result
@@ -191,7 +192,7 @@ def _title(both: list[dict[str, Any]], equal: str) -> str:
 
 def _tilts(runs: list[dict[str, Any]]) -> Figure | None:
     """Each run's peak tilt over the model's, of the engines in question, tuned and as they come; a panel for each
-    configuration."""
+    configuration. Of the tuned ones, those that are not their engine's main variant stand behind, in grey."""
     groups = grouped(runs, "engine", "variant", "tier").values()
     shown = [members for members in groups if subject(members[0])]
     firsts = [members[0] for members in shown]
@@ -208,21 +209,30 @@ def _tilts(runs: list[dict[str, Any]]) -> Figure | None:
             left=100,
         )
         chart.line([LEAST, FALLEN], [LEAST, FALLEN], tone="var(--faint)")
-        for members in sorted(shown, key=lambda some: not as_it_comes(some[0])):
+        for members in sorted(shown, key=lambda some: (not _other(some[0]), not as_it_comes(some[0]))):
             drawn = where(members, configuration=configuration, **{"class": {"right", "differs", "failed"}})
             model, engine = ([_place(row, side) for row in drawn] for side in ("model_", ""))
             filled, says = not as_it_comes(members[0]), [_says(row) for row in drawn]
-            chart.dots(model, engine, kind(members[0]), filled=filled, says=says)
+            who = NAME.of(members[0]) if _other(members[0]) else kind(members[0])
+            chart.dots(model, engine, who, filled=filled, grey=_other(members[0]), says=says)
         charts.append(chart)
-    keys = {kind(row): key_of(kind(row), filled=not as_it_comes(row), joined=False) for row in firsts}
+    coloured, grey = (
+        [row for row in firsts if not _other(row)],
+        ", ".join(NAME.of(row) for row in firsts if _other(row)),
+    )
+    keys = {kind(row): key_of(kind(row), filled=not as_it_comes(row), joined=False) for row in coloured}
     left_out = "; ".join(NAME.of(members[0]) for members in groups if members not in shown)
     caption = (
         "One mark for each component that is judged. On the line engine and model agree; if only one is at "
         "“overturns”, the outcomes differ. Open: defaults, with fewer records; upper frame: failed runs."
-        + f" Not drawn, but in the table: {left_out}."
-        * bool(left_out)
+        + f" Grey: {grey}." * bool(grey)
+        + f" Not drawn, but in the table: {left_out}." * bool(left_out)
     )
     return figure(charts, caption, keys, keys) if charts else None
+
+
+def _other(row):
+    return not as_it_comes(row) and get_engine(row["engine"]).default_variant != row["variant"]
 
 
 def _place(row, side):
