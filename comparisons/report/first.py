@@ -11,6 +11,7 @@ from .answer import Setup
 QUESTION = "How far can a multibody engine be trusted with a rocking body, and at what cost?"
 TUNED, DEFAULTS = "tuned", "defaults"
 HOW = ((TUNED, "tuned"), (DEFAULTS, "with defaults"))
+WAYS = ("missed", "added")
 
 
 def screen(setups: Sequence[Setup], judgements: Sequence[Judgement], glances: Iterable[Glance]) -> dict[str, Any]:
@@ -45,7 +46,7 @@ def title(setups: Sequence[Setup]) -> str:
     """The answer in a sentence, where it is as clear as that; else the question."""
     levels = {tier: {one.rating.level for one in _columns(setups, tier)} for tier in (TUNED, DEFAULTS)}
     if levels[TUNED] and levels[DEFAULTS] == {"bad"} and "bad" not in levels[TUNED]:
-        return "With its defaults, a physics engine misjudges a rocking block; tuned, it seldom does."
+        return "With its defaults, a physics engine often misjudges a rocking block; tuned, it seldom does."
     return QUESTION
 
 
@@ -79,8 +80,8 @@ def _restitution(setups, judgements):
         missed = f", and {who} miss{'es' * (len(deaf) == 1)} impacts" if deaf else ""
         if known:
             errors = listed([f"{number(mark.value, 2)} in {engine}" for engine, mark in known.items()])
-            begin = f"{how.capitalize()}, it is" if parts else f"{how}, the rms error of the coefficient (below 1) is"
-            parts.append(f"{begin} {errors}{missed}.")
+            begin = f"{how.capitalize()}, it is" if parts else f"{how}, the coefficient (between 0 and 1) is"
+            parts.append(f"{begin} off by {errors}{'' if parts else ' (rms)'}{missed}.")
     return " ".join(parts)
 
 
@@ -96,6 +97,10 @@ def _outcomes(shares):
             parts.append(f"{who.capitalize()} do so in {differ}." if parts else first)
     if not parts:
         return ""
-    ways = [sum(getattr(one, way) for one in shares if one.kind == DEFAULTS) for way in ("missed", "added")]
-    unsafe = f" Over all motions, defaults miss {ways[0]} overturnings and add {ways[1]}." if any(ways) else ""
-    return f"{' '.join(parts)}{unsafe}"
+    ways = [
+        f"{who} miss {missed} overturnings and add {added}"
+        for tier, who in ((DEFAULTS, "defaults"), (TUNED, "tuned engines"))
+        for missed, added in [[sum(getattr(one, way) for one in shares if one.kind == tier) for way in WAYS]]
+        if missed or added
+    ]
+    return " ".join([*parts, f"Over all motions, {'; '.join(ways)}."] if ways else parts)

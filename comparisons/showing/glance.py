@@ -11,7 +11,7 @@ from markupsafe import Markup
 
 from ..measuring.statistics import equality
 from .charts import LETTER, WIDTH, Axis, Chart, broad
-from .parts import Figure, Table, grouped, percent
+from .parts import Figure, Table, grouped, percent, short
 
 
 @dataclass(frozen=True)
@@ -69,17 +69,9 @@ class Glance:
 
 
 WIDE = 590
-FINEST, WORST = 1e-9, 1.0  # of errors; what lies beyond stands at the frame
-TICKS = (
-    (1e-8, "10⁻⁶ %"),
-    (1e-6, "10⁻⁴ %"),
-    (1e-4, "0.01 %"),
-    (1e-3, "0.1 %"),
-    (1e-2, "1 %"),
-    (1e-1, "10 %"),
-    (1.0, "100 %"),
-)
-LINE = 15  # height of a row of the second chart
+WORST = 1.0  # of errors; what lies beyond stands at the frame
+FINEST = -6  # power of ten at which the errors end where no engine has one
+LINE = 14  # height of a row of the second chart
 COLUMNS: tuple[tuple[int, str, Callable[[Endings], str]], ...] = (
     (76, "differ", lambda one: f"{one.differing} of {one.runs}"),
     (128, "missed", lambda one: str(one.missed)),
@@ -87,12 +79,7 @@ COLUMNS: tuple[tuple[int, str, Callable[[Endings], str]], ...] = (
     (215, "other", lambda one: str(one.other)),
     (260, "failed", lambda one: str(one.failed)),
 )  # beside the bars: where a column ends, its head, its words
-WAYS = {
-    "missed": "overturning missed",
-    "added": "overturning added",
-    "other": "other difference",
-    "failed": "run failed",
-}
+WAYS = {"missed": "overturning missed", "added": "overturning added", "other": "other", "failed": "failed"}
 
 
 def counted(motions: str, rows: Iterable[Mapping[str, Any]]) -> tuple[Endings, ...]:
@@ -131,8 +118,8 @@ class Box(NamedTuple):
 def costs(curves: Sequence[Curve]) -> Figure:
     """Error over cost of every solver, its levels joined, its name beside it."""
     caption = (
-        "Each mark is one step size, stiffness or tolerance. Open marks: defaults; crosses: missed impacts; marks on "
-        "the frame: off the scale. Lower left is better."
+        "Each mark is one step size, stiffness or tolerance. Open marks: defaults; crosses: missed impacts; "
+        "arrowheads: beyond the frame. Lower left is better."
     )
     return broad(_costs(curves, WIDE), [_costs(curves, WIDTH)], caption)
 
@@ -142,16 +129,19 @@ def _costs(curves: Sequence[Curve], width: int) -> Chart:
     values = [cpu for one in shown for cpu, *_ in one.points]
     low, high = math.floor(math.log10(min(values))), math.ceil(math.log10(max(values)))
     decades = tuple((10.0**power, _seconds(power)) for power in range(low, high + 1))
+    engines = [error for one in shown for _, error, *_ in one.points if error and one.kind != "model"]
+    finest = math.floor(math.log10(min(engines))) if engines else FINEST
+    shares = tuple((10.0**power, f"{short(10.0 ** (power + 2))} %") for power in range(finest, 1))
     x = Axis("CPU time per simulated second", 10.0**low, 10.0**high, "log", decades)
-    y = Axis("error of peak tilt over the slenderness", FINEST, WORST * 1.0001, "log", TICKS)
+    y = Axis("error of peak tilt / slenderness γ", 10.0**finest, WORST * 1.0001, "log", shares)
     says = f"Error of peak tilt over CPU time of {', '.join(one.who for one in shown)}."
     chart = Chart(x, y, says, height=400 if width == WIDE else 420, width=width, left=72, right=16)
     places = {}
     for one in sorted(shown, key=lambda one: one.subject):
         cpu, errors, sound, told = zip(*one.points, strict=True)
-        errors = tuple(min(max(error, FINEST), WORST) for error in errors)
-        grey = not one.subject and one.kind != "model"  # the other engines stand behind
-        chart.line(cpu, errors, one.who, grey=grey, thin=not one.subject)
+        errors = tuple(max(error, 10.0 ** (finest - 1)) for error in errors)
+        at_frame = [min(max(error, 10.0**finest), WORST) for error in errors]
+        chart.line(cpu, at_frame, one.who, thin=not one.subject)
         for whole in (True, False):
             some = [k for k in range(len(cpu)) if sound[k] == whole]
             chart.dots(
@@ -162,9 +152,9 @@ def _costs(curves: Sequence[Curve], width: int) -> Chart:
                 small=not one.subject and one.kind != "model",
                 says=[told[k] for k in some],
                 mark=None if whole else "x",
-                grey=grey,
+                beyond=True,
             )
-        places[one.who] = chart.at(cpu, errors)
+        places[one.who] = chart.at(cpu, at_frame)
     named = [one for one in shown if width == WIDE or one.subject or one.kind == "model"]  # the others: by the pointer
     _name(chart, sorted(named, key=lambda one: not one.subject), places)
     return chart
@@ -180,15 +170,15 @@ def _name(chart, curves, places):
     taken: list[Box] = []
     marks = [tuple(place) for some in places.values() for place in _dense(some)]
     for one in curves:
-        found = _beside(one.name, places[one.who])
+        found = _beside(one, places[one.who])
         box, place, aside, anchor = min(found, key=lambda one: _cover(chart, one[0], taken, marks))
         taken.append(box)
         chart.named(place, one.name, one.who, aside=aside, anchor=anchor, kind="soft" if one.subject else "soft plain")
 
 
-def _beside(name, places):
+def _beside(curve, places):
     """Where a name may stand: beside its last mark, its first, then any."""
-    long = len(name) * LETTER * 0.53
+    long = len(curve.name) * LETTER * (0.6 if curve.subject else 0.53)  # that of an engine in question is bold
     for at in dict.fromkeys([len(places) - 1, 0, *range(len(places))]):
         x, y = places[at]
         for aside, anchor, left in (
@@ -223,8 +213,9 @@ def endings(found: Iterable[Endings]) -> Figure:
     """Shares of runs that end otherwise than the model's, motion by motion."""
     rows = list(found)
     caption = (
-        "Bars: share of runs; lines: 95 % intervals. “Other”: overturns at another time, or differs without "
-        "overturning. Fewer runs of defaults: some of the same scenes."
+        "Bars: share of runs; lines: 95 % intervals, runs under one motion counted as one. Other: overturns in another "
+        "swing, or differs in standing, sliding or rocking. Failed: the solver gave up, took too long or moved the "
+        "block in an impossible way. Defaults were run on some of the scenes."
     )
     return broad(_endings(rows, WIDE), [_endings(rows, WIDTH)], caption)
 

@@ -118,7 +118,7 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
     marks = {
         (row["engine"], row["variant"]): equal_mark(tally_of(row)) for row in rows if row["specimen"] == ALL or alone
     }
-    return (Judgement("outcomes that differ under motions of a shake table", marks),) if marks else ()
+    return (Judgement("outcomes that differ under shake-table motions", marks),) if marks else ()
 
 
 def glance(result: Result) -> Glance:
@@ -126,7 +126,7 @@ def glance(result: Result) -> Glance:
     alone = len({row["specimen"] for row in rows}) == 1
     endings = tuple(
         Endings(
-            "motions of a shake table", row["engine"], row["variant"], row["tier"], row["size"], row["failed"],
+            "shake-table motions", row["engine"], row["variant"], row["tier"], row["size"], row["failed"],
             row["only_a"], row["only_b"], 0, tuple(row["interval"])
         )
         for row in rows

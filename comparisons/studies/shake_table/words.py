@@ -47,20 +47,21 @@ def sentence(result: Result, engines: Sequence[dict[str, Any]]) -> str:
 
 def at_a_glance(result: Result) -> str:
     """How often the model is right about real blocks, beside a guess and tuned engines; "" where it was not judged."""
+    count = len(result.settings["tests"])
     scores = where(result.rows, part="score", judged=BY_RECORD)
     right = {name: [row["right"] for row in where(scores, forecast=name)] for name in (MODEL, FREQUENT)}
     if not right[MODEL]:
         return ""
-    shares = listed([percent(one / len(result.settings["tests"])) for one in right[MODEL]])
-    guess = listed([percent(one / len(result.settings["tests"])) for one in right[FREQUENT]])
+    shares = listed([percent(one / count) for one in right[MODEL]])
+    guess = listed([percent(one / count) for one in right[FREQUENT]])
     own = [row["right"] for row in where(result.rows, part="engine", tier="tuned") if row["right"] is not None]
-    engines = [percent(one / len(result.settings["tests"])) for one in (min(own), max(own))] if own else []
-    tuned = f", and tuned engines {' to '.join(dict.fromkeys(engines))}" if engines else ""
-    always = f" Always predicting the more frequent outcome gives {guess}." if guess else ""
+    engines = [percent(one / count) for one in (min(own), max(own))] if own else []
+    tuned = f", tuned engines {' to '.join(dict.fromkeys(engines))}" if engines else ""
+    always = f" Always guessing the more frequent outcome is right in {guess}." if guess else ""
     names = listed([one["name"] for one in result.settings["specimens"]])
     return (
-        f"on a shake table, the model predicts {shares} of the outcomes ({names}){tuned}.{always} Restitution was not "
-        "measured."
+        f"on a shake table, the model predicts {shares} of {count} outcomes ({names}){tuned}.{always} Restitution was "
+        "not measured."
     )
 
 

@@ -16,6 +16,7 @@ from .costs import (
     FINE_LEVELS,
     FINEST,
     MEASURES,
+    NOISE,
     as_needed,
     equal_cost_tables,
     glance,
@@ -23,6 +24,7 @@ from .costs import (
     level_words,
     levels_run,
     measures_of,
+    noise,
     passing,
     times,
 )
@@ -32,7 +34,6 @@ __all__ = ["glance", "judgements", "page"]
 LEVELS = (1e-2, 1e-3, 1e-4, 1e-5)  # of an error
 USUAL = 1e-8  # tolerance of the kernel in comparisons with engines at default levels; its own default takes longer
 DRAWN, ROUNDING = 1e-9, 1e-13  # errors below the first are drawn there, those below the second tell no order
-NOISE = 95  # percentile of the spread of costs over the rounds, below which two costs are not distinguished
 AGAINST = {"duration": "duration [s]", "samples": "record samples per second [1/s]"}
 MIB = 2**20
 # (scene, error) of the figure of the report's page; the first screen has that of the peak tilt
@@ -57,7 +58,7 @@ def page(result: Result) -> Page:
         (
             "Every solver is run at several levels of its accuracy parameter. Error and CPU time come from the same "
             "runs. Costs are compared at equal error, interpolated between levels, and only where all finer levels "
-            f"keep that error too. Costs within a factor of {number(_noise(every), 3)} are not distinguished.",
+            f"keep that error too. Costs within a factor of {number(noise(every), 3)} are not distinguished.",
         ),
         first=(_figure([row for key in first for row in errors[key]], CPU, CAPTION, rows), asked),
         more=(
@@ -142,13 +143,6 @@ def _assisted(result):
 def _title(result):
     place = f"Cost against error: {percent(ASKED, 1)} of peak tilt"
     return f"{place} takes {cost}" if (cost := times(result)) else f"{place} is reached by no engine in question"
-
-
-def _noise(rows):
-    """The factor by which the cost of one level differs between rounds, without the largest ones."""
-    return float(
-        np.percentile([row["cpu_high"] / row["cpu_low"] for row in rows if "cpu_seconds" in row] or [1], NOISE)
-    )
 
 
 def _panel(row):
@@ -345,7 +339,7 @@ def _how(result, every):
     return (
         f"{result.settings['rounds']} fresh processes one after the other; in each, every solver has its turn after a "
         "warm-up. CPU times are medians, of the simulation without import, compilation and building of the scene. The "
-        f"cost of one level differs between rounds by up to a factor of {number(_noise(every), 3)} for "
+        f"cost of one level differs between rounds by up to a factor of {number(noise(every), 3)} for "
         f"{NOISE} % of the levels: costs closer than that are not distinguished. Machine: {machine['processor']}, "
         f"{machine['logical_cores']} cores.{beside}",
         "References are the kernel at its tightest; an independent solution by scipy differs from them by at most "

@@ -99,7 +99,9 @@ def test_cost_is_one_number_in_title_table_and_first_screen(studies, decision):
     ratios = [
         one.marks[heading].words.removesuffix(" ×") for one in decision.values() if one.in_first_table and one.best
     ]
-    assert len(ratios) == 2 and all(ratio in shown("speed-error")[0].title for ratio in ratios)
+    page, says = shown("speed-error")[0], study.glance.says["cost"]
+    assert len(ratios) == 2 and all(ratio in page.title and ratio in says for ratio in ratios)
+    assert set(NUMBER.findall(says)) <= numbers_of(page.tables) | set(NUMBER.findall(page.tables[0].caption))
     advised = {row[1] for row in study.glance.advice.rows}
     rated = {f"{engine}, {variant}": one.rating.level for (engine, variant), one in decision.items()}
     assert advised and all(rated[name] in ("good", "part", "fair") for name in advised)  # with care: hard cases
