@@ -11,6 +11,7 @@ from .answer import Setup
 QUESTION = "How far can a multibody engine be trusted with a rocking body, and at what cost?"
 TUNED, DEFAULTS = "tuned", "defaults"
 HOW = ((TUNED, "tuned"), (DEFAULTS, "with defaults"))
+KINDS = ((TUNED, "tuned engines"), (DEFAULTS, "defaults"))
 WAYS = ("missed", "added")
 
 
@@ -46,7 +47,7 @@ def title(setups: Sequence[Setup]) -> str:
     """The answer in a sentence, where it is as clear as that; else the question."""
     levels = {tier: {one.rating.level for one in _columns(setups, tier)} for tier in (TUNED, DEFAULTS)}
     if levels[TUNED] and levels[DEFAULTS] == {"bad"} and "bad" not in levels[TUNED]:
-        return "With its defaults, a physics engine often misjudges a rocking block; tuned, it seldom does."
+        return "By default, a physics engine often misjudges a rocking block; tuned, it seldom does."
     return QUESTION
 
 
@@ -89,18 +90,19 @@ def _outcomes(shares):
     """How many runs end otherwise under recorded motions, or under the first others that were run; and which way."""
     motions = next((one.motions for one in shares if "record" in one.motions), shares[0].motions if shares else "")
     parts = []
-    for tier, who in ((TUNED, "tuned engines"), (DEFAULTS, "engines with defaults")):
+    for tier, who in KINDS:
         some = [one for one in shares if one.motions == motions and one.kind == tier]
         if some:
             differ = listed([f"{one.differing} of {one.runs} ({one.engine})" for one in some])
-            first = f"under {motions}, {who} differ from the analytic model or fail in {differ} runs."
-            parts.append(f"{who.capitalize()} do so in {differ}." if parts else first)
+            first = f"under {motions}, {who} differ from the model or fail in {differ} runs"
+            parts.append(f"{who} in {differ}" if parts else first)
     if not parts:
         return ""
     ways = [
         f"{who} miss {missed} overturnings and add {added}"
-        for tier, who in ((DEFAULTS, "defaults"), (TUNED, "tuned engines"))
+        for tier, who in KINDS
         for missed, added in [[sum(getattr(one, way) for one in shares if one.kind == tier) for way in WAYS]]
         if missed or added
     ]
-    return " ".join([*parts, f"Over all motions, {'; '.join(ways)}."] if ways else parts)
+    over = f" Over all motions, {'; '.join([*ways[:1], *(one.replace(' overturnings', '') for one in ways[1:])])}."
+    return f"{'; '.join(parts)}.{over if ways else ''}"

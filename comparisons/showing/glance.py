@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
+import numpy as np
 from markupsafe import Markup
 
 from ..measuring.statistics import equality
@@ -119,7 +120,7 @@ def costs(curves: Sequence[Curve]) -> Figure:
     """Error over cost of every solver, its levels joined, its name beside it."""
     caption = (
         "Each mark is one step size, stiffness or tolerance. Open marks: defaults; crosses: missed impacts; "
-        "arrowheads: beyond the frame. Lower left is better."
+        "marks on the frame lie beyond it. Lower left is better."
     )
     return broad(_costs(curves, WIDE), [_costs(curves, WIDTH)], caption)
 
@@ -130,7 +131,7 @@ def _costs(curves: Sequence[Curve], width: int) -> Chart:
     low, high = math.floor(math.log10(min(values))), math.ceil(math.log10(max(values)))
     decades = tuple((10.0**power, _seconds(power)) for power in range(low, high + 1))
     engines = [error for one in shown for _, error, *_ in one.points if error and one.kind != "model"]
-    finest = math.floor(math.log10(min(engines))) if engines else FINEST
+    finest = math.floor(math.log10(min(engines))) - 1 if engines else FINEST  # one more, for names at the frame
     shares = tuple((10.0**power, f"{short(10.0 ** (power + 2))} %") for power in range(finest, 1))
     x = Axis("CPU time per simulated second", 10.0**low, 10.0**high, "log", decades)
     y = Axis("error of peak tilt / slenderness γ", 10.0**finest, WORST * 1.0001, "log", shares)
@@ -139,9 +140,8 @@ def _costs(curves: Sequence[Curve], width: int) -> Chart:
     places = {}
     for one in sorted(shown, key=lambda one: one.subject):
         cpu, errors, sound, told = zip(*one.points, strict=True)
-        errors = tuple(max(error, 10.0 ** (finest - 1)) for error in errors)
-        at_frame = [min(max(error, 10.0**finest), WORST) for error in errors]
-        chart.line(cpu, at_frame, one.who, thin=not one.subject)
+        errors = tuple(min(max(error, 10.0**finest), WORST) for error in errors)
+        chart.line(cpu, errors, one.who, thin=not one.subject)
         for whole in (True, False):
             some = [k for k in range(len(cpu)) if sound[k] == whole]
             chart.dots(
@@ -152,9 +152,8 @@ def _costs(curves: Sequence[Curve], width: int) -> Chart:
                 small=not one.subject and one.kind != "model",
                 says=[told[k] for k in some],
                 mark=None if whole else "x",
-                beyond=True,
             )
-        places[one.who] = chart.at(cpu, at_frame)
+        places[one.who] = chart.at(cpu, errors)
     named = [one for one in shown if width == WIDE or one.subject or one.kind == "model"]  # the others: by the pointer
     _name(chart, sorted(named, key=lambda one: not one.subject), places)
     return chart
@@ -169,8 +168,8 @@ def _name(chart, curves, places):
     """The name of each curve where it covers least: no other name, and no mark."""
     taken: list[Box] = []
     marks = [tuple(place) for some in places.values() for place in _dense(some)]
-    for one in curves:
-        found = _beside(one, places[one.who])
+    for one in {one.name: one for one in curves}.values():
+        found = _beside(one, np.concatenate([places[other.who] for other in curves if other.name == one.name]))
         box, place, aside, anchor = min(found, key=lambda one: _cover(chart, one[0], taken, marks))
         taken.append(box)
         chart.named(place, one.name, one.who, aside=aside, anchor=anchor, kind="soft" if one.subject else "soft plain")
@@ -213,9 +212,8 @@ def endings(found: Iterable[Endings]) -> Figure:
     """Shares of runs that end otherwise than the model's, motion by motion."""
     rows = list(found)
     caption = (
-        "Bars: share of runs; lines: 95 % intervals, runs under one motion counted as one. Other: overturns in another "
-        "swing, or differs in standing, sliding or rocking. Failed: the solver gave up, took too long or moved the "
-        "block in an impossible way. Defaults were run on some of the scenes."
+        "Bars: shares; lines: 95 % intervals by motion. Other: overturns in another swing, or stands, slides or rocks "
+        "instead. Failed: gave up, or not physical. Defaults: fewer scenes."
     )
     return broad(_endings(rows, WIDE), [_endings(rows, WIDTH)], caption)
 

@@ -172,10 +172,9 @@ def number(value: float | None, digits: int = 3) -> str:
         return "–"
     if value == 0:
         return "0"
-    exponent = math.floor(math.log10(abs(value)))
-    if -3 <= exponent < 5:
-        return f"{value:.{max(digits - 1 - exponent, 0)}f}".replace("-", "−")
-    mantissa, power = f"{value:.{digits - 1}e}".split("e")
+    mantissa, power = f"{value:.{digits - 1}e}".split("e")  # rounded first: 0.0996 has two digits as 0.10
+    if -3 <= int(power) < 5:
+        return f"{value:.{max(digits - 1 - int(power), 0)}f}".replace("-", "−")
     times = "" if mantissa == "1" else f"{mantissa}·"
     return f"{times}10{str(int(power)).translate(MINUS_DIGITS)}".replace("-", "−")
 

@@ -185,7 +185,7 @@ def glance(result: Result) -> Glance | None:
     return Glance(
         says={"cost": words} if (words := at_a_glance(result)) else {},
         curves=tuple(_curves(result, rows)),
-        scene="a block on bearings, rocking in an earthquake",
+        scene="an isolated block in an earthquake",
         advice=advice(result),
     )
 
@@ -198,14 +198,14 @@ def _curves(result, rows):
         if who in listed and tier != "defaults" and get_engine(engine).default_variant != variant:
             continue
         known = {"tuned": f"{engine}, tuned", "defaults": f"{engine}, defaults"}
-        name = known.get(tier, f"{engine}, script" if variant == SCRIPT else who)
+        name = known.get(tier, f"{engine}, script" if variant == SCRIPT else SHORT.get(who, engine))
         points = tuple(
             (row["cpu_per_second"], row["errors"]["peak_tilt"], not row["lost"], _says(row))
             for row in some
             if not row["failure"] and "peak_tilt" in row["errors"]
         )
         kind = tier or ("tuned" if engine in ENGINES else "model")
-        yield Curve(who, SHORT.get(name, name), kind, engine in ENGINES and ENGINES[engine].subject, points)
+        yield Curve(who, name, kind, engine in ENGINES and ENGINES[engine].subject, points)
 
 
 def _says(row):
@@ -242,8 +242,8 @@ def advice(result: Result) -> Table | None:
     names = listed([name for name, engine in ENGINES.items() if engine.subject])
     heads = ("accuracy", "tuned variant", "level", "CPU time per simulated second", "cheaper engine", "script")
     caption = (
-        f"The cheaper of {names}, tuned, that keeps both the peak tilt in this earthquake and the smallest overturning "
-        "pulse within the accuracy"
+        f"What to use: the cheaper of {names}, tuned, that keeps both peak tilt and smallest overturning pulse this "
+        "accurate"
     )
     return Table(caption, heads, rows)
 
@@ -274,7 +274,7 @@ def at_a_glance(result: Result) -> str:
     over = listed([number(cost / model, 2) for _, cost, model in found])
     return (
         f"tuned, a peak tilt within {percent(ASKED, 1)} of the slenderness takes {own} of CPU time per simulated "
-        f"second: {over} times the analytic model’s {number(1e3 * found[0][2], 2)} ms."
+        f"second, {over} times the analytic model’s {number(1e3 * found[0][2], 2)} ms."
         if found
         else ""
     )
