@@ -192,7 +192,7 @@ def _row(entry, timings):
     seconds = [timing.cost["cpu_seconds"] for timing in timings if timing.cost.get("cpu_seconds")]
     if first.failure or not seconds:
         return row
-    found = values["errors"] if "errors" in values else errors(trial, values, values["boundary_shifts"])
+    found = dict(values["errors"]) if "errors" in values else errors(trial, values, values["boundary_shifts"])
     cpu, simulated, steps = statistics.median(seconds), values["end"]["time"], values["steps"]
     return row | {
         "lost": found.pop("lost"),

@@ -17,7 +17,7 @@ from comparisons.running.study import compute
 from comparisons.showing.parts import COST, Figure, Table, short
 from comparisons.studies import get_study
 from comparisons.studies.speed_error import cold, growth
-from comparisons.studies.speed_error.cases import NEEDED, entries, margin, searched, trials
+from comparisons.studies.speed_error.cases import NEEDED, entries, margin, problem_trials, searched, trials
 from comparisons.studies.speed_error.costs import advised, cost_at, levels_run, passing
 from comparisons.studies.speed_error.page import LEVELS
 from comparisons.studies.speed_error.share import own_share, seconds_inside
@@ -378,3 +378,12 @@ def test_a_first_run_costs_more_than_a_later_one_and_most_where_all_is_compiled(
     stored, anew = (cold.first_run(case, response) for case in cases)
     assert stored["outcome"] == anew["outcome"] == response.outcome
     assert response.cpu_seconds < stored["cost"]["cpu_seconds"] < anew["cost"]["cpu_seconds"]
+
+
+def test_what_is_stored_of_a_run_of_an_integrator_has_all_its_errors(tmp_path):
+    """Else a run that is done again differs from the one stored."""
+    some = [trial for trial in problem_trials() if trial.name == "problem A"]
+    given = dict(quick=True, progress=False, repeats=1, scenes=some, grow=False)
+    (path,) = compute(STUDY, tmp_path, engines=(), keep=lambda entry: entry.variant == "DOP853", **given)
+    found = [run["values"]["errors"] for run in read_result(path).runs if run["values"].get("errors")]
+    assert found and all("lost" in one and len(one) > 1 for one in found)
