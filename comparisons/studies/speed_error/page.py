@@ -4,6 +4,9 @@ import statistics
 
 import numpy as np
 
+from engines import ENGINES, get_engine
+
+from ...measuring.scripts import NAME as SCRIPT
 from ...running.provenance import Result
 from ...showing.figures import beside, lines
 from ...showing.parts import NAME as SOLVER
@@ -60,7 +63,7 @@ def page(result: Result) -> Page:
             "runs. Costs are compared at equal error, interpolated between levels, and only where all finer levels "
             f"keep that error too. Costs within a factor of {number(noise(every), 3)} are not distinguished.",
         ),
-        first=(_figure([row for key in first for row in errors[key]], CPU, CAPTION, rows), asked),
+        first=(_figure([row for key in first for row in errors[key]], CPU, MAIN_CAPTION, rows, _leads(result)), asked),
         more=(
             coarse,
             fine,
@@ -121,6 +124,11 @@ def _shares(result):
     )
 
 
+MAIN_CAPTION = (
+    "Lower left is better. Coloured, where they keep 0.001 at a level and all finer ones: main variants, scripts as "
+    "written (open) and the first of each other solver. Grey: the rest, named under the pointer. No error is given for "
+    "levels that failed, missed impacts or found no boundary. Errors below 10⁻⁹ are drawn there."
+)
 CAPTION = (
     "Lower left is better. Coloured: solvers that keep 0.001 at a level and all finer ones. Grey: the others, named "
     "under the pointer. No error is given for levels that failed, missed impacts or found no boundary; the study’s "
@@ -150,9 +158,26 @@ def _panel(row):
     return f"{row['title'].replace(' boundary', '')}: {PANELS.get(row['measure'], row['measure'])}"
 
 
-def _figure(rows, x, caption, like):
-    """Error over x, a panel for each scene; scenes of one kind of error share their axes."""
-    kept = {(*key, name) for key, some in grouped(rows, "scene", "measure").items() for name in passing(some, ASKED)}
+def _leads(result):
+    """(engine, variant) of engines' main variants, of scripts, and of the first variant of each other solver."""
+    found = {}
+    for row in as_needed(result):
+        main = get_engine(row["engine"]).default_variant if row["engine"] in ENGINES else row["variant"]
+        found.setdefault(row["engine"], (row["engine"], main))
+    return [*found.values(), *((engine, SCRIPT) for engine in found)]
+
+
+def _figure(rows, x, caption, like, leads=()):
+    """Error over x, a panel for each scene; scenes of one kind of error share their axes. leads: the solvers that may
+    have a colour, in their order; none: all."""
+    kept = {
+        (*key, name)
+        for key, some in grouped(rows, "scene", "measure").items()
+        for name, row in passing(some, ASKED).items()
+        if not leads or (row["engine"], row["variant"]) in leads
+    }
+    ranks = {pair: rank for rank, pair in enumerate(leads)}
+    like = sorted(like, key=lambda row: ranks.get((row["engine"], row["variant"]), len(ranks)))
     figures = [
         lines(
             [row for row in some if row["error"] is not None],

@@ -55,15 +55,14 @@ def page(result: Result) -> Page:
     return Page(
         _title(cells, within, apart, where(variants, kind="stepping", best=True)),
         (
-            "Real integrators have failed on these scenes: pulses at the boundary, grazing impacts, a base of a "
-            "ten-thousandth of the block’s mass, ten minutes of shaking, a block that barely slides. A result is right "
-            "if every measure is within its tolerance; otherwise it differs. It fails if the solver gives up, exceeds "
-            "its time limit or moves the block in a physically impossible way.",
+            "Real integrators have failed on these scenes. A result is right if every measure is within its tolerance; "
+            "otherwise it differs. It fails if the solver gives up, exceeds its time limit or moves the block in a "
+            "physically impossible way.",
             _most(where(counts, kind="stepping")),
             *(
                 [
-                    f"{len(apart)} of the {len(cases)} cases lie outside the range for which engines are tested "
-                    f"({in_words()}). They are run like the others, but counted separately."
+                    f"{len(apart)} of the {len(cases)} cases lie outside the range for which engines are tested. They "
+                    "are counted separately."
                 ]
                 if apart
                 else []
@@ -150,6 +149,7 @@ def page(result: Result) -> Page:
             "of the reference.",
             "Where a result is not right, finer levels are run in turn. Scenes of ten minutes are run by the engines’ "
             f"main variants only. A run may take {result.settings['time_limit']:g} s.",
+            f"The range for which engines are tested: {in_words()}.",
         ),
         evidence=tuple(
             (
