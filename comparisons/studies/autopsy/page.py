@@ -34,6 +34,7 @@ def page(result: Result) -> Page:
         Column("steps in contact [-]", "steps"),
         Column("deepest [mm]", lambda row: 1e3 * row["deepest"] if "deepest" in row else None),
         Column("energy lost", "energy_lost", digits=3, percent=True),
+        Column("main variant", lambda row: "yes" if row["best"] else "no"),
     )
     causes = ", ".join(dict.fromkeys(row["cause"] for row in wrong)) or "none"
     return Page(

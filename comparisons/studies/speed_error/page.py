@@ -18,6 +18,7 @@ from .costs import (
     FINE,
     FINE_LEVELS,
     FINEST,
+    KERNEL,
     MEASURES,
     NOISE,
     as_needed,
@@ -204,8 +205,11 @@ def _costs(result, rows):
         kept = found[level]
 
         def text(row):
-            best = kept.get(row["name"])
-            return best and f"{number(1e3 * CPU.of(best), 2)} ({level_words(best)})"
+            if (best := kept.get(row["name"])) is None:
+                return None
+            fine = rows[0]["measure"] == FINE and KERNEL in kept  # others are compared at an equal error
+            ratio = f"{number(CPU.of(best) / CPU.of(kept[KERNEL]), 2)} ×; " if fine else ""
+            return f"{number(1e3 * CPU.of(best), 2)} ({ratio}{level_words(best)})"
 
         return Column(f"≤ {short(level)}", text)
 

@@ -229,7 +229,7 @@ def test_one_that_rocks_gets_its_own_restitution_and_replaces_an_older_report(tm
     assert result.settings["bases"] == [None] and max(row["rms"] for row in result.rows) < 1e-9
     assert sum(row["impacts"] for row in result.rows) >= 8
     assert "Restitution of this block" in page and "slides without friction" not in page
-    assert "is given; here it is left out" in page
+    assert "it is left out here, as it rates no engine" in page
     assert "Table 1(a)" not in page and "aryatid" not in page
     told = json.loads(form(tmp_path / PAGE).text())
     assert told["schema"] == "rocking report 4" and len(told["results"]) == 2
