@@ -138,6 +138,11 @@ def subject(row: Row) -> bool:
     return row["engine"] in ENGINES and ENGINES[row["engine"]].subject
 
 
+def mains(variants: Iterable[Row]) -> dict[str, str]:
+    """{engine: its main variant}: the first that settings list, as engines need not be installed to be shown."""
+    return {one["engine"]: one["variant"] for one in reversed([*variants])}
+
+
 def kind(row: Row) -> str:
     """Engine and kind of a row's variant: "exudyn, tuned"."""
     return f"{row['engine']}, {row['tier']}"

@@ -1,17 +1,16 @@
 """What is shown of recorded motions: whether outcomes are equal, and every run that is another."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from analytic.records.fema import PREFIX
-from engines import get_engine
 
 from ...measuring.statistics import TOO_FEW
 from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure, key_of
-from ...showing.figures import as_it_comes, kind, subject
+from ...showing.figures import as_it_comes, kind, mains, subject
 from ...showing.glance import Glance, counted
 from ...showing.parts import (
     NAME,
@@ -73,7 +72,7 @@ def page(result: Result) -> Page:
             "equality even without a difference.",
         ),
         first=(
-            _tilts(runs),
+            _tilts(runs, mains(result.settings["variants"])),
             table(
                 "Free-standing and isolated together: runs with another outcome than the analytic model or a fall at "
                 f"another time, with 95 % Wilson intervals by record; equal: at most {equal} differ",
@@ -190,12 +189,16 @@ def _title(both: list[dict[str, Any]], equal: str) -> str:
     return title + (f"; {few} inconclusive (too few records)" if few else "")
 
 
-def _tilts(runs: list[dict[str, Any]]) -> Figure | None:
+def _tilts(runs: list[dict[str, Any]], main: Mapping[str, str]) -> Figure | None:
     """Each run's peak tilt over the model's, of the engines in question, tuned and as they come; a panel for each
     configuration. Of the tuned ones, those that are not their engine's main variant stand behind, in grey."""
     groups = grouped(runs, "engine", "variant", "tier").values()
     shown = [members for members in groups if subject(members[0])]
     firsts = [members[0] for members in shown]
+
+    def other(row):
+        return not as_it_comes(row) and main[row["engine"]] != row["variant"]
+
     ups = tuple((value, f"{word}\u2002") for value, word in (*TICKS, (FAILED, "failed")))  # room for half a mark
     charts = []
     for configuration in dict.fromkeys(row["configuration"] for row in runs):
@@ -209,16 +212,16 @@ def _tilts(runs: list[dict[str, Any]]) -> Figure | None:
             left=100,
         )
         chart.line([LEAST, FALLEN], [LEAST, FALLEN], tone="var(--faint)")
-        for members in sorted(shown, key=lambda some: (not _other(some[0]), not as_it_comes(some[0]))):
+        for members in sorted(shown, key=lambda some: (not other(some[0]), not as_it_comes(some[0]))):
             drawn = where(members, configuration=configuration, **{"class": {"right", "differs", "failed"}})
             model, engine = ([_place(row, side) for row in drawn] for side in ("model_", ""))
             filled, says = not as_it_comes(members[0]), [_says(row) for row in drawn]
-            who = NAME.of(members[0]) if _other(members[0]) else kind(members[0])
-            chart.dots(model, engine, who, filled=filled, grey=_other(members[0]), says=says)
+            who = NAME.of(members[0]) if other(members[0]) else kind(members[0])
+            chart.dots(model, engine, who, filled=filled, grey=other(members[0]), says=says)
         charts.append(chart)
     coloured, grey = (
-        [row for row in firsts if not _other(row)],
-        ", ".join(NAME.of(row) for row in firsts if _other(row)),
+        [row for row in firsts if not other(row)],
+        ", ".join(NAME.of(row) for row in firsts if other(row)),
     )
     keys = {kind(row): key_of(kind(row), filled=not as_it_comes(row), joined=False) for row in coloured}
     left_out = "; ".join(NAME.of(members[0]) for members in groups if members not in shown)
@@ -229,10 +232,6 @@ def _tilts(runs: list[dict[str, Any]]) -> Figure | None:
         + f" Not drawn, but in the table: {left_out}." * bool(left_out)
     )
     return figure(charts, caption, keys, keys) if charts else None
-
-
-def _other(row):
-    return not as_it_comes(row) and get_engine(row["engine"]).default_variant != row["variant"]
 
 
 def _place(row, side):

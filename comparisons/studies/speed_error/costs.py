@@ -8,10 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from engines import ENGINES, get_engine
+from engines import ENGINES
 
 from ...measuring.scripts import NAME as SCRIPT
 from ...running.provenance import Result
+from ...showing.figures import mains
 from ...showing.glance import Curve, Glance
 from ...showing.parts import (
     COST,
@@ -193,9 +194,10 @@ def glance(result: Result) -> Glance | None:
 def _curves(result, rows):
     """Of every solver once: engines' main variants and those as they come, scripts, and the other solvers."""
     listed = {NAME.of(one): one for one in result.settings["variants"]}
+    main = mains(result.settings["variants"])
     for (who, engine, variant), some in grouped(rows, "name", "engine", "variant").items():
         tier = listed[who]["tier"] if who in listed else ""
-        if who in listed and tier != "defaults" and get_engine(engine).default_variant != variant:
+        if who in listed and tier != "defaults" and main[engine] != variant:
             continue
         known = {"tuned": f"{engine}, tuned", "defaults": f"{engine}, defaults"}
         name = known.get(tier, f"{engine}, script" if variant == SCRIPT else SHORT.get(who, engine))
@@ -282,9 +284,9 @@ def at_a_glance(result: Result) -> str:
 
 def _asked(result):
     """(engine, CPU time, the model's) of the engines in question, tuned, that reach the error `ASKED`."""
-    costs, found = plain_costs(result), []
+    costs, main, found = plain_costs(result), mains(result.settings["variants"]), []
     for one in result.settings["variants"]:
-        subject = ENGINES[one["engine"]].subject and get_engine(one["engine"]).default_variant == one["variant"]
+        subject = ENGINES[one["engine"]].subject and main[one["engine"]] == one["variant"]
         if subject and one["tier"] == "tuned" and (cost := costs.get(NAME.of(one))) and costs.get(KERNEL):
             found.append((one["engine"], cost, costs[KERNEL]))
     return found

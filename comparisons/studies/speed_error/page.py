@@ -4,11 +4,9 @@ import statistics
 
 import numpy as np
 
-from engines import ENGINES, get_engine
-
 from ...measuring.scripts import NAME as SCRIPT
 from ...running.provenance import Result
-from ...showing.figures import beside, lines
+from ...showing.figures import beside, lines, mains
 from ...showing.parts import NAME as SOLVER
 from ...showing.parts import Column, Head, Page, grouped, number, percent, short, table, where
 from .cases import NEEDED, PLAIN
@@ -161,11 +159,8 @@ def _panel(row):
 
 def _leads(result):
     """(engine, variant) of engines' main variants, of scripts, and of the first variant of each other solver."""
-    found = {}
-    for row in as_needed(result):
-        main = get_engine(row["engine"]).default_variant if row["engine"] in ENGINES else row["variant"]
-        found.setdefault(row["engine"], (row["engine"], main))
-    return [*found.values(), *((engine, SCRIPT) for engine in found)]
+    found = mains([*result.settings["variants"], *as_needed(result)])
+    return [*found.items(), *((engine, SCRIPT) for engine in found)]
 
 
 def _figure(rows, x, caption, like, leads=()):

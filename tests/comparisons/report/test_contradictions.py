@@ -7,6 +7,7 @@ from xml.etree import ElementTree
 
 import pytest
 
+from analytic import EngineNotInstalled
 from comparisons.report.answer import setups_of, stored_studies, variants_of
 from comparisons.report.gallery import (
     GALLERY,
@@ -22,6 +23,7 @@ from comparisons.running.provenance import RESULTS, read_result
 from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.restitution.page import rated
 from engines import ENGINES
+from engines.contract import Engine
 
 pytestmark = pytest.mark.xdist_group("contradictions")  # the stored studies are shown once
 STORED = [name for name in BUILT_IN if (RESULTS / f"{name}.json").exists()]
@@ -57,6 +59,16 @@ def numbers_of(tables):
             words = {cell.partition(" of ")[0] for cell in column}
             found |= {str(sum(cell.startswith(word) for cell in column)) for word in words if word}
     return found
+
+
+def test_every_stored_result_can_be_shown_whatever_engines_are_installed(studies, monkeypatch):
+    assert {one.name for one in studies} >= set(STORED) and not [one.wrong for one in studies if one.wrong]
+
+    def missing(self):
+        raise EngineNotInstalled(f"{self.name} is not installed")
+
+    monkeypatch.setattr(Engine, "load", missing)
+    assert not [one.wrong for one in stored_studies() if one.wrong]
 
 
 @pytest.mark.parametrize("name", STORED)
