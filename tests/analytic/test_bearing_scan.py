@@ -91,7 +91,7 @@ def test_where_nothing_holds_the_nearest_is_named():
 @pytest.mark.parametrize(
     "scene, motions",
     [
-        (SCENE, [SCENE.motion.scaled(1.5)]),
+        pytest.param(SCENE, [SCENE.motion.scaled(1.5)], marks=pytest.mark.slow),
         (SCENE.with_(block={"slenderness": 0.12}), [synthetic_motion(seed=7), synthetic_motion(seed=8)]),
         (SCENE.with_(block={"slenderness": 0.2}), [PulseMotion("one-sine", 2.0, 4.8)]),
     ],
