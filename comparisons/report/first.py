@@ -98,11 +98,10 @@ def _outcomes(shares):
             parts.append(f"{who} in {differ}" if parts else first)
     if not parts:
         return ""
-    ways = [
-        f"{who} miss {missed} overturnings and add {added}"
-        for tier, who in KINDS
-        for missed, added in [[sum(getattr(one, way) for one in shares if one.kind == tier) for way in WAYS]]
-        if missed or added
-    ]
-    over = f" Over all motions, {'; '.join([*ways[:1], *(one.replace(' overturnings', '') for one in ways[1:])])}."
-    return f"{'; '.join(parts)}.{over if ways else ''}"
+    ways = []
+    for tier, who in KINDS:
+        missed, added = (sum(getattr(one, way) for one in shares if one.kind == tier) for way in WAYS)
+        if missed or added:
+            ways.append(f"{who} miss {missed}{'' if ways else ' overturnings'} and add {added}")
+    over = f" Over all motions, {'; '.join(ways)}." if ways else ""
+    return f"{'; '.join(parts)}.{over}"
