@@ -219,10 +219,8 @@ def _tilts(runs: list[dict[str, Any]], main: Mapping[str, str]) -> Figure | None
             who = NAME.of(members[0]) if other(members[0]) else kind(members[0])
             chart.dots(model, engine, who, filled=filled, grey=other(members[0]), says=says)
         charts.append(chart)
-    coloured, grey = (
-        [row for row in firsts if not other(row)],
-        ", ".join(NAME.of(row) for row in firsts if other(row)),
-    )
+    coloured = [row for row in firsts if not other(row)]
+    grey = ", ".join(NAME.of(row) for row in firsts if other(row))
     keys = {kind(row): key_of(kind(row), filled=not as_it_comes(row), joined=False) for row in coloured}
     left_out = "; ".join(NAME.of(members[0]) for members in groups if members not in shown)
     caption = (
