@@ -40,6 +40,9 @@ def by_model(scene=lambda case: case.scene, failure=lambda case: None, history=F
         response = dataclasses.replace(simulate(scene(case), history=history), engine=case.solver)
         failed = failure(case)
         values = {"outcome": "failed"} if failed else batch.measure(case, response)
+        if failed and failed["kind"] == "solver":  # which leaves a whole response, as the executors have it
+            values = response.to_json() | values
+            del values["failure"], values["cpu_seconds"]
         return Row(case, values, failed, {"cpu_seconds": 0.25} | values.pop("cost", {}), False)
 
     return lambda batch: [row(batch, case) for case in batch.cases]

@@ -25,6 +25,7 @@ OSCILLATOR_DAMPING = (0.05, 0.30)  # of those run in the engines
 STOCKY = 0.7  # rad
 TIME_LIMIT = 120.0  # s
 HISTORY_STEP = 0.01  # s, at which histories are kept
+LEFT_OUT = "impacts", "uplifts", "rests", "energy", "sliding"  # of a response: lists, and what needs a friction
 
 
 def caryatid(name: str, motion: Motion | None) -> Scene:
@@ -60,8 +61,7 @@ def oscillator(motion: Motion, period: float, damping: float) -> Scene:
 
 def measure(case: Case, response: Response) -> dict[str, Any]:
     """The scalars that came out, and of Figs 4(b) and 6 tilt and displacement at multiples of `HISTORY_STEP`."""
-    left_out = "impacts", "uplifts", "rests", "energy", "sliding"  # no friction is given
-    found = {name: value for name, value in response.to_json().items() if name not in left_out}
+    found = response.to_json()
     if case.tag["part"] == "run" and (history := response.history):
         time = np.arange(0.0, history.time[-1], HISTORY_STEP)
         columns = {
@@ -83,7 +83,8 @@ def simulations(
     ]
     rows, histories = [], {}
     for row in (yield Batch([*figures, *_points(motion, solvers, quick)], measure, "Figs 4 to 6", TIME_LIMIT)):
-        values, engine = dict(row.values), row.case.solver
+        values = {name: value for name, value in row.values.items() if name not in LEFT_OUT}
+        engine = row.case.solver
         if row.case.scene.base is None:  # the ground's own peak: a value of the motion
             values.pop("peak_base_acceleration", None)
         for column, numbers in values.pop("history", {}).items():
