@@ -362,7 +362,8 @@ def _how(result, every):
     beside = f" Other processes took {percent(max(load))} of it at most." if load else ""
     return (
         f"{result.settings['rounds']} fresh processes one after the other; in each, every solver has its turn after a "
-        "warm-up. CPU times are medians, of the simulation without import, compilation and building of the scene. The "
+        "warm-up. CPU times are the least of the rounds (medians of first runs and of growth), of the simulation "
+        "without import, compilation and building of the scene. The "
         f"cost of one level differs between rounds by up to a factor of {number(noise(every), 3)} for "
         f"{NOISE} % of the levels: costs closer than that are not distinguished. Machine: {machine['processor']}, "
         f"{machine['logical_cores']} cores.{beside}",

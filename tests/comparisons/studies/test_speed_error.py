@@ -267,6 +267,14 @@ def test_cost_at_an_error_lies_between_levels(error, cost):
     assert found == (cost if cost is None else pytest.approx(cost))
 
 
+def test_a_cost_is_that_of_the_round_that_took_least():
+    disturbed = row("a", 3.0, 1e-3, cpu_low=2.0, cpu_per_second=0.3, cpu_per_step=None)
+    failed = {key: value for key, value in row("b", 1.0, 1e-3).items() if not key.startswith("cpu")}
+    one, other = levels_run(result_of(disturbed, failed))
+    assert (one["cpu_seconds"], one["cpu_per_second"]) == (2.0, pytest.approx(0.2))
+    assert not [key for key in other if key.startswith("cpu")]
+
+
 def test_no_cost_is_told_where_a_finer_level_contradicts_or_the_one_before_has_no_error():
     rows = levels_run(result_of(row("a", 1.0, 1e-4), row("a", 2.0, 1e-2), row("a", 4.0, 1e-1, lost=1)))
     assert cost_at(rows, 1e-3) is None  # the finest missed an impact
