@@ -52,7 +52,7 @@ ASKED = 1e-3
 JUDGED = ("peak_tilt", "boundary_shift")  # errors by which a level is recommended
 CPU = Column("CPU time of a run [s]", "cpu_seconds")
 TIMES = "cpu_seconds", "cpu_per_second", "cpu_per_step"
-NOISE = 95  # percentile of the spread of costs over the rounds, below which two costs are not distinguished
+NOISE = 95  # percentile of the levels
 SHORT = {KERNEL: "analytic model", "time-stepping": "time stepping"}
 
 
@@ -245,7 +245,7 @@ def advised(result: Result, error: float) -> dict[str, Row]:
 
 def advice(result: Result) -> Table | None:
     """The recommendation: for each accuracy the cheapest of the engines in question, and of the others if cheaper."""
-    rows, spread = [], noise(where(levels_run(result), principal=True))
+    rows, spread = [], noise(result)
     for error in WANTED:
         found = advised(result, error)
         subjects = {name: row for name, row in found.items() if ENGINES[row["engine"]].subject}
@@ -302,7 +302,11 @@ def _asked(result):
     return found
 
 
-def noise(rows: Iterable[Row]) -> float:
-    """The factor by which the cost of one level differs between rounds, without the largest ones."""
-    known = [row["cpu_high"] / row["cpu_low"] for row in rows if "cpu_seconds" in row]
+def noise(result: Result) -> float:
+    """The factor below which two costs are not distinguished: of the median round over the least, without the largest.
+
+    Had the round that took least not been run, the cost would be higher by this factor at most.
+    """
+    rows = where(result.rows, part="work-precision")
+    known = [row["cpu_seconds"] / row["cpu_low"] for row in rows if "cpu_seconds" in row]
     return float(np.percentile(known or [1], NOISE))

@@ -60,7 +60,7 @@ def page(result: Result) -> Page:
         (
             "Every solver is run at several levels of its accuracy parameter. Error and CPU time come from the same "
             "runs. Costs are compared at equal error, interpolated between levels, and only where all finer levels "
-            f"keep that error too. Costs within a factor of {number(noise(every), 3)} are not distinguished.",
+            f"keep that error too. Costs within a factor of {number(noise(result), 2)} are not distinguished.",
         ),
         first=(_figure([row for key in first for row in errors[key]], CPU, MAIN_CAPTION, rows, _leads(result)), asked),
         more=(
@@ -363,10 +363,9 @@ def _how(result, every):
     return (
         f"{result.settings['rounds']} fresh processes one after the other; in each, every solver has its turn after a "
         "warm-up. CPU times are the least of the rounds (medians of first runs and of growth), of the simulation "
-        "without import, compilation and building of the scene. The "
-        f"cost of one level differs between rounds by up to a factor of {number(noise(every), 3)} for "
-        f"{NOISE} % of the levels: costs closer than that are not distinguished. Machine: {machine['processor']}, "
-        f"{machine['logical_cores']} cores.{beside}",
+        "without import, compilation and building of the scene. The median round took up to "
+        f"{number(noise(result), 2)} times as long as the least for {NOISE} % of the levels: costs closer than that "
+        f"are not distinguished. Machine: {machine['processor']}, {machine['logical_cores']} cores.{beside}",
         "References are the kernel at its tightest; an independent solution by scipy differs from them by at most "
         f"{number(max(differences), 1)} in the errors shown. Solvers of the equations apply eq. (7): their error of "
         f"restitution under a motion is rounding. The errors of {same} of {len(every)} levels are the same bit for "
