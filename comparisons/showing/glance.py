@@ -212,8 +212,8 @@ def endings(found: Iterable[Endings]) -> Figure:
     """Shares of runs that end otherwise than the model's, motion by motion."""
     rows = list(found)
     caption = (
-        "Bars: shares; lines: 95 % intervals by motion. Other: overturns in another swing, or stands, slides or rocks "
-        "instead. Failed: gave up, or not physical. Defaults: fewer scenes."
+        "Lines: 95 % intervals, runs under one motion as one. Other: overturns in another swing, or stands, slides or "
+        "rocks instead. Failed: no result, or unphysical. Defaults: fewer scenes."
     )
     return broad(_endings(rows, WIDE), [_endings(rows, WIDTH)], caption)
 

@@ -53,7 +53,7 @@ JUDGED = ("peak_tilt", "boundary_shift")  # errors by which a level is recommend
 CPU = Column("CPU time of a run [s]", "cpu_seconds")
 TIMES = "cpu_seconds", "cpu_per_second", "cpu_per_step"
 NOISE = 95  # percentile of the levels
-SHORT = {KERNEL: "analytic model", "time-stepping": "time stepping"}
+SHORT = {KERNEL: "analytic model", "time-stepping": "our time stepping"}
 
 
 def levels_run(result: Result) -> list[dict[str, Any]]:
@@ -252,10 +252,17 @@ def advice(result: Result) -> Table | None:
         for name, row in list(subjects.items())[:1] or [("", None)]:
             rows.append([f"{percent(error, 1)}", *_advised(name, row, found, spread)])
     names = listed([name for name, engine in ENGINES.items() if engine.subject])
-    heads = ("accuracy", "tuned variant", "level", "CPU time per simulated second", "cheaper engine", "script")
+    heads = (
+        "accuracy",
+        "tuned variant",
+        "level",
+        "CPU time per simulated second",
+        "cheaper engine",
+        "script (its cost: chart)",
+    )
     caption = (
-        f"What to use: the cheaper of {names}, tuned, that keeps both peak tilt and smallest overturning pulse this "
-        "accurate"
+        f"What to use of {names}: the cheapest level that, as all finer ones, keeps peak tilt and overturning boundary "
+        "this accurate"
     )
     return Table(caption, heads, rows)
 
@@ -286,7 +293,7 @@ def at_a_glance(result: Result) -> str:
     over = listed([number(cost / model, 2) for _, cost, model in found])
     return (
         f"tuned, a peak tilt within {percent(ASKED, 1)} of the slenderness takes {own} of CPU time per simulated "
-        f"second, {over} times the analytic model’s {number(1e3 * found[0][2], 2)} ms."
+        f"second (between levels), {over} times the analytic model’s {number(1e3 * found[0][2], 2)} ms."
         if found
         else ""
     )
