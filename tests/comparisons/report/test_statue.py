@@ -63,7 +63,7 @@ def made(scenes, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def page(made):
-    return write_page(made).read_text()
+    return write_page(made, studies=made / "none").read_text()
 
 
 @pytest.fixture(scope="module")
@@ -265,7 +265,7 @@ def test_no_slip_stands_on_the_card_of_a_block_that_its_friction_holds(page):
 def test_the_slip_stands_on_the_card_of_a_block_that_slides(place, scene, tmp_path):
     named = scene.with_(name=place, duration=None)
     make_own_results(tmp_path / place, {place: named}, engines=[], motions={})
-    text = write_page(tmp_path / place).read_text()
+    text = write_page(tmp_path / place, studies=tmp_path / "none").read_text()
     (card,) = cards(text)
     slid = simulate(named, history=False).sliding
     assert f"It slides by up to {number(slid.peak, 3)} m, and ends {number(abs(slid.end), 3)} m from" in card
