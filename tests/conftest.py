@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
 from hypothesis import settings
 
 # In CI the same scenes every time: a new counterexample is found where somebody can look at it.
@@ -33,3 +34,23 @@ def pytest_configure(config):
     if getattr(config.option, "numprocesses", None) and not hasattr(config, "workerinput"):
         for compiling in [subprocess.Popen([sys.executable, "-c", part], cwd=PROJECT) for part in COMPILED]:
             compiling.wait()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_setup(item):
+    return (yield from without_wheels())
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call(item):
+    return (yield from without_wheels())
+
+
+def without_wheels():
+    """Skip, saying so, what needs PyBullet under a Python for which it has no wheels; elsewhere it fails."""
+    try:
+        return (yield)
+    except ImportError as lost:
+        if sys.version_info < (3, 12) or "engine 'pybullet' needs" not in str(lost):
+            raise
+        pytest.skip(str(lost))

@@ -5,6 +5,7 @@ from pathlib import Path
 from unittest.mock import Mock
 
 import pytest
+from engine_cases import needs
 
 from comparisons.commands import study as command
 from comparisons.running import check as module
@@ -65,6 +66,8 @@ def test_a_seed_is_the_plans_where_it_takes_one_and_else_belongs_to_a_check(rock
 
 
 def test_an_engine_is_run_into_a_result_with_the_options_of_that(rocking, monkeypatch, tmp_path):
+    needs("pybullet")
+
     def weighing(ask, *, mass: float = 1.0):
         return Computed({"mass": mass}, [{"engine": name, "mass": mass} for name in ask.engines])
         yield
