@@ -10,6 +10,7 @@ from analytic.bearing_scan import DAMPING_STEP, PERIOD_STEP, first_stroke, scan_
 from analytic.design import design_bearings, properties
 from comparisons.running.provenance import commit_seed
 
+SLOW = pytest.mark.slow
 SCENE = load_scene("caryatid-isolated")
 POINTS = 400
 
@@ -91,8 +92,10 @@ def test_where_nothing_holds_the_nearest_is_named():
 @pytest.mark.parametrize(
     "scene, motions",
     [
-        pytest.param(SCENE, [SCENE.motion.scaled(1.5)], marks=pytest.mark.slow),
-        (SCENE.with_(block={"slenderness": 0.12}), [synthetic_motion(seed=7), synthetic_motion(seed=8)]),
+        pytest.param(SCENE, [SCENE.motion.scaled(1.5)], marks=SLOW),
+        pytest.param(
+            SCENE.with_(block={"slenderness": 0.12}), [synthetic_motion(seed=7), synthetic_motion(seed=8)], marks=SLOW
+        ),
         (SCENE.with_(block={"slenderness": 0.2}), [PulseMotion("one-sine", 2.0, 4.8)]),
     ],
 )
@@ -133,7 +136,9 @@ def test_what_is_out_of_range_is_refused(scene, motions, options, words):
         scan_bearings(scene, [SCENE.motion] * motions, **{"stroke": 0.25, **options})
 
 
-@pytest.mark.parametrize("friction, tilt", [pytest.param(0.1, 0.0, marks=pytest.mark.slow), (0.1, 0.5), (0.6, 0.0)])
+@pytest.mark.parametrize(
+    "friction, tilt", [pytest.param(0.1, 0.0, marks=SLOW), (0.1, 0.5), pytest.param(0.6, 0.0, marks=SLOW)]
+)
 def test_with_a_friction_bearings_hold_only_where_the_block_does_not_slide_either(friction, tilt):
     scene, motions = SCENE.with_(friction=friction), [synthetic_motion().scaled(1.2)]
     scan = scan_bearings(scene, motions, 0.3, tilt=tilt)
