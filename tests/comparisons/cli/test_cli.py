@@ -109,7 +109,7 @@ def test_engines_lists_what_is_there_and_what_is_not(rocking, monkeypatch):
     (line,) = (line for line in out.splitlines() if "mujoco" in line)
     absent = [name for name in ("dart", "drake", "mujoco", "pymunk") if name not in installed_engines()]
     assert line.startswith(f'not installed: {", ".join(absent)}; pip install -e ".[{",".join(absent)}]" in a ')
-    told = [line for line in out.splitlines() if not line.startswith("not installed: ")]
+    told = [line for line in out.splitlines() if "pip install" not in line]
     assert max(map(len, told)) <= 80 and "slenderness 0.1 to 0.5 rad" in " ".join(out.split())
     for name in installed_engines():
         assert name in out and all(f" {variant} " in out for variant in get_engine(name).variants)
