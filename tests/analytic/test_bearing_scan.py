@@ -28,7 +28,7 @@ def held(scene, motions, points, stroke, tilt=0.0):
 
 @pytest.mark.parametrize(
     ("stroke", "tilt", "scale"),
-    [(0.25, 0.0, 1.0), pytest.param(0.3, 0.0, 1.2, marks=SLOW), pytest.param(0.3, 0.2, 1.5, marks=pytest.mark.slow)],
+    [(0.25, 0.0, 1.0), pytest.param(0.3, 0.0, 1.2, marks=SLOW), pytest.param(0.3, 0.2, 1.5, marks=SLOW)],
 )
 def test_the_region_is_that_of_single_runs_but_within_one_per_cent_of_its_edge(stroke, tilt, scale):
     motions = [synthetic_motion().scaled(scale), synthetic_motion(seed=7).scaled(scale)]

@@ -60,7 +60,7 @@ def oscillator(motion: Motion, period: float, damping: float) -> Scene:
 
 
 def measure(case: Case, response: Response) -> dict[str, Any]:
-    """The scalars that came out, and of Figs 4(b) and 6 tilt and displacement at multiples of `HISTORY_STEP`."""
+    """The whole response, and of Figs 4(b) and 6 tilt and displacement at multiples of `HISTORY_STEP`."""
     found = response.to_json()
     if case.tag["part"] == "run" and (history := response.history):
         time = np.arange(0.0, history.time[-1], HISTORY_STEP)
