@@ -150,7 +150,7 @@ def scan_bearings(
 
     def run(wanted):
         at = [scene.with_(bearings=softened(designs[i], columns[k]), duration=None) for i, k in np.argwhere(wanted)]
-        demand, moved = _worst(at, motions, tilt, workers, progress)
+        demand, moved = _worst(scene, at, motions, tilt, workers, progress)
         scan.demand[wanted], scan.stroke[wanted] = np.maximum(demand, moved / stroke), moved
 
     coarse = np.zeros(shape, dtype=bool)
@@ -160,14 +160,14 @@ def scan_bearings(
     return replace(scan, demand=np.where(np.isnan(scan.stroke), _between(scan.demand), scan.demand))
 
 
-def _worst(scenes, motions, tilt, workers, progress):
-    """(demand, peak base displacement [m]) of each scene under its worst motion."""
+def _worst(scene, scenes, motions, tilt, workers, progress):
+    """(demand, peak base displacement [m]) of each of the scenes, copies of `scene`, under its worst motion."""
     demand, moved, done = np.zeros(len(scenes)), np.zeros(len(scenes)), 0
     for motion in motions:
         for part in np.array_split(np.arange(len(scenes)), 1 + len(scenes) // CHUNK):
             found = simulate_many([scenes[j].with_(motion=motion) for j in part], contact=True, workers=workers)
             moved[part] = np.maximum(moved[part], found.peak_base_displacement)
-            demand[part] = np.maximum(demand[part], _lift(found, scenes[0], tilt))
+            demand[part] = np.maximum(demand[part], _lift(found, scene, tilt))
             done += len(part)
             if progress:
                 progress(done, len(scenes) * len(motions))

@@ -191,13 +191,15 @@ def run_warnings(
     peak_base_displacement: float,
     base_velocity: float,
     slides: bool = False,
+    peak_slip: float = 0.0,
 ) -> tuple[Caution, ...]:
-    """All warnings of a run of the analytic model: of the record, `model_warnings`, x_max, a base that slides on.
+    """All warnings of a run of the analytic model: of the record, `model_warnings`, `limit_warnings`, a base that
+    slides on.
 
-    base_velocity : at the end [m/s]. slides : as in `model_warnings`.
+    base_velocity : at the end [m/s]. slides : as in `model_warnings`. peak_slip : as in `limit_warnings` [m].
     """
     found = [*about_record(scene.motion), *model_warnings(scene, friction_demand, min_normal_ratio, slides)]
-    found += limit_warnings(scene, peak_base_displacement)
+    found += limit_warnings(scene, peak_base_displacement, peak_slip)
     drift = abs(base_velocity) * CAP_PERIODS * period(scene)  # rounding errors are no motion
     if scene.base is not None and scene.bearings is None and drift > PEAK_TOLERANCE * peak_base_displacement:
         words = (

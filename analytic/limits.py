@@ -1,4 +1,4 @@
-"""Warnings on a scene: missing friction, a start beyond balance, and displacements beyond the bearings' x_max."""
+"""Warnings on a scene: missing friction, a start beyond balance, a base beyond x_max, a block that slips off."""
 
 from __future__ import annotations
 
@@ -28,13 +28,23 @@ def scene_warnings(scene: Scene) -> tuple[Caution, ...]:
     return tuple(found)
 
 
-def limit_warnings(scene: Scene, peak_base_displacement: float) -> tuple[Caution, ...]:
-    """A warning if the peak base displacement [m] exceeds the bearings' x_max."""
+def limit_warnings(scene: Scene, peak_base_displacement: float, peak_slip: float = 0.0) -> tuple[Caution, ...]:
+    """Warnings if the peak base displacement [m] exceeds the bearings' x_max, or the peak slip [m] the half width.
+
+    peak_slip : 0 of a block that overturns, whose slip goes on in its fall.
+    """
+    found = []
     limit = None if scene.bearings is None else scene.bearings.x_max
-    if limit is None or not peak_base_displacement > limit:
-        return ()
-    words = (
-        f"the base moves by {peak_base_displacement:.3g} m, beyond the x_max = {limit:.3g} m of its bearings: they may "
-        "tear or hit a stop, and the outcome is outside the model"
-    )
-    return (Caution("limit", words, "peak_base_displacement", peak_base_displacement, limit),)
+    if limit is not None and peak_base_displacement > limit:
+        words = (
+            f"the base moves by {peak_base_displacement:.3g} m, beyond the x_max = {limit:.3g} m of its bearings: they "
+            "may tear or hit a stop, and the outcome is outside the model"
+        )
+        found.append(Caution("limit", words, "peak_base_displacement", peak_base_displacement, limit))
+    if peak_slip > scene.block.half_width:
+        words = (
+            f"the block slips by {peak_slip:.3g} m, beyond its half width of {scene.block.half_width:.3g} m: the "
+            "model's support has no edge, and from one as wide as the block it would fall"
+        )
+        found.append(Caution("limit", words, "peak_slip", peak_slip, scene.block.half_width))
+    return tuple(found)

@@ -17,6 +17,7 @@ import itertools
 import math
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
@@ -29,6 +30,9 @@ from .part import UNITS
 from .rocking import restitution
 from .scene import KEYS, Scene
 from .solver import simulate
+
+if TYPE_CHECKING:
+    from .response import Response
 
 LIMIT_STATES = ("slides", "lifts", "tilt", "stroke", "overturns")
 TILT = 0.5  # share of the slenderness
@@ -65,7 +69,8 @@ class Band:
 class Margin:
     """Effects of relative changes of one quantity.
 
-    value: that of the scene. bands: from low to high. step: of the scan.
+    value: that of the scene. bands: from low to high. step: of the scan. ends_down, ends_up: why the range ends at the
+    first and at the last band, where no scene or no run lies beyond; "" where it is the whole span.
     """
 
     quantity: str
@@ -73,6 +78,8 @@ class Margin:
     unit: str
     bands: tuple[Band, ...]
     step: float = STEP
+    ends_down: str = ""
+    ends_up: str = ""
 
     @property
     def outcome(self) -> str:
@@ -248,7 +255,8 @@ def margins(
     """The `Margin` of each quantity for relative changes up to `span`; the smallest change of outcome comes first.
 
     Every run continues until its outcome is decided. The range ends where a change gives no valid scene (e above 1, ka
-    below kb), and downwards at the last step before -1.
+    below kb) or one that the model refuses or fails on, and the margin says why; and downwards at the last step before
+    -1.
 
     Parameters
     ----------
@@ -268,7 +276,7 @@ def margins(
     SettingError
         tilt, span or step is out of range.
     SceneError
-        The scene is too stiff or too long for so many runs; the message names the part.
+        The scene itself cannot be run, or is too stiff or too long for so many runs; the message names the part.
     """
     if not 0 < tilt <= 1:
         raise SettingError(f"tilt = {tilt!r}: give a share of the slenderness, above 0 and up to 1")
@@ -290,9 +298,11 @@ def margins(
         quantity = QUANTITIES[name]
         if progress:
             progress(name)
-        margin = Margin(name, float(value), quantity.unit, _bands(scene, name, changes, tilt, workers), step)
+        bands, ends = _bands(scene, name, changes, tilt, workers)
+        margin = Margin(name, float(value), quantity.unit, bands, step, **ends)
         if margin.interleaved:
-            margin = replace(margin, bands=_bands(scene, name, _finer(margin, changes), tilt, workers))
+            bands, ends = _bands(scene, name, _finer(margin, changes), tilt, workers)
+            margin = replace(margin, bands=bands, **ends)
         found.append(margin)
     return sorted(found, key=lambda margin: math.inf if margin.nearest is None else abs(margin.nearest))
 
@@ -314,12 +324,11 @@ class Contact:
     friction: float | None
     slides: bool = False
 
-
-def contact_margins(scene: Scene) -> Contact:
-    """The `Contact` of the unchanged scene, run until its outcome is decided."""
-    response = simulate(scene.with_(duration=None), history=False)
-    slides = response.sliding is not None and response.sliding.path > 0
-    return Contact(response.min_normal_ratio, response.friction_demand, scene.friction, slides)
+    @classmethod
+    def of(cls, scene: Scene, response: Response) -> Self:
+        """Those of a run of the scene."""
+        slides = response.sliding is not None and response.sliding.path > 0
+        return cls(response.min_normal_ratio, response.friction_demand, scene.friction, slides)
 
 
 def _finer(margin, changes):
@@ -331,15 +340,16 @@ def _finer(margin, changes):
 
 
 def _bands(scene, name, changes, tilt, workers):
-    """Tuple of `Band` over the changes. Boundaries are bisected for each state, as two may lie within one step."""
-    changes, scenes = _scenes(scene, name, changes)
-    states = _states(scene, name, changes, scenes, tilt, workers)
+    """(tuple of `Band` over the changes, why they end). Boundaries are bisected for each state, as two may lie within
+    one step."""
+    changes, states, ends = _scanned(scene, name, changes, tilt, workers)
     edges, columns = np.nonzero(states[1:] != states[:-1])
     low, high, before = changes[edges], changes[edges + 1], states[edges, columns]
     for _ in range(BISECTIONS if len(edges) else 0):
         middle = 0.5 * (low + high)
         points, where = np.unique(middle, return_inverse=True)
-        same = _states(scene, name, points, None, tilt, workers)[where, columns] == before
+        found, failed = _states(scene, name, points, None, tilt, workers)
+        same = (found[where, columns] == before) & ~failed[where]
         low, high = np.where(same, middle, low), np.where(same, high, middle)
     boundaries = 0.5 * (low + high)
     bands, state = [], states[0]
@@ -347,35 +357,64 @@ def _bands(scene, name, changes, tilt, workers):
         state = state ^ np.isin(np.arange(len(state)), columns[boundaries == a])
         reached = tuple(itertools.compress(LIMIT_STATES, state))
         bands.append(Band(float(a), float(b), reached, bool(state[-1])))
-    return tuple(bands)
+    return tuple(bands), ends
+
+
+def _scanned(scene, name, changes, tilt, workers):
+    """(the changes about 0 up to the first that cannot be run, their states, {"ends_down", "ends_up": why there})."""
+    changes, scenes, ends = _scenes(scene, name, changes)
+    states, failed = _states(scene, name, changes, scenes, tilt, workers)
+    if failed[changes == 0].any():
+        raise SceneError(
+            name, None, f"the analytic model fails on the scene as it is: {_why(scene)}", "change the scene"
+        )
+    beyond = np.flatnonzero(failed)
+    first = max(beyond[changes[beyond] < 0], default=-1)
+    last = min(beyond[changes[beyond] > 0], default=len(changes))
+    ends |= {"ends_down": _why(scenes[first])} if first >= 0 else {}
+    ends |= {"ends_up": _why(scenes[last])} if last < len(changes) else {}
+    return changes[first + 1 : last], states[first + 1 : last], ends
+
+
+def _why(scene):
+    """Why a scene cannot be run."""
+    try:
+        response = simulate(scene, history=False)
+    except SceneError as error:
+        return _refusal(error)
+    return response.failure.reason if response.failure else "the analytic model fails"
+
+
+def _refusal(error):
+    value = f" = {error.value:.5g}" if isinstance(error.value, float) else ""
+    return f"{error.key}{value}: {error.problem}"
 
 
 def _scenes(scene, name, changes):
-    """(the changes about 0 that give a valid scene, their scenes)."""
+    """(the changes about 0 that give a valid scene, their scenes, {"ends_down", "ends_up": why none lies beyond})."""
     changed = QUANTITIES[name].changed
-    kept = {}
-    for direction in (changes[changes >= 0], changes[changes < 0][::-1]):
+    kept, ends = {0.0: scene}, {}
+    for key, direction in (("ends_up", changes[changes > 0]), ("ends_down", changes[changes < 0][::-1])):
         for change in direction:
             try:
                 kept[change] = changed(scene, 1 + change)
-            except (SceneError, ValueError):
+            except SceneError as error:
+                ends[key] = _refusal(error)
                 break
     ordered = sorted(kept)
-    return np.array(ordered), [kept[change] for change in ordered]
+    return np.array(ordered), [kept[change] for change in ordered], ends
 
 
 def _states(scene, name, changes, scenes, tilt, workers):
-    """Array (changes, LIMIT_STATES and one more): the states reached, and whether the model is valid."""
+    """(array (changes, LIMIT_STATES and one more): the states reached, and whether the model is valid; which runs
+    failed)."""
     if scenes is None:
         scenes = [QUANTITIES[name].changed(scene, 1 + change) for change in changes]
     scales = 1 + changes if name == "motion" else None
     outcomes = simulate_many(scenes, scales=scales, contact=True, workers=workers)
-    for index in np.flatnonzero(outcomes.failed):
-        simulate(scenes[index], history=False)  # raises the error
-        raise SceneError(name, None, f"changed by {changes[index]:.2%} the analytic model fails", "give a smaller span")
     slenderness = np.array([each.block.slenderness for each in scenes])
     farthest = scene.bearings.x_max if "stroke" in limit_states(scene) else math.inf
-    return np.column_stack(
+    states = np.column_stack(
         [
             outcomes.slid,
             outcomes.lifted | outcomes.overturns,
@@ -385,3 +424,4 @@ def _states(scene, name, changes, scenes, tilt, workers):
             (outcomes.min_normal_ratio > 0) | (scene.friction is not None),
         ]
     )
+    return states, outcomes.failed

@@ -46,9 +46,10 @@ def cliffs(scene: Scene, changes: np.ndarray, found: Outcomes) -> tuple[Caution,
     said = []
     other = _nearest(changes, names != names[own])
     if other is not None:
+        there = "the analytic model fails" if names[other] == "failed" else f"it {names[other]}"
         text = (
             f"The outcome is sensitive to changes of the motion below {SHARE:.0%}: the block {names[own]}, but at "
-            f"{changes[other]:+.2%} it {names[other]}."
+            f"{changes[other]:+.2%} {there}."
         )
         said.append(Caution("motion", text, "outcome", float(changes[other]), SHARE))
     upright = (names != "overturns") & (names != "failed")

@@ -153,13 +153,17 @@ class Sliding:
     modes: tuple[tuple[float, str], ...]
 
 
+KINDS = ("record", "model", "limit", "motion", "engine")
+
+
 @dataclass(frozen=True)
 class Caution:
     """A warning of a run.
 
-    kind: "record" (the record is unusual), "model" (outside the model), "limit" (beyond the design value of a part),
-    "motion" (the result is sensitive to small changes of the motion) or "engine" (from an engine or its adapter).
-    quantity, value, limit: the quantity with its value and limit [SI units], if it is a number. text: a sentence.
+    kind: one of KINDS: "record" (the record is unusual), "model" (outside the model), "limit" (beyond the design value
+    of a part), "motion" (the result is sensitive to small changes of the motion) or "engine" (from an engine or its
+    adapter). quantity, value, limit: the quantity with its value and limit [SI units], if it is a number. text: a
+    sentence.
     """
 
     kind: str

@@ -42,7 +42,7 @@ from analytic.errors import SceneError
 from analytic.response import COMPARED, EDGE, JUDGED, LEVEL, UNCOMPARED, Difference
 
 from .checks import LEAST_SLIP
-from .copies import near_copies
+from .copies import CHANGE, near_copies
 from .couple import FRICTION
 from .events import at_contact
 from .matching import COUNTED, LEAST_TILT, counts, impacts_of, matched, parting
@@ -85,13 +85,13 @@ class Reference:
         try:
             model = model or simulate(scene, history=False)
         except SceneError as error:
-            return cls(comparable=f"the analytic model reaches no end: {error}")
+            return cls(comparable=f"the analytic model refuses the scene: {error}")
         if why := _outside(scene, model):
             return cls(model, comparable=why)
         try:
             copies = tuple(simulate(copy, history=False) for copy in near_copies(scene))
         except SceneError as error:
-            return cls(model, comparable=f"the analytic model of a scene next to it reaches no end: {error}")
+            return cls(model, comparable=f"the analytic model refuses a scene within {CHANGE:g} of it: {error}")
         near = frozenset(one.quantity for copy in copies for one in _numbers(scene, (model,), copy))
         until = min((parting(scene, model, copy) for copy in copies), default=math.inf)
         return cls(model, copies, EDGE if near else COMPARED, near, until)

@@ -83,8 +83,9 @@ def observe(
     trace, overturning_time = upto_overturning(scene, finite, ended)
     end = last_state(trace)
     seen, missed, lifted = _measured(scene, trace, beyond or trace, overturning_time)
-    failure, warnings = _judged(scene, trace, seen, missed, failure, warnings)
     sliding = slip_of(scene, trace)
+    slip = sliding.peak if sliding and overturning_time is None else 0.0
+    failure, warnings = _judged(scene, trace, {**seen, "peak_slip": slip}, missed, failure, warnings)
     upright = "rocks" if lifted else "slides" if sliding and sliding.peak else "stands"
     if sliding and sliding.peak and scene.friction:  # what no-slip formulas ask for is no demand
         seen["friction_demand"] = min(seen["friction_demand"], scene.friction)
@@ -160,7 +161,7 @@ def _judged(
         return failure, warnings
     if failure:
         warnings = (*warnings, Caution("engine", f"{failure.reason}: {failure.message}"))
-    beyond = limit_warnings(scene, seen["peak_base_displacement"])
+    beyond = limit_warnings(scene, seen["peak_base_displacement"], seen["peak_slip"])
     outside = model_warnings(scene, seen["friction_demand"], seen["min_normal_ratio"], slides=trace.centre is not None)
     return None, (*warnings, *outside, *beyond)
 

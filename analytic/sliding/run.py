@@ -157,7 +157,13 @@ def response(
         failure=failure,
         decided=failure is None and bool(totals[S.CERTAIN]),
         warnings=run_warnings(
-            scene, float(totals[S.FRICTION]), float(totals[S.NORMAL]), float(totals[S.PEAK_X]), v, slides=True
+            scene,
+            float(totals[S.FRICTION]),
+            float(totals[S.NORMAL]),
+            float(totals[S.PEAK_X]),
+            v,
+            slides=True,
+            peak_slip=0.0 if fallen else float(totals[S.PEAK_SLIP]),
         ),
         energy=_energy(scene, par, totals, end),
         sliding=_sliding(totals, changes),

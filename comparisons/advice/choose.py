@@ -8,16 +8,18 @@ with a margin of `criteria.safety`, so that none passes by chance.
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import nullcontext
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from analytic import Scene, SettingError, simulate
+from analytic.limits import scene_warnings
 from analytic.solver import TOLERANCE
 from engines import available_engines, get_engine
 from engines.contract import Variant
+from engines.statue_range import outside
 
 from ..running.cases import Case
 from ..running.executors import Processes
@@ -25,6 +27,7 @@ from ..running.files import TemporaryFolder
 from ..running.progress import spinner
 from ..running.solving import ANALYTIC, named_engines
 from ..running.sweep import Row, run_sweep
+from ..schemas.runs import Warned
 from .criteria import (
     CRITERIA,
     SAFETY,
@@ -184,7 +187,7 @@ def choose(
     nothing_asked = criterion is None and engines is None
     with _shown(progress, f"{scene.name}: the analytic model"):
         criterion = criterion or fitting(scene)
-        family, span = _family(scene, criterion)
+        family, left, span = _family(scene, criterion)
         own = cpu_seconds(scene)
     variants: list[VariantLevels] = []
     if nothing_asked and all(_stands(one) for one in family.values()):
@@ -207,6 +210,7 @@ def choose(
         error=error,
         safety_factor=safety(criterion),
         neighbours=list(family),
+        left_out={f"{factor:g}": why for factor, why in left.items()},
         until=span,
         chosen=chosen,
         best=best,
@@ -217,7 +221,14 @@ def choose(
         variants=variants,
         parts=parts,
         missing=missing,
+        warnings=[Warned(**asdict(one)) for one in _warnings(scene)],
     )
+
+
+def _warnings(scene):
+    """What is in doubt of the scene itself, or lies outside the range in which engines are tested."""
+    response = simulate(scene, history=False)
+    return (*scene_warnings(scene), *response.warnings, *outside(scene, response))
 
 
 def _shown(progress, words):
@@ -225,8 +236,9 @@ def _shown(progress, words):
 
 
 def _family(scene, criterion):
-    """({factor: scene or neighbour, with the duration that is compared}; that duration of the scene itself [s])."""
-    family = neighbours(scene, criterion)
+    """({factor: scene or neighbour, with the duration that is compared}; {factor: why it is left out}; that duration of
+    the scene itself [s])."""
+    family, left = neighbours(scene, criterion)
     span = until(family[1.0], criterion)
 
     def cut(factor, one):
@@ -237,7 +249,7 @@ def _family(scene, criterion):
 
     if criterion != "outcome":
         family = {factor: cut(factor, one) for factor, one in family.items()}
-    return family, span
+    return family, left, span
 
 
 def _stands(scene):

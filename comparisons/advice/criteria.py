@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from pydantic import Field
 
-from analytic import Response, Scene, SettingError, simulate
+from analytic import Response, Scene, SceneError, SettingError, simulate
 from analytic.response import LEVEL
 from analytic.rocking import restitution
 from engines import get_engine
@@ -20,6 +20,7 @@ from ..measuring.horizon import sensitivity_horizon
 from ..measuring.models import on_heavy_base, on_stiff_springs
 from ..running.cases import Case
 from ..schemas.form import Form, Part
+from ..schemas.runs import Warned
 
 
 class Level(Part):
@@ -73,15 +74,17 @@ class ModelPart(Part):
 class Choice(Form):
     """The answer. chosen: the cheapest level that passes with all finer ones; None if there is none, and `best` is then
     the level with the least error. safety_factor: the error asked for over the largest one that passes. neighbours:
-    factors of start and motion. until: time [s] up to which histories were compared, or were run for their impacts.
-    cpu_seconds: of the chosen level on the whole scene; of the analytic model."""
+    factors of start and motion. left_out: {factor: why}, of those that the model refuses. until: time [s] up to which
+    histories were compared, or were run for their impacts. cpu_seconds: of the chosen level on the whole scene; of the
+    analytic model. warnings: on the scene in the model."""
 
-    schema_: str = Field(default="rocking choose 3", serialization_alias="schema")
+    schema_: str = Field(default="rocking choose 4", serialization_alias="schema")
     scene: str
     criterion: str
     error: float
     safety_factor: float
     neighbours: list[float]
+    left_out: dict[str, str]
     until: float
     chosen: Level | None
     best: Level | None
@@ -92,6 +95,7 @@ class Choice(Form):
     variants: list[VariantLevels]
     parts: list[ModelPart]
     missing: dict[str, str]
+    warnings: list[Warned]
 
 
 CRITERIA = ("restitution", "tilt", "displacement", "slip", "outcome")
@@ -109,8 +113,9 @@ def safety(criterion: str) -> float:
     return 1.0 if criterion == "outcome" else SAFETY
 
 
-def neighbours(scene: Scene, criterion: str) -> dict[float, Scene]:
-    """{factor: the scene with its start and its motion times that}, the scene itself with 1 first.
+def neighbours(scene: Scene, criterion: str) -> tuple[dict[float, Scene], dict[float, str]]:
+    """({factor: the scene with its start and its motion times that}, the scene itself with 1 first; {factor: why it is
+    left out}, of those that the model refuses).
 
     For outcomes they have no duration, as a run that ends before its outcome is decided has none.
 
@@ -118,18 +123,25 @@ def neighbours(scene: Scene, criterion: str) -> dict[float, Scene]:
     ------
     SettingError
         Neither a start nor a motion is given.
+    SceneError
+        The model refuses the scene itself.
     """
     if scene.motion is None and not any(scene.start.model_dump().values()):
         raise SettingError(f"{scene.name}: nothing moves; give the scene a [start] or a [motion]")
     if criterion == "outcome":
         scene = scene.with_(duration=None)
     start = scene.start.model_dump().items()
-    return {1.0: scene} | {
-        factor: scene.with_(
-            start={name: factor * value for name, value in start}, motion=scene.motion and scene.motion.scaled(factor)
-        )
-        for factor in sorted(FACTORS + (MORE_FACTORS if criterion == "outcome" else ()))
-    }
+    simulate(scene, history=False)
+    family, left = {1.0: scene}, {}
+    for factor in sorted(FACTORS + (MORE_FACTORS if criterion == "outcome" else ())):
+        changed = {name: factor * value for name, value in start}
+        try:
+            copy = scene.with_(start=changed, motion=scene.motion and scene.motion.scaled(factor))
+            simulate(copy, history=False)
+            family[factor] = copy
+        except SceneError as error:
+            left[factor] = error.problem
+    return family, left
 
 
 def fitting(scene: Scene) -> str:

@@ -42,7 +42,6 @@ def command(
     passes.
     Example: rocking choose caryatid-isolated --for displacement --error 1e-3
     """
-    from analytic.limits import scene_warnings
     from analytic.scene_file import load_scene
 
     from ..advice import choose
@@ -54,8 +53,6 @@ def command(
     check_time_limit(time_limit)
     check_writable([json_file], picture=plot, inputs=[scene])
     what = load_scene(scene)
-    for caution in scene_warnings(what):
-        say(str(caution))
     compile_kernels()
     if criterion is None and engine and (shown := fitting(what)) != "restitution":
         given = what.block.restitution is not None and shown == "tilt"

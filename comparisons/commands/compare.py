@@ -1,12 +1,12 @@
 """``rocking compare``: all solvers on one scene."""
 
 from dataclasses import replace
-from math import nan
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
 from ..cli.output import write_output
+from ..running.options import refused
 from ..running.progress import say, spinner
 from ..running.readable import readable
 from ..running.solving import (
@@ -74,11 +74,7 @@ def command(
 def _responses(scene, asked, time_limit):
     """Responses of the analytic model and the engines asked for; by default of all that are installed."""
     from analytic.errors import EngineNotInstalled, SceneError
-    from analytic.response import Failure
     from engines import ENGINES, get_engine
-    from engines.observe import failed_response
-
-    from ..running.cases import versions
 
     names = [ANALYTIC, *(name for name in dict.fromkeys(asked or ENGINES) if name != ANALYTIC)]
     responses = []
@@ -92,9 +88,7 @@ def _responses(scene, asked, time_limit):
         except SceneError as error:  # not possible in this engine, such as a given restitution: only its row is lost
             if name == ANALYTIC:
                 raise
-            refusal = Failure("it cannot run this scene", str(error))
-            known: dict[str, Any] = {"variant": get_engine(name).default_variant, "settings": {}, "cpu_seconds": nan}
-            responses.append(failed_response(scene, refusal, engine=name, **known, versions=versions(name)))
+            responses.append(refused(scene, error, engine=name, variant=get_engine(name).default_variant))
     return responses
 
 

@@ -21,6 +21,8 @@ from ..running.options import (
     Units,
     motions_of,
     named_by_options,
+    read_row,
+    rows_of,
 )
 from ..running.progress import bar, compile_kernels
 from ..running.solving import scene_of
@@ -126,6 +128,7 @@ def _by_targets(targets, made, json_file):
 def _for_scene(place, base_mass, stroke, tilt, made, many, write, plot, json_file):
     """Find suitable bearings by a scan; show, draw and write them."""
     from analytic.bearing_scan import scan_bearings
+    from analytic.limits import scene_warnings
     from analytic.scene_file import load_scene, shipped_scenes
 
     from ..showing.margins import draw_bearings, nothing_holds, print_bearings
@@ -140,15 +143,17 @@ def _for_scene(place, base_mass, stroke, tilt, made, many, write, plot, json_fil
     with bar(f"{scene.name}: bearings") as progress, named_by_options(OF_SCENE):
         scan = scan_bearings(scene, motions, stroke, tilt=tilt, **made, progress=progress)
     points = {LEAST: scan.least_stroke, SOFTEST: scan.softest}  # (period, damping), None without any
-    chosen = {name: _chosen(scene, scan, point, motions) for name, point in points.items() if point is not None}
+    chosen = {name: _chosen(scene, scan, point, groups) for name, point in points.items() if point is not None}
     if write and write not in chosen:
         raise SettingError(f"--write: {nothing_holds(scene, scan, stroke)}")
-    results = {json_file: _form(scene, stroke, tilt, motions, scan, chosen)}
+    read = [read_row(record, motion) for record, group in groups.items() for motion in group]
+    warnings = scene_warnings(scene)
+    results = {json_file: _form(scene, stroke, tilt, read, scan, chosen, warnings)}
     if write:
         results[place] = _written(place, chosen[write]["bearings"], None if base_mass is None else scene.base)
     write_output(
         results,
-        lambda: print_bearings(scene, scan, stroke, tilt, len(motions), chosen),
+        lambda: print_bearings(scene, scan, stroke, tilt, read, chosen, warnings),
         plot,
         lambda: draw_bearings(scene, scan, stroke, tilt),
     )
@@ -170,28 +175,39 @@ def _on_base(scene, mass, place):
         return scene if mass is None else scene.with_(base=Base(mass=float(f"{mass:.6g}")))  # rounded as in the file
 
 
-def _chosen(scene, scan, point, motions):
-    """The bearings at a point, rounded as in a file, and their result under the worst motion, from new runs."""
-    from analytic import simulate_many
+def _chosen(scene, scan, point, groups):
+    """The bearings at a point, rounded as in a file, and what each motion does on them, from new runs."""
+    from analytic import simulate
     from analytic.scene import Bearings
+
+    from ..showing.margins import LIFTED, headline
 
     exact = scan.bearings(*point)
     bearings = Bearings(**{**exact.model_dump(), **{name: float(f"{exact.given(name):.6g}") for name in WRITTEN}})
-    runs = [scene.with_(bearings=bearings, motion=motion, duration=None) for motion in motions]
-    found = simulate_many(runs, contact=True)
-    uplift = found.friction_demand / math.tan(scene.block.slenderness)
+    borne = scene.with_(bearings=bearings, duration=None)
+    rows = rows_of(borne, groups, lambda one: simulate(one, history=False), _demand)
+    demand, worst = max(row.pop("demand") for row in rows), max(rows, key=lambda row: row["stroke"])
     return {
         "period": point[0],
         "damping": point[1],
         "bearings": bearings,
-        "stroke": float(found.peak_base_displacement.max()),
-        "lifts": int(found.lifted.sum()),
-        "slides": int(found.slid.sum()),
-        "friction": None if scene.friction is None else float(found.friction_demand.max()) / scene.friction,
-        "uplift": float(uplift.max()),
-        "tilt": float(found.peak_tilt.max()) / scene.block.slenderness,
-        "worst": motions[int(found.peak_base_displacement.argmax())].label,
+        "stroke": worst["stroke"],
+        "lifts": sum(row["outcome"] in LIFTED for row in rows),
+        "slides": sum(bool(row["slip"]) for row in rows),
+        "friction": scene.friction and demand / scene.friction,
+        "uplift": demand / math.tan(scene.block.slenderness),
+        "tilt": max(row["tilt"] for row in rows),
+        "worst": worst["motion"],
+        "motions": rows,
+        "headline": headline(rows),
     }
+
+
+def _demand(scene):
+    """The friction demand of a block that does not slide, as the search has it."""
+    from analytic import simulate_many
+
+    return {"demand": float(simulate_many([scene], contact=True).friction_demand[0])}
 
 
 def _written(place, bearings, base):
@@ -210,16 +226,18 @@ def _written(place, bearings, base):
     return text
 
 
-def _form(scene, stroke, tilt, motions, scan, chosen):
+def _form(scene, stroke, tilt, motions, scan, chosen, warnings):
     """Content of the JSON file."""
     from ..schemas.advice import BearingProposal, BearingSearch, Constants
+    from ..schemas.runs import Warned
 
     return BearingSearch(
         scene=scene.name,
         base_mass=scene.base.mass,
         stroke=stroke,
         tilt=tilt,
-        motions=[motion.label for motion in motions],
+        motions=motions,
+        warnings=[Warned(**dataclasses.asdict(one)) for one in warnings],
         periods=scan.periods.tolist(),
         dampings=scan.dampings.tolist(),
         holds=(scan.demand <= 1).tolist(),

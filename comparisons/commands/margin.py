@@ -1,15 +1,16 @@
 """``rocking margin``: the margins of a scene against other limit states and another outcome."""
 
 import dataclasses
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from ..cli.output import write_output
-from ..running.options import BothSigns, Directions, Records, Units, other_motions
+from ..running.options import BothSigns, Directions, Records, Units, other_motions, rows_of
 from ..running.progress import compile_kernels, spinner
 
 LEAST_SPAN = 0.1  # per cent
+STEPS = 400  # of a scan, from no change to the largest
 
 
 def command(
@@ -35,13 +36,14 @@ def command(
 
     Two further limit states are a peak tilt above --tilt, and a base displacement beyond the x_max of the bearings.
     One quantity is changed at a time, in steps of a four-hundredth of the span, in the analytic model. Changes that
-    give no valid scene (a restitution above 1, ka below kb) end the range. The vertical stiffness of bearings is taken
-    as infinite.
+    give no valid scene (a restitution above 1, ka below kb) or leave the model's validity end the range. The vertical
+    stiffness of bearings is taken as infinite.
 
     Example: rocking margin caryatid-isolated --plot margins.svg
     """
     from analytic.errors import SettingError
-    from analytic.margins import LARGEST_SPAN, contact_margins, margins
+    from analytic.limits import scene_warnings
+    from analytic.margins import LARGEST_SPAN, Contact, margins
     from analytic.scene_file import load_scene
 
     from ..running.files import check_writable
@@ -55,26 +57,35 @@ def command(
     what = load_scene(scene)
     groups = other_motions(what, records, both_signs, directions, units)
     compile_kernels()
+    scan: dict[str, Any] = {"tilt": tilt, "span": span / 100, "step": span / 100 / STEPS}
     with spinner(f"{what.name}: margins") as tell:
-        nearest = margins(
-            what, tilt=tilt, span=span / 100, step=span / 100 / 400, progress=lambda name: tell(f"{what.name}: {name}")
-        )
-        contact = contact_margins(what)
-    rows = [row for name, motions in groups.items() for row in _under(what, name, motions, span, tilt)]
+        nearest = margins(what, **scan, progress=lambda name: tell(f"{what.name}: {name}"))
+        response = _decided(what)
+    contact, warnings = Contact.of(what, response), (*scene_warnings(what), *response.warnings)
+    rows = rows_of(what, groups, _decided, lambda scene: _changes(scene, scan))
 
     def show():
-        print_margins(what, nearest, contact, span, tilt)
-        print_motions(what, [{**row, "changes": named(row["changes"], row["reached"], tilt)} for row in rows])
+        print_margins(what, nearest, contact, span, tilt, warnings)
+        print_motions(what, [{**row, "changes": named(row, tilt)} for row in rows])
 
-    form = _form(what, nearest, contact, rows, span, tilt)
+    form = _form(what, nearest, contact, warnings, rows, span, tilt)
     write_output({json_file: form}, show, plot, lambda: draw_margins(what, nearest, tilt))
 
 
-def _form(scene, nearest, contact, rows, span, tilt):
+def _decided(scene):
+    """The model's run until the outcome is decided."""
+    from analytic import simulate
+
+    return simulate(scene.with_(duration=None), history=False)
+
+
+def _form(scene, nearest, contact, warnings, rows, span, tilt):
     """Content of the JSON file."""
     from analytic.margins import limit_states
 
     from ..schemas.advice import Contact, Margin, Margins, MotionMargin
+    from ..schemas.runs import Warned
+    from ..showing.margins import headline
 
     return Margins(
         scene=scene.name,
@@ -84,7 +95,9 @@ def _form(scene, nearest, contact, rows, span, tilt):
         reached=_reached(nearest[0]),
         margins=[Margin.of(margin, limit_states(scene)) for margin in nearest],
         contact=Contact(**dataclasses.asdict(contact)),
+        warnings=[Warned(**dataclasses.asdict(one)) for one in warnings],
         motions=[MotionMargin(**row) for row in rows],
+        headline=headline(rows),
     )
 
 
@@ -95,24 +108,9 @@ def _reached(margin):
     return [state for state in LIMIT_STATES if margin.reached(state)]
 
 
-def _under(scene, record, motions, span, tilt):
-    """A row for each motion of a record: its outcome, and the change of the motion that reaches each limit state."""
+def _changes(scene, scan):
+    """The limit states that a scene reaches, and the change of its motion that reaches each."""
     from analytic.margins import limit_states, margins
 
-    rows = []
-    for motion in motions:
-        with spinner(f"{scene.name}: {motion.label}"):
-            (found,) = margins(
-                scene.with_(motion=motion), tilt=tilt, span=span / 100, step=span / 100 / 400, only=("motion",)
-            )
-        rows.append(
-            {
-                "record": record,
-                "motion": motion.label,
-                "peak": motion.peak,
-                "outcome": found.outcome,
-                "reached": _reached(found),
-                "changes": {state: found.change(state) for state in limit_states(scene)},
-            }
-        )
-    return rows
+    (found,) = margins(scene, **scan, only=("motion",))
+    return {"reached": _reached(found), "changes": {state: found.change(state) for state in limit_states(scene)}}

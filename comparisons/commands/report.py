@@ -146,7 +146,8 @@ def form(page: Path) -> Report:
 
     from ..report.runs import RESTITUTION, SCENES
     from ..running.provenance import read_result
-    from ..schemas.runs import Report, Reported
+    from ..schemas.runs import MotionRun, Report, Reported
+    from ..showing.margins import headline
 
     files = [page.with_name(name) for name in (SCENES, RESTITUTION) if page.with_name(name).exists()]
     result = read_result(files[0])
@@ -156,7 +157,15 @@ def form(page: Path) -> Report:
         found |= {name: row.get(name) or [] for name in ("warnings", "differences")}
         found["comparable"] = row.get("comparable") or UNCOMPARED
         rows.append(Reported.model_validate({name: found.get(name) for name in Reported.model_fields}))
-    return Report(page=str(page), results=[str(file) for file in files], missing=result.settings["missing"], rows=rows)
+    motions = {name: statue["motions"] for name, statue in result.settings.get("statues", {}).items()}
+    return Report(
+        page=str(page),
+        results=[str(file) for file in files],
+        missing=result.settings["missing"],
+        rows=rows,
+        motions={name: [MotionRun(**row) for row in under] for name, under in motions.items()},
+        headlines={name: headline(under) for name, under in motions.items()},
+    )
 
 
 def _variants(variant, engines, scene):

@@ -48,7 +48,7 @@ def command(
 
     from ..running.files import check_writable
     from ..schemas.runs import MotionRun, Run
-    from ..showing.margins import print_motions
+    from ..showing.margins import headline, print_motions
     from ..showing.terminal import show, summary
 
     check_time_limit(time_limit)
@@ -85,7 +85,7 @@ def command(
         return draw_histories(what, [response])
 
     told = replace(response, warnings=(*about, *response.warnings))
-    form = Run(**told.to_json(), motions=[MotionRun(**row) for row in rows])
+    form = Run(**told.to_json(), motions=[MotionRun(**row) for row in rows], headline=headline(rows))
     print_failures([response])
     write_output({json_file: form, csv: history.getvalue()}, tell, plot, draw)
     if response.failure:

@@ -178,8 +178,9 @@ def lost_impacts(response: Response, reference: Response, until: float = math.in
 
 def graph_distance(
     response: Response, reference: Response, *, tilt_scale: float, time_scale: float, until: float = math.inf
-) -> float:
-    """Hausdorff distance of the graphs (time/time_scale, tilt/tilt_scale) of two responses up to `until` [s].
+) -> float | None:
+    """Hausdorff distance of the graphs (time/time_scale, tilt/tilt_scale) of two responses up to `until` [s]; None
+    where that leaves a history fewer than two samples.
 
     The measure for motions whose velocity jumps (M. D. P. Monteiro Marques 1987, doi:10.1016/0022-0396(87)90143-4;
     V. Acary 2012, doi:10.1016/j.apnum.2012.06.026), here with the Euclidean norm in place of the maximum norm:
@@ -194,7 +195,7 @@ def graph_distance(
     for time, tilt in lines:
         inside = time <= end / time_scale
         if inside.sum() < 2:
-            raise ValueError(f"until = {until!r} s leaves fewer than two samples of the history")
+            return None
         span = time[inside], tilt[inside]
         if span[0][-1] < end / time_scale:
             last = np.interp(end / time_scale, time, tilt)
@@ -261,7 +262,7 @@ class Agreement:
     same_outcome; overturning_time_error [s], None unless both overturn; peak_tilt_error over slenderness;
     peak_displacement_error relative to the reference's peak, None on rigid ground; impact_time_error: root mean
     square over the matched impacts [s], None without any; lost_impacts of the reference; graph_distance of
-    the tilt (None without histories); the last three up to `until` [s].
+    the tilt (None without histories, or two samples of them); the last three up to `until` [s].
     """
 
     same_outcome: bool

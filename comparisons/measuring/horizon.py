@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic import Caution, Response, Scene, simulate
+from analytic import Caution, Response, Scene, SceneError, simulate
 from analytic.rocking import RockingModel
 from engines.copies import changed_copies
 from engines.matching import impacts_of, matched
@@ -53,7 +53,11 @@ class Horizon:
 def unsure_outcome(scene: Scene, outcome: str, perturbation: float = LEAST) -> Caution | None:
     """A warning where the model's `outcome` is another one for one of the `changed_copies`, or None."""
     for name, copy in changed_copies(scene, perturbation).items():
-        if (other := simulate(copy, history=False).outcome) != outcome:
+        try:
+            other = simulate(copy, history=False).outcome
+        except SceneError as error:  # of the copy, not of the scene
+            other = f"cannot be run ({error.problem})"
+        if other != outcome:
             words = (
                 f"with {name} by {perturbation:.0e} the block {other}, without it {outcome}: the scene is near an "
                 "outcome boundary; see rocking margin"
@@ -69,7 +73,8 @@ def sensitivity_horizon(scene: Scene, *, perturbation: float = PERTURBATION) -> 
     ----------
     scene : Scene
     perturbation : float
-        Relative change of restitution, motion amplitude and start, above 0 and below 1.
+        Relative change of restitution, motion amplitude and start, above 0 and below 1. A copy that the model refuses
+        is left out.
     """
     period = 2 * np.pi / scene.rocking_frequency
     step = min(period / SAMPLES_PER_PERIOD, (scene.duration or period) / 2)
@@ -77,7 +82,10 @@ def sensitivity_horizon(scene: Scene, *, perturbation: float = PERTURBATION) -> 
     largest = np.zeros(len(base.time))
     parted = {}
     for name, copy in changed_copies(scene, perturbation).items():
-        other = simulate(copy, output_step=step).history
+        try:
+            other = simulate(copy, output_step=step).history
+        except SceneError:
+            continue
         # Where one has overturned and stopped, it keeps its last tilt.
         tilt = np.interp(base.time, other.time, other.tilt)
         apart = np.abs(tilt - base.tilt) / scene.block.slenderness

@@ -2,10 +2,10 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
-from analytic import Scene, SceneError, simulate, simulate_many
+from analytic import Scene, SceneError, simulate
 from analytic.limits import scene_warnings
 from analytic.margins import SPAN, TILT, limit_states, margins
 from analytic.motion import Motion
@@ -13,9 +13,10 @@ from analytic.nearby import SHARE, cliffs, nearby
 from analytic.records.folder import reversed_sign, same_reversed
 from analytic.response import JUDGED, about_record
 
+from ..running.options import rows_of
 from ..running.provenance import Result
-from ..showing.margins import LIFTED, odds
-from ..showing.parts import Column, across, number, signed, table
+from ..showing.margins import LIFTED, doubts, headline, motion_warnings
+from ..showing.parts import Column, across, grouped, number, signed, table
 from ..showing.wording import listed
 from .next_step import needed_by, next_step
 from .sections import different
@@ -28,6 +29,7 @@ WORDS = {
     "overturns": "overturns",
     "failed": "leaves the model",
 }
+BEYOND = ("limit", "model")  # kinds of warnings that belong into the title
 STATES = {"slides": "Sliding", "tilt": f"Tilt above {TILT:g} γ", "stroke": "Base beyond x_max"}  # beside the outcome
 
 
@@ -58,7 +60,7 @@ def statue_of(scene: Scene, motions: Mapping[str, Sequence[Motion]], progress: A
     found["cautions"] += map(str, scene_warnings(scene))
     if scene.base is not None and scene.bearings is not None:
         start = {"base_displacement": 0.0, "base_velocity": 0.0}
-        found["free"] = _figures(scene.with_(base=None, bearings=None, start=start))
+        found["free"] = _copy(scene.with_(base=None, bearings=None, start=start))
     try:
         if scene.motion is not None:
             changes, outcomes = nearby(scene)
@@ -72,15 +74,20 @@ def statue_of(scene: Scene, motions: Mapping[str, Sequence[Motion]], progress: A
                 "bands": margin.outcomes,
                 "interleaved": margin.interleaved,
                 "states": {state: [margin.reached(state), margin.change(state)] for state in limit_states(scene)},
+                "ends": [
+                    [at, why]
+                    for at, why in ((margin.bands[0].low, margin.ends_down), (margin.bands[-1].high, margin.ends_up))
+                    if why
+                ],
             }
             for margin in margins(scene, progress=progress)
         ]
     except SceneError as error:  # too long to be run so often
         found["cautions"].append(f"The distance to another outcome was not searched: {error.remedy}.")
     if scene.motion is not None and not same_reversed(scene):  # else it is the mirrored run
-        found["reversed"] = _figures(scene.with_(motion=reversed_sign(scene.motion)))
+        found["reversed"] = _copy(scene.with_(motion=reversed_sign(scene.motion)))
     records = _with_own(scene, motions)
-    rows = [_under(scene, record, group) for record, group in records.items()]
+    rows = rows_of(scene, records, lambda one: simulate(one.with_(duration=None), history=False))
     found["motions"] = rows if motions else []
     found["needed"] = None
     if _lifts_or_goes_too_far(scene, found, rows):
@@ -102,9 +109,17 @@ def _lifts_or_goes_too_far(scene, found, rows):
     return any(row["outcome"] != "stands" or (row["stroke"] or 0.0) > x_max for row in rows)
 
 
+def _copy(scene):
+    """The figures of a copy of the scene, or why the model refuses it."""
+    try:
+        return _figures(scene)
+    except SceneError as error:
+        return {"refused": f"{error.key}: {error.problem}"}
+
+
 def _figures(scene):
     response = simulate(scene, history=False)
-    warnings = (*about_record(scene.motion), *response.warnings)
+    warnings = dict.fromkeys((*about_record(scene.motion), *response.warnings))
     slid = response.sliding if response.sliding and response.sliding.peak else None
     return {
         "outcome": response.outcome,
@@ -120,7 +135,7 @@ def _figures(scene):
         "normal": response.min_normal_ratio,
         "slip": slid and slid.peak,
         "slip_end": slid and slid.end,
-        "warnings": list(dict.fromkeys(str(warning) for warning in warnings)),
+        "warnings": list(map(asdict, warnings)),
     }
 
 
@@ -146,21 +161,6 @@ def _near(scene, changes, found):
     return [*rows, worst]
 
 
-def _under(scene, record, motions):
-    found = simulate_many([scene.with_(motion=motion, duration=None) for motion in motions])
-    return {
-        "record": record,
-        "motions": len(motions),
-        "pga": max(motion.peak for motion in motions),
-        "outcome": max(found.names.tolist(), key=WORST.index),
-        "lifts": int(found.lifted.sum()),
-        "overturns": int(found.overturns.sum()),
-        "tilt": float(found.peak_tilt.max()) / scene.block.slenderness,
-        "stroke": float(found.peak_base_displacement.max()),
-        "slip": float(found.peak_slip.max()),
-    }
-
-
 def card_of(result: Result, name: str, call: str = "FILE", first: str = "") -> Card:
     """The `Card` of one of the scenes of a result.
 
@@ -168,23 +168,59 @@ def card_of(result: Result, name: str, call: str = "FILE", first: str = "") -> C
     """
     scene, found = result.settings["scenes"][name], result.settings["statues"][name]
     own = found["own"]
-    sentences = [*_sentences(found), *(("Warning", text) for text in own["warnings"])]
+    sentences = [*_sentences(found), *(("Warning", one["text"]) for one in own["warnings"])]
+    sentences += [("Records", words) for words in _failures(found["motions"]) + motion_warnings(found["motions"])]
     sentences.append(("Engines", _engines([row for row in result.rows if row["scene"] == name])))
     tables = [_main(found)]
     if found["near"]:
         tables.append(_near_table(found["near"], scene))
     if found["motions"]:
-        tables.append(_motion_table(found["motions"], scene))
+        tables.append(_motion_table(_by_record(found["motions"]), scene))
     nearest = next((margin for margin in found["margins"][:1] if margin["nearest"] is not None), None)
-    title = f"{scene['name']}: the block {_worst(found, scene)}"
+    title = f"{scene['name']}: the block {'; '.join([_worst(found, scene), *_beyond(found)])}"
     command, words = next_step(scene, found["needed"], call)
     step = command, f"{words} {first}".rstrip()
     return Card(title, found["cautions"], step, scene, nearest, sentences, tables)
 
 
+def _beyond(found):
+    """What of the base or the block is beyond a limit, and under how many of the records."""
+    if rows := found["motions"]:
+        return [f"{clause} under {records}" for clause, records in doubts(rows, BEYOND).items()]
+    return list(doubts([{"record": "", **found["own"]}], BEYOND))
+
+
+def _failures(rows):
+    """Why motions have no outcome."""
+    return [f"{row['motion']}: {row['failure']}" for row in rows if row["failure"]]
+
+
+def _by_record(rows):
+    """A row for each record: the worst of its motions."""
+    return [
+        {
+            "record": record,
+            "motions": len(group),
+            "pga": max(row["peak"] for row in group),
+            "outcome": max((row["outcome"] for row in group), key=WORST.index),
+            "lifts": sum(row["outcome"] in LIFTED for row in group),
+            "overturns": sum(row["outcome"] == "overturns" for row in group),
+            **{name: _largest(group, name) for name in ("tilt", "stroke", "slip")},
+            "doubts": ", ".join(doubts(group)),
+        }
+        for (record,), group in grouped(rows, "record").items()
+    ]
+
+
+def _largest(rows, name):
+    """The largest number of a name; None where no run has one."""
+    known = (row[name] for row in rows if row[name] is not None)
+    return max(known, default=None)
+
+
 def _worst(found, scene):
     """The worst outcome of all motions, and under how many of the records; and that of the scene's own."""
-    own, rows = found["own"], found["motions"]
+    own, rows = found["own"], _by_record(found["motions"])
     words = WORDS[own["outcome"]] + ("" if own["decided"] else " (not decided when the run ended)")
     worst = max((row["outcome"] for row in rows), key=WORST.index, default=None)
     known = scene["motion"] and own["decided"] and own["outcome"] == worst
@@ -201,16 +237,20 @@ def _sentences(found):
     """(heading, sentence) of what the model says beyond the scene's own run."""
     sentences = _slid(found["own"])
     if "free" in found:
-        sentences.append(("Without isolation", f"Free-standing, the block {WORDS[found['free']['outcome']]}."))
+        sentences.append(("Without isolation", f"Free-standing, the block {_does(found['free'])}."))
     sentences += _nearest(found["margins"])
     if "reversed" in found:
-        sentences.append(("Motion reversed", f"the block {WORDS[found['reversed']['outcome']]}"))
+        sentences.append(("Motion reversed", f"The block {_does(found['reversed'])}."))
     elif found["near"]:
         sentences.append(("Motion reversed", "The same, mirrored: block and start are symmetric."))
     if rows := found["motions"]:
-        words = f"The block {odds(rows, LIFTED, 'lifts')}, and {odds(rows, LIFTED[1:], 'overturns')}."
-        sentences.append(("Records", words))
+        sentences.append(("Records", headline(rows)))
     return sentences
+
+
+def _does(copy):
+    """What the block does in a copy of the scene, or why that is not known."""
+    return f"is outside the model ({copy['refused']})" if "refused" in copy else WORDS[copy["outcome"]]
 
 
 def _slid(own):
@@ -246,7 +286,8 @@ def _nearest(found):
         if changing:
             quantity, reached, change = min(changing, key=lambda one: abs(one[2]))
             sentences.append((label, f"{'No longer from' if reached else 'From'} {quantity} {signed(change)} on."))
-    return sentences
+    ends = [f"{one['quantity']} at {signed(at)} ({why})" for one in found for at, why in one["ends"]]
+    return [*sentences, ("Ranges that end", f"{'; '.join(ends)}.")] if ends else sentences
 
 
 def _engines(rows):
@@ -265,7 +306,7 @@ def _engines(rows):
 
 def _main(found):
     columns = [{"name": "this scene", **found["own"]}]
-    columns += [{"name": "free-standing", **found["free"]}] if "free" in found else []
+    columns += [{"name": "free-standing", **found["free"]}] if "outcome" in found.get("free", ()) else []
 
     def share(value, limit):
         return number(value) if limit is None else f"{number(value)} of {number(limit)}"
@@ -316,4 +357,5 @@ def _motion_table(motions, scene):
         Column("largest tilt over slenderness [-]", lambda one: _tilt(one["outcome"], one["tilt"])),
         *([Column("largest base displacement [m]", "stroke", 3)] if scene["base"] else []),
         *_slip(motions, "largest slip [m]"),
+        *([Column("warnings", "doubts")] if any(one["doubts"] for one in motions) else []),
     )

@@ -7,6 +7,7 @@ from __future__ import annotations
 import contextlib
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -122,10 +123,26 @@ def other_motions(
     return motions_of(scene, records, both_signs, directions, units) if given else {}
 
 
+def read_row(record: str, motion: Motion) -> dict[str, Any]:
+    """A motion as it was read: record, motion, peak [m/s2], and warnings on it, as `schemas.runs.MotionRead` has it."""
+    from analytic.response import about_record
+
+    warnings = [asdict(one) for one in about_record(motion)]
+    return {"record": record, "motion": motion.label, "peak": motion.peak, "warnings": warnings}
+
+
 def rows_of(
-    scene: Scene, groups: Mapping[str, Sequence[Motion]], simulate: Callable[[Scene], Response]
+    scene: Scene,
+    groups: Mapping[str, Sequence[Motion]],
+    simulate: Callable[[Scene], Response],
+    more: Callable[[Scene], Mapping[str, Any]] = lambda scene: {},
 ) -> list[dict[str, Any]]:
-    """A row for each motion: record, motion, peak [m/s2], outcome, tilt over slenderness, base displacement [m]."""
+    """A row for each motion, as `schemas.runs.MotionRun` has it: the one way from a motion to its warnings.
+
+    simulate : of the scene under a motion; one that the solver refuses is a failed row. more : what else a row has.
+    """
+    from analytic.errors import SceneError
+
     from .progress import bar
 
     pairs = [(record, motion) for record, motions in groups.items() for motion in motions]
@@ -134,16 +151,39 @@ def rows_of(
     rows = []
     with bar(f"{scene.name}: {len(pairs)} motions") as progress:
         for number, (record, motion) in enumerate(pairs, 1):
-            response = simulate(scene.with_(motion=motion))
-            rows.append(
-                {
-                    "record": record,
-                    "motion": motion.label,
-                    "peak": motion.peak,
-                    "outcome": response.outcome,
-                    "tilt": response.peak_tilt_ratio,
-                    "stroke": response.peak_base_displacement if scene.base else None,
-                }
-            )
+            under = scene.with_(motion=motion)
+            added: Mapping[str, Any] = {}
+            try:
+                response = simulate(under)
+                added = more(under)
+            except SceneError as error:
+                response = refused(under, error)
+            rows.append({**read_row(record, motion), **_measures(under, response), **added})
             progress(number, len(pairs))
     return rows
+
+
+def refused(scene: Scene, error: SceneError, **known: Any) -> Response:
+    """The failed response of a scene that a solver refuses; known : engine, variant, ..., the model's without them."""
+    from analytic.response import Failure
+    from engines.observe import failed_response
+
+    from .cases import versions
+    from .solving import ANALYTIC
+
+    name = known.get("engine", ANALYTIC)
+    solver = {"engine": name, "variant": "", "settings": {}, "versions": versions(name)}
+    return failed_response(scene, Failure("it cannot run this scene", str(error)), **{**solver, **known})
+
+
+def _measures(scene: Scene, response: Response) -> dict[str, Any]:
+    """What a run did, and its warnings."""
+    failure = response.failure
+    return {
+        "warnings": [asdict(one) for one in response.warnings],
+        "outcome": response.outcome,
+        "failure": failure and f"{failure.reason}: {failure.message.partition(chr(10))[0]}".removesuffix(": "),
+        "tilt": response.peak_tilt_ratio,
+        "stroke": response.peak_base_displacement if scene.base else None,
+        "slip": response.sliding and response.sliding.peak,
+    }

@@ -8,6 +8,7 @@ from ..running.files import write_all
 from ..running.provenance import PROJECT_FOLDER
 from ..sheet.score import Score
 from .advice import BearingSearch, Design, Margins
+from .form import schema_of
 from .runs import Comparison, New, Record, Report, Run, Sheet, Verification
 from .study import StudyResult
 
@@ -31,7 +32,7 @@ FORMS = (
 
 def schemas() -> dict[str, dict[str, Any]]:
     """{name of the file without ending: schema} of every form."""
-    found = [form.model_json_schema(mode="serialization", by_alias=True) for form in FORMS]
+    found = [schema_of(form) for form in FORMS]
     return {schema["properties"]["schema"]["default"].replace(" ", "-"): schema for schema in found}
 
 

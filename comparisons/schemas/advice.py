@@ -1,7 +1,7 @@
 """What `rocking margin` and `rocking design` write."""
 
 from collections.abc import Sequence
-from typing import Any, Self
+from typing import Any, Literal, Self
 
 from pydantic import Field, create_model
 from pydantic.fields import FieldInfo
@@ -11,16 +11,19 @@ from analytic.part import UNITS
 from analytic.scene import Bearings
 
 from .form import Form, Part
+from .runs import MotionRead, MotionRun, Warned
+
+LimitState = Literal[*margins.LIMIT_STATES]  # type: ignore[valid-type]  # the words of `analytic.margins`
 
 
 class Band(Part):
-    """Relative changes from low to high. reached: the limit states there, of "lifts", "tilt" (the peak tilt exceeds
-    its share of the slenderness), "stroke" (the base goes beyond x_max) and "overturns"; holds: the contact holds as
-    the model has it."""
+    """Relative changes from low to high. reached: the limit states there, of "slides", "lifts", "tilt" (the peak tilt
+    exceeds its share of the slenderness), "stroke" (the base goes beyond x_max) and "overturns"; holds: the contact
+    holds as the model has it."""
 
     low: float
     high: float
-    reached: list[str]
+    reached: list[LimitState]
     outcome: str
     holds: bool
 
@@ -30,7 +33,7 @@ class Margin(Part):
     which it becomes reached, or where the scene reaches it now, is no longer; down, up: nearest change with another
     outcome; leaves_model: nearest change at which the model no longer holds; null where there is none in the range
     scanned. interleaved: the outcome changes and changes back within two steps of the scan: it may change nearer, in a
-    narrower band."""
+    narrower band. ends_down, ends_up: why the bands end before the span, where no scene or no run lies beyond."""
 
     quantity: str
     value: float
@@ -42,6 +45,8 @@ class Margin(Part):
     nearest: float | None
     leaves_model: float | None
     interleaved: bool
+    ends_down: str
+    ends_up: str
 
     @classmethod
     def of(cls, margin: margins.Margin, states: Sequence[str]) -> Self:
@@ -60,31 +65,30 @@ class Contact(Part):
     slides: bool = False
 
 
-class MotionMargin(Part):
-    """Under one of many motions: the outcome, the limit states reached, and the nearest relative changes of the motion
-    at which each limit state becomes reached, or where it is, no longer is."""
+class MotionMargin(MotionRun):
+    """A scene under one of many motions, the limit states reached, and the nearest relative changes of the motion at
+    which each limit state becomes reached, or where it is, no longer is; none of a run that failed."""
 
-    record: str
-    motion: str
-    peak: float = Field(description="m/s2")
-    outcome: str
-    reached: list[str]
-    changes: dict[str, float | None]
+    reached: list[LimitState] = []
+    changes: dict[LimitState, float | None] = {}
 
 
 class Margins(Form):
     """How far a scene is from other limit states. reached: those it reaches now. tilt: the limit, a share of the
-    slenderness; span: largest relative change scanned, up and, above -1, down."""
+    slenderness; span: largest relative change scanned, up and, above -1, down. warnings: of the unchanged scene.
+    headline: under how many motions what must be known happens."""
 
-    schema_: str = Field(default="rocking margin 3", serialization_alias="schema")
+    schema_: str = Field(default="rocking margin 4", serialization_alias="schema")
     scene: str
     outcome: str
     tilt: float
     span: float
-    reached: list[str]
+    reached: list[LimitState]
     margins: list[Margin]
     contact: Contact
+    warnings: list[Warned]
     motions: list[MotionMargin]
+    headline: str | None
 
 
 def _constant(name: str, given: FieldInfo) -> tuple[Any, Any]:
@@ -141,6 +145,8 @@ class BearingProposal(Part):
         default=None, description="friction demand over the scene's friction, if it gives one"
     )
     worst: str = Field(description="motion of the largest displacement")
+    motions: list[MotionRun] = Field(description="what happens under each on these bearings")
+    headline: str = Field(description="under how many motions what must be known happens")
 
 
 class BearingSearch(Form):
@@ -150,12 +156,13 @@ class BearingSearch(Form):
     holds: a row for each damping, a column for each period [s]. chosen: "least-stroke" and "softest", none where
     nothing holds."""
 
-    schema_: str = Field(default="rocking bearings 1", serialization_alias="schema")
+    schema_: str = Field(default="rocking bearings 2", serialization_alias="schema")
     scene: str
     base_mass: float = Field(description="kg, of the scene's base or as given")
     stroke: float = Field(description="m, allowed")
     tilt: float = Field(description="allowed, over the slenderness; 0: no lift")
-    motions: list[str]
+    motions: list[MotionRead]
+    warnings: list[Warned] = Field(description="of the scene")
     periods: list[float]
     dampings: list[float]
     holds: list[list[bool]]

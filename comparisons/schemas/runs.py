@@ -4,6 +4,8 @@ from typing import Any, Literal
 
 from pydantic import Field
 
+from analytic.response import DIFFERENCES, KINDS, OUTCOMES
+
 from .form import Form, Part
 
 
@@ -50,17 +52,6 @@ class Sliding(Part):
     modes: list[tuple[float, str]]
 
 
-class MotionRun(Part):
-    """Under one of many motions: the outcome and the peaks; tilt over slenderness, displacement null without a base."""
-
-    record: str
-    motion: str
-    peak: float = Field(description="m/s2")
-    outcome: str
-    tilt: float | None
-    stroke: float | None = Field(description="m")
-
-
 class Failure(Part):
     """Why a run failed: in plain words, the engine's own message, the last finite state."""
 
@@ -72,29 +63,38 @@ class Failure(Part):
 class Warned(Part):
     """A warning. kind: record, model, limit, motion or engine; quantity, value, limit: what is beyond which limit."""
 
-    kind: Literal["record", "model", "limit", "motion", "engine"]
+    kind: Literal[*KINDS]  # type: ignore[valid-type]  # the words of `Caution`
     text: str
     quantity: str | None
     value: float | None
     limit: float | None
 
 
+class MotionRead(Part):
+    """One of many motions, as it was read."""
+
+    record: str
+    motion: str
+    peak: float = Field(description="m/s2")
+    warnings: list[Warned]
+
+
+class MotionRun(MotionRead):
+    """A scene under one of many motions: the outcome, why a run failed, and the peaks; tilt over slenderness, stroke
+    null without a base, slip null where none is modelled. The warnings are those of the run, too."""
+
+    outcome: Literal[*OUTCOMES]  # type: ignore[valid-type]  # the words of `Response`
+    failure: str | None
+    tilt: float | None
+    stroke: float | None = Field(description="m")
+    slip: float | None = Field(description="m")
+
+
 class Difference(Part):
     """What an engine's run has other than the analytic model, and the difference tolerated: of peaks and losses
     relative, of the restitution, of times [s] and of numbers of impacts absolute."""
 
-    quantity: Literal[
-        "outcome",
-        "peak_tilt",
-        "peak_base_displacement",
-        "fall_time",
-        "overturning_time",
-        "impacts_before_fall",
-        "restitution",
-        "impact_loss",
-        "missing_impacts",
-        "extra_impacts",
-    ]
+    quantity: Literal[*DIFFERENCES]  # type: ignore[valid-type]  # the words of `analytic.Difference`
     here: str | float | None
     model: str | float | None
     limit: float | None
@@ -108,7 +108,7 @@ class _Values(Form):
     engine: str
     variant: str
     scene: str
-    outcome: Literal["stands", "slides", "rocks", "overturns", "failed"]
+    outcome: Literal[*OUTCOMES]  # type: ignore[valid-type]  # as above
     decided: bool = Field(description="False: it ended before the outcome was certain.")
     overturning_time: float | None = Field(description="s, |tilt| = pi/2")
     unstable_time: float | None = Field(description="s, first |tilt| = slenderness; no proof of overturning")
@@ -140,10 +140,11 @@ class _Values(Form):
 
 
 class Run(_Values):
-    """A scene in one solver."""
+    """A scene in one solver. headline: under how many motions what must be known happens."""
 
-    schema_: str = Field(default="rocking run 3", serialization_alias="schema")
+    schema_: str = Field(default="rocking run 4", serialization_alias="schema")
     motions: list[MotionRun] = Field(default=[], description="where --records, --both-signs or --directions are given")
+    headline: str | None = None
 
 
 class Sensitivity(Part):
@@ -156,7 +157,7 @@ class Sensitivity(Part):
 class Comparison(Form):
     """A scene in all solvers. sensitivity_horizon: time [s] up to which point-wise agreement is asked for."""
 
-    schema_: str = Field(default="rocking compare 3", serialization_alias="schema")
+    schema_: str = Field(default="rocking compare 4", serialization_alias="schema")
     scene: str
     sensitivity_horizon: float | None
     sensitivity: dict[str, Sensitivity]
@@ -221,7 +222,7 @@ class Reported(Part):
     scene: str
     engine: str
     variant: str | None
-    outcome: Literal["stands", "slides", "rocks", "overturns", "failed"]
+    outcome: Literal[*OUTCOMES]  # type: ignore[valid-type]  # as above
     decided: bool | None
     peak_tilt_ratio: float | None
     peak_base_displacement: float | None = Field(description="m")
@@ -239,13 +240,16 @@ class Reported(Part):
 
 
 class Report(Form):
-    """A page written, and the rows behind its first table. results: the result files it is made from."""
+    """A page written, and the rows behind its first table. results: the result files it is made from. motions: of each
+    scene of one's own, what each of many motions does; headlines: under how many of them what must be known happens."""
 
-    schema_: str = Field(default="rocking report 4", serialization_alias="schema")
+    schema_: str = Field(default="rocking report 5", serialization_alias="schema")
     page: str
     results: list[str]
     missing: dict[str, str]
     rows: list[Reported]
+    motions: dict[str, list[MotionRun]] = {}
+    headlines: dict[str, str | None] = {}
 
 
 class Derived(Part):

@@ -24,12 +24,13 @@ ZERO = 1e-12  # an error of 0 is drawn here
 
 def print_choice(choice: Choice, every_level: bool = False) -> None:
     """Print a choice: the answer and how it is used, a line per variant (or all its levels), what else was found."""
-    echo(readable(answer(choice)))
+    echo(*(f"Warning: {readable(one.text)}" for one in choice.warnings), readable(answer(choice)))
     if choice.command:
         echo(f"\n  {choice.command}\n", textwrap.indent(choice.snippet or "", "  ").rstrip())
     if choice.variants:
         echo(_table(choice, every_level))
     lines = [*_remarks(choice), *map(_about_part, choice.parts)]
+    lines += [f"Left out: {factor} of the scene, on which the model {why}." for factor, why in choice.left_out.items()]
     lines += [f"Not tried: {words}." for words in missing_words(choice.missing)]
     lines += ["All levels: --all."] if choice.variants and not every_level else []
     echo(*map(readable, lines))

@@ -2,23 +2,24 @@
 pictures."""
 
 import math
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from analytic import Scene
+from analytic import Caution, Scene
 from analytic.bearing_scan import BearingScan
-from analytic.limits import scene_warnings
 from analytic.margins import Contact, Margin, limit_states
+from analytic.response import KINDS
 
 from ..measuring.statistics import wilson
 from ..running.readable import readable
 from .parts import number, percent
 from .plots import TITLE_CHARACTERS
-from .terminal import Grid, echo, grid
+from .terminal import Grid, echo, grid, warned
 
 # Okabe and Ito; hatches, and the lines’ places, tell them apart in print.
 COLOURS = {
@@ -33,13 +34,20 @@ COLOURS = {
 OUTSIDE, TILT, STROKE = ("#CC79A7", -0.43), ("#0072B2", 0.35), ("#56B4E9", 0.43)
 
 
-def print_margins(scene: Scene, margins: Sequence[Margin], contact: Contact, span: float, tilt: float) -> None:
-    """Print a row for each `Margin` with a change, in order, and the reserves of the contact."""
+def print_margins(
+    scene: Scene,
+    margins: Sequence[Margin],
+    contact: Contact,
+    span: float,
+    tilt: float,
+    warnings: Sequence[Caution] = (),
+) -> None:
+    """Print a row for each `Margin` with a change, in order, and the reserves of the contact; `warnings` first."""
     nearest = margins[0]
     names = {state: name for state, name in _names(tilt).items() if state in limit_states(scene)}
     now = ", ".join(name for state, name in names.items() if nearest.reached(state))
     parts: list[Grid | str] = [
-        *(f"Warning: {warning}" for warning in scene_warnings(scene)),
+        *(f"Warning: {readable(str(warning))}" for warning in warnings),
         f"{readable(scene.name, TITLE_CHARACTERS)}: {nearest.outcome}\nnow: {now or 'no limit state'}",
     ]
     rows = {margin: [margin.change(state) for state in names] for margin in margins}
@@ -52,7 +60,11 @@ def print_margins(scene: Scene, margins: Sequence[Margin], contact: Contact, spa
             + (" Left at: from there on the model does not hold." if _leaves(rows) else ""),
         ]
     if still := ", ".join(margin.quantity for margin in margins if margin not in rows):
-        parts.append(f"No change of up to {span:g} % of {still} changes any of these: {', '.join(names.values())}.")
+        within = " within its range" if any(one.ends_down or one.ends_up for one in margins if one not in rows) else ""
+        parts.append(
+            f"No change of up to {span:g} % of {still}{within} changes any of these: {', '.join(names.values())}."
+        )
+    parts += [words for margin in margins for words in _ends(margin)]
     if nearest.nearest is None:
         parts.append(f"No change of up to {span:g} % of any one quantity changes the outcome.")
     else:
@@ -78,10 +90,16 @@ def _names(tilt):
     return {**names, "stroke": "base > x_max", "overturns": "overturns"}
 
 
-def named(changes: Mapping[str, float | None], reached: Collection[str], tilt: float) -> dict[str, str]:
-    """{limit state as tables call it: its change in words} of {limit state: change} and those reached without one."""
-    words = {state: _percent(change) for state, change in changes.items()}
-    words |= {state: f"no longer\n{words[state]}" if words[state] else "now" for state in reached}
+def _ends(margin):
+    """Where the range of a quantity ends before the span, and why."""
+    ends = ((margin.bands[0].low, margin.ends_down), (margin.bands[-1].high, margin.ends_up))
+    return [f"The range of {margin.quantity} ends at {100 * at:+.3g} %: {readable(why)}." for at, why in ends if why]
+
+
+def named(row: Mapping[str, Any], tilt: float) -> dict[str, str]:
+    """{limit state as tables call it: its change in words}, of a row's changes and the states that it reaches."""
+    words = {state: _percent(change) for state, change in row.get("changes", {}).items()}
+    words |= {state: f"no longer\n{words[state]}" if words[state] else "now" for state in row.get("reached", ())}
     return {_names(tilt)[state]: change for state, change in words.items()}
 
 
@@ -183,27 +201,101 @@ def _friction_words(contact):
 
 
 LIFTED = ("rocks", "overturns")
+# {(kind, quantity) of a warning, or kind alone: (in a table, in the headline)}; what must be known first stands first.
+DOUBTS = {
+    ("limit", "peak_base_displacement"): ("x_max", "the base exceeds x_max"),
+    ("limit", "peak_slip"): ("slip", "the block slips by more than its half width"),
+    ("limit", None): ("limit", "a limit is exceeded"),
+    ("model", None): ("model", "a run warns that it is outside the model"),
+    ("record", None): ("record", "the record is unusual"),
+    ("motion", None): ("motion", "the outcome is sensitive to small changes"),
+    ("engine", None): ("engine", "the engine or its range warns"),
+}
+
+
+def _doubt(warning: Mapping[str, Any]) -> tuple[str, str]:
+    """A warning in a word and in a clause."""
+    return DOUBTS.get((warning["kind"], warning["quantity"])) or DOUBTS[warning["kind"], None]
+
+
+def headline(rows: Sequence[Mapping[str, Any]]) -> str | None:
+    """The worst that must be known of a scene under many motions, by record: failed runs, what is in doubt, whether the
+    block lifts and overturns. None without motions.
+
+    rows : as of `running.options.rows_of`.
+    """
+    if not rows:
+        return None
+    failed = _records(rows, lambda row: row["outcome"] == "failed")
+    said = [f"No outcome under {failed}."] if failed else []
+    said += [f"Warning: {clause} under {records}." for clause, records in doubts(rows).items()]
+    return " ".join([*said, f"The block {odds(rows, LIFTED, 'lifts')}, and {odds(rows, LIFTED[1:], 'overturns')}."])
+
+
+def doubts(rows: Sequence[Mapping[str, Any]], kinds: Sequence[str] = KINDS) -> dict[str, str]:
+    """{what warnings of these kinds say, in a clause: under how many records}; rows as in `headline`."""
+    found = {
+        clause: _records(rows, partial(_warns, clause)) for (kind, _), (_, clause) in DOUBTS.items() if kind in kinds
+    }
+    return {clause: records for clause, records in found.items() if records}
+
+
+def _warns(clause: str, row: Mapping[str, Any]) -> bool:
+    return any(_doubt(one)[1] == clause for one in row["warnings"])
+
+
+def _records(rows: Sequence[Mapping[str, Any]], holds: Callable[[Mapping[str, Any]], bool]) -> str:
+    """In words, how many records have a motion of which this holds; "" where none has."""
+    some, every = {row["record"] for row in rows if holds(row)}, {row["record"] for row in rows}
+    return f"{len(some)} of {_counted(len(every))}" if some else ""
+
+
+def _counted(records: int) -> str:
+    return f"{records} record{'s' * (records != 1)}"
 
 
 def print_motions(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> None:
-    """Print a row for each motion, and how many records lift and overturn the block; nothing without motions.
+    """Print a row for each motion, the warnings of all, and the `headline`; nothing without motions.
 
     rows : as of `rows_of`, and for each more column of a `Mapping` called changes a name and what stands there.
     """
     if not rows:
         return
     more = list(dict.fromkeys(name for row in rows for name in row.get("changes", ())))
-    more_heads = [name.replace(" > ", " >\n") for name in more]
-    heads = ["motion", "peak\n[g]", "outcome", *(["tilt\n[-]"] if "tilt" in rows[0] else []), *more_heads]
-    heads += ["base\n[m]"] if rows[0].get("stroke") is not None else []
-    table = []
-    for row in rows:
-        cells = [readable(row["motion"]), f"{row['peak'] / scene.gravity:.3g}", row["outcome"]]
-        cells += [f"{row['tilt']:.3g}"] if "tilt" in row else []
-        cells += [row["changes"][name] for name in more]
-        table.append(cells + ([f"{row['stroke']:.3g}"] if row.get("stroke") is not None else []))
-    words = f"The block {odds(rows, LIFTED, 'lifts')}, and {odds(rows, LIFTED[1:], 'overturns')}."
-    echo(grid(heads, table, wraps=["motion"]), words, wrap=True)
+    columns: dict[str, Callable[[Mapping[str, Any]], str]] = {
+        "motion": lambda row: readable(row["motion"]),
+        "peak\n[g]": lambda row: f"{row['peak'] / scene.gravity:.3g}",
+        "outcome": lambda row: row["outcome"],
+    }
+    if any(row["warnings"] for row in rows):
+        columns["warnings"] = lambda row: ", ".join(dict.fromkeys(_doubt(one)[0] for one in row["warnings"]))
+    columns |= {
+        "tilt\n[-]": lambda row: f"{row['tilt']:.3g}",
+        **{name.replace(" > ", " >\n"): partial(_change, name) for name in more},
+    }
+    if scene.base is not None:
+        columns["base\n[m]"] = lambda row: f"{row['stroke']:.3g}"
+    if any(row["slip"] for row in rows):
+        columns["slip\n[m]"] = lambda row: f"{row['slip'] or 0:.3g}"
+    table = [[cell(row) for cell in columns.values()] for row in rows]
+    failed = [f"{readable(row['motion'])}: {readable(row['failure'])}" for row in rows if row["failure"]]
+    echo(
+        grid([*columns], table, left=["warnings"], wraps=["motion", "warnings"]),
+        *failed,
+        *motion_warnings(rows),
+        headline(rows) or "",
+        wrap=True,
+    )
+
+
+def _change(name: str, row: Mapping[str, Any]) -> str:
+    return row["changes"].get(name, "")
+
+
+def motion_warnings(rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    """The warnings of all motions and which they concern, of one quantity once."""
+    pairs = [(row["motion"], Caution(**one)) for row in rows for one in row["warnings"]]
+    return [readable(words) for words in warned(pairs, len(rows), "all motions")]
 
 
 def odds(rows: Iterable[Mapping[str, Any]], outcomes: Sequence[str], word: str) -> str:
@@ -221,21 +313,35 @@ def odds(rows: Iterable[Mapping[str, Any]], outcomes: Sequence[str], word: str) 
     if not known:
         return f"{word} under no record that could be run"
     low, high = wilson(int(sum(known)), len(known))
-    return f"{word} under {sum(known):.0f} of {len(known)} records ({number(100 * low, 2)} to {percent(high)} at 95 %)"
+    interval = f"({number(100 * low, 2)} to {percent(high)} at 95 %)"
+    return f"{word} under {sum(known):.0f} of {_counted(len(known))} {interval}"
 
 
 HELD = "#009E73"  # Okabe and Ito
 
 
 def print_bearings(
-    scene: Scene, scan: BearingScan, stroke: float, tilt: float, motions: int, chosen: Mapping[str, Mapping[str, Any]]
+    scene: Scene,
+    scan: BearingScan,
+    stroke: float,
+    tilt: float,
+    motions: Sequence[Mapping[str, Any]],
+    chosen: Mapping[str, Mapping[str, Any]],
+    warnings: Sequence[Caution] = (),
 ) -> None:
-    """Print the bearings named, a column each, or how near the best ones come where none hold."""
+    """Print the bearings named, a column each, or how near the best ones come where none hold; `warnings` first.
+
+    motions : as they were read, `running.options.read_row`.
+    """
     assert scene.base is not None  # the search asks for one
     name, wanted = readable(scene.name, TITLE_CHARACTERS), _wanted(scene, stroke, tilt)
-    echo(f"{name}: {wanted}; base: {scene.base.mass:g} kg; motions: {motions}", wrap=True)
+    echo(
+        *(f"Warning: {readable(str(warning))}" for warning in warnings),
+        f"{name}: {wanted}; base: {scene.base.mass:g} kg; motions: {len(motions)}",
+        wrap=True,
+    )
     if not chosen:
-        return echo(nothing_holds(scene, scan, stroke), wrap=True)
+        return echo(*motion_warnings(motions), nothing_holds(scene, scan, stroke), wrap=True)
     if len({(one["period"], one["damping"]) for one in chosen.values()}) == 1:
         chosen = {" and ".join(chosen): next(iter(chosen.values()))}
     rows = {
@@ -253,6 +359,11 @@ def print_bearings(
     echo(
         grid(["bearings", *chosen], cells, wraps=["bearings", *chosen]),
         f"Of bearings {_scanned(scan)}, {percent(float(np.mean(scan.demand <= 1)))} hold.",
+        *(words for one in chosen.values() for words in motion_warnings(one["motions"])),
+        *(
+            f"{'On the ' + name + ' bearings: ' if len(chosen) > 1 else ''}{one['headline']}"
+            for name, one in chosen.items()
+        ),
         wrap=True,
     )
 
@@ -261,11 +372,14 @@ def nothing_holds(scene: Scene, scan: BearingScan, stroke: float) -> str:
     """That no bearings hold, and which come nearest; and what to change."""
     period, damping = scan.nearest
     row, column = np.abs(scan.dampings - damping).argmin(), np.abs(scan.periods - period).argmin()
-    return (
-        f"no bearings {_scanned(scan)} hold. Nearest: {period:.3g} s with {damping:.3g}, at "
-        f"{scan.demand[row, column]:.3g} times a limit, the base moving {scan.stroke[row, column]:.3g} m of {stroke:g}."
-        f" Allow more stroke{_or_tilt(scene)}; or widen, fix or lower the block."
+    near = (
+        f"Nearest: {period:.3g} s with {damping:.3g}, at {scan.demand[row, column]:.3g} times a limit, the base moving "
+        f"{scan.stroke[row, column]:.3g} m of {stroke:g}."
+        if math.isfinite(scan.demand[row, column])
+        else "None comes near: the block jumps off its base or overturns on all of them."
     )
+    cure = f"Allow more stroke{_or_tilt(scene)}; or widen, fix or lower the block."
+    return f"no bearings {_scanned(scan)} hold. {near} {cure}"
 
 
 def _or_tilt(scene):

@@ -19,7 +19,7 @@ from engines.statue_range import in_words
 
 from ..measuring.horizon import Horizon
 from ..running.readable import readable
-from .wording import differing, listed, outcomes
+from .wording import MOST_NAMED, differing, listed, outcomes
 
 LONGEST_NUMBER = 15  # characters: sign, nine digits, point, exponent; longer words are names, and may be broken
 WIDE = 10**4  # columns: wider than any table
@@ -262,15 +262,24 @@ def remarks(responses: Sequence[Response]) -> list[str]:
 
 
 def _warnings(responses):
-    """The warnings and whom they concern; of one quantity the first solver's, and the values of all."""
-    warned: dict[Any, list[tuple[str, Caution]]] = {}
-    for response in responses:
-        for one in response.warnings:
-            if one.kind != MOTION:
-                warned.setdefault((one.kind, one.quantity or one.text), []).append((response.engine, one))
+    """The warnings and which solvers they concern."""
+    pairs = [(response.engine, one) for response in responses for one in response.warnings if one.kind != MOTION]
+    return warned(pairs, len(responses), "all solvers")
+
+
+def warned(pairs: Iterable[tuple[str, Caution]], count: int, everyone: str) -> list[str]:
+    """Warnings and whom they concern, of (who, warning): of one quantity the first one's words, and the values of all.
+
+    everyone : what all `count` of them are called.
+    """
+    grouped: dict[Any, list[tuple[str, Caution]]] = {}
+    for who, one in pairs:
+        grouped.setdefault((one.kind, one.quantity or one.text), []).append((who, one))
     said = []
-    for found in warned.values():
-        who = "all solvers" if 1 < len(found) == len(responses) else listed([engine for engine, _ in found])
+    for found in grouped.values():
+        names = list(dict.fromkeys(who for who, _ in found))
+        more = [f"{len(names) - MOST_NAMED} more"] if len(names) > MOST_NAMED + 1 else []
+        who = everyone if 1 < len(names) == count else listed([*names[: MOST_NAMED if more else None], *more])
         values = {f"{one.value:.3g}": one.value for _, one in found if one.value is not None}
         spread = f" ({min(values.values()):.3g} to {max(values.values()):.3g})" if len(values) > 1 else ""
         said.append(f"Warning, {who}: {found[0][1]}{spread}")

@@ -285,7 +285,7 @@ def test_a_near_copy_that_reaches_no_end_leaves_the_run_uncompared(monkeypatch):
     monkeypatch.setattr("engines.comparison.simulate", of_the_scene_alone)
     reference = Reference.of(EDGE_SCENE)
     assert reference.model is not None
-    assert reference.comparable.startswith("the analytic model of a scene next to it reaches no end: ")
+    assert reference.comparable.startswith("the analytic model refuses a scene within 0.0001 of it: ")
 
 
 @pytest.mark.parametrize("change, comparable", [(5e-5, EDGE), (2e-4, COMPARED)])

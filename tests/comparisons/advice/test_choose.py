@@ -28,21 +28,29 @@ def row(error, cpu=1.0, failure=None):
 
 def test_neighbours_have_start_and_motion_scaled():
     motion = SampledMotion(0.1, [0.0, 1.0, 0.0])
-    family = criteria.neighbours(RIGID.with_(motion=motion), "tilt")
-    assert list(family) == [1.0, *criteria.FACTORS]
+    family, left = criteria.neighbours(RIGID.with_(motion=motion), "tilt")
+    assert not left and list(family) == [1.0, *criteria.FACTORS]
     for factor, scene in family.items():
         assert scene.start.tilt == pytest.approx(factor * RIGID.start.tilt)
         assert scene.motion.peak == pytest.approx(factor)
-    assert len(criteria.neighbours(RIGID, "outcome")) == 9
+    assert len(criteria.neighbours(RIGID, "outcome")[0]) == 9
     with pytest.raises(SettingError, match="nothing moves"):
         criteria.neighbours(RIGID.with_(start={"tilt": 0.0}), "tilt")
 
 
+def test_a_neighbour_that_the_model_refuses_is_left_out_and_named():
+    """Released beyond its balance the block falls; from .28 rad down it lands, and slips at a friction below (8)'s."""
+    scene = RIGID.with_(start=Start(tilt=0.29), friction=0.2, duration=None)
+    family, left = criteria.neighbours(scene, "outcome")
+    assert set(left) == {0.95, 0.9625} and all("below 0.2113" in why for why in left.values())
+    assert set(family) == {1.0, *criteria.FACTORS, *criteria.MORE_FACTORS} - {0.95, 0.9625}
+
+
 def test_outcomes_are_those_of_runs_that_no_duration_cuts():
     falling = RIGID.with_(start=Start(), motion=PulseMotion("one-sine", 6.0, 5.0), duration=1.0)
-    whole = criteria.neighbours(falling, "outcome")[1.0]
+    whole = criteria.neighbours(falling, "outcome")[0][1.0]
     assert simulate(whole).outcome == "overturns" and criteria.until(whole, "outcome") == simulate(whole).end.time > 1.0
-    assert criteria.neighbours(falling, "tilt")[1.0].duration == 1.0
+    assert criteria.neighbours(falling, "tilt")[0][1.0].duration == 1.0
 
 
 def test_restitution_is_looked_at_up_to_the_eighth_strong_impact():
@@ -122,7 +130,7 @@ class Made(Search):
     """In place of runs: errors by level (of the scene, of the neighbours), costs falling along the levels."""
 
     def __init__(self, errors, whole=None):
-        super().__init__(RIGID, criteria.neighbours(RIGID, "tilt"), 1e-3, "tilt", None)
+        super().__init__(RIGID, criteria.neighbours(RIGID, "tilt")[0], 1e-3, "tilt", None)
         self.levels = get_engine(ENGINE).variants[VARIANT].levels
         self.errors, self.failure, self.asked = dict(zip(self.levels, errors, strict=True)), whole, set()
         self.run([(ENGINE, VARIANT, value) for value in self.levels], [1.0], "")
@@ -172,7 +180,7 @@ def test_a_choice_from_python_runs_what_it_names():
     assert found.command.startswith(f"rocking run pulse.toml --engine {ENGINE} --variant {found.chosen.variant}")
     assert f'get_engine("{ENGINE}")' in found.snippet
     assert {part.part: part.needed for part in found.parts}["base"] is False
-    assert found.model_dump(by_alias=True)["schema"] == "rocking choose 3"
+    assert found.model_dump(by_alias=True)["schema"] == "rocking choose 4"
 
 
 @pytest.mark.parametrize(

@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from analytic import PulseMotion, Scene, load_scene
-from analytic.margins import Band, Margin, contact_margins, margins
+from analytic import PulseMotion, Scene, load_scene, simulate
+from analytic.margins import Band, Contact, Margin, margins
 from comparisons.showing.margins import draw_margins, print_margins
 from comparisons.studies.stability.cases import BLOCK, GAP, THRESHOLD
 
@@ -43,7 +43,7 @@ def test_margin_names_the_nearest_change_of_the_outcome_and_draws_it(rocking, tm
     assert "Nearest change of the outcome: slenderness -7.14 %, the block then overturns." in words
     assert "released: rocks now: lifts, tilt > 0.5 γ" in words
     assert (tmp_path / "margin.png").read_bytes().startswith(b"\x89PNG")
-    assert (content["schema"], content["outcome"], content["tilt"]) == ("rocking margin 3", "rocks", 0.5)
+    assert (content["schema"], content["outcome"], content["tilt"]) == ("rocking margin 4", "rocks", 0.5)
     nearest = content["margins"][0]
     assert nearest["quantity"] == "slenderness"
     assert nearest["nearest"] == pytest.approx(0.26 / 0.28 - 1, abs=1e-7)
@@ -109,7 +109,7 @@ def test_every_limit_state_has_its_column_and_the_widest_numbers_fit(capsys, mon
             Band(1.2345, 9.0, ("lifts", "tilt", "stroke", "overturns"), True),
         ),
     )
-    print_margins(scene, [found], contact_margins(scene), 900.0, 0.25)
+    print_margins(scene, [found], Contact.of(scene, simulate(scene.with_(duration=None), history=False)), 900.0, 0.25)
     shown = capsys.readouterr().out
     assert max(map(len, shown.splitlines())) <= 80 and "…" not in shown and "now: lifts\n" in shown
     words = " ".join(shown.split())
@@ -121,7 +121,7 @@ def test_interleaved_outcomes_are_said(capsys):
     scene = Scene(block=BLOCK, motion=PulseMotion("one-sine", 1.1 * GAP * THRESHOLD, 7.8))
     for step, interleaved in ((0.04, True), (0.01, False)):
         found = [margin for margin in margins(scene, span=0.16, step=step) if margin.quantity == "motion"]
-        print_margins(scene, found, contact_margins(scene), 16.0, 0.5)
+        print_margins(scene, found, Contact.of(scene, simulate(scene.with_(duration=None), history=False)), 16.0, 0.5)
         words = " ".join(capsys.readouterr().out.split())
         assert ("The outcomes are interleaved in motion: bands narrower than 8 % alternate" in words) == interleaved
 
