@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from ..cli.output import write_output
-from ..running.solving import check_time_limit
+from ..running.solving import check_time_limit, in_file
 
 
 def command(
@@ -54,7 +54,9 @@ def command(
     check_writable([json_file], picture=plot, inputs=[scene])
     what = load_scene(scene)
     compile_kernels()
-    if criterion is None and engine and (shown := fitting(what)) != "restitution":
+    with in_file(scene):
+        shown = fitting(what) if criterion is None and engine else "restitution"
+    if shown != "restitution":
         given = what.block.restitution is not None and shown == "tilt"
         why = (
             "it slides"
@@ -62,7 +64,7 @@ def command(
             else ("its restitution is given" if given else "it never has an impact: there is no restitution")
         )
         say(f"the block of {what.name}: {why}; the criterion is {shown}")
-    with stdout_to_stderr():  # engines print on import
+    with stdout_to_stderr(), in_file(scene):  # engines print on import
         choice = choose(
             what,
             error=error,

@@ -15,6 +15,7 @@ from ..running.solving import (
     TIME_LIMIT_HELP,
     check_solver,
     check_time_limit,
+    in_file,
     near_motion,
     print_failures,
     simulate,
@@ -48,7 +49,8 @@ def command(
     for name in engine or ():
         check_solver(name)
     what = load_scene(scene)
-    first, *others = _responses(what, engine, time_limit)
+    with in_file(scene):
+        first, *others = _responses(what, engine, time_limit)
     responses = [replace(first, warnings=(*first.warnings, *near_motion(what))), *others]
     horizons = {} if responses[0].failure else _sensitivity(what, responses, time_limit)
     horizon = min((each.horizon for each in horizons.values() if each.parts), default=None)

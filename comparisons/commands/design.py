@@ -25,7 +25,7 @@ from ..running.options import (
     rows_of,
 )
 from ..running.progress import bar, compile_kernels
-from ..running.solving import scene_of
+from ..running.solving import in_file, scene_of
 
 LEAST, SOFTEST = "least-stroke", "softest"
 WRITTEN = ("ka", "kb", "alpha")  # numbers written with six digits
@@ -140,7 +140,7 @@ def _for_scene(place, base_mass, stroke, tilt, made, many, write, plot, json_fil
     groups = motions_of(scene, **many)
     motions = [motion for group in groups.values() for motion in group]
     compile_kernels(any(motion.vertical for motion in motions))
-    with bar(f"{scene.name}: bearings") as progress, named_by_options(OF_SCENE):
+    with bar(f"{scene.name}: bearings") as progress, named_by_options(OF_SCENE), in_file(place):
         scan = scan_bearings(scene, motions, stroke, tilt=tilt, **made, progress=progress)
     points = {LEAST: scan.least_stroke, SOFTEST: scan.softest}  # (period, damping), None without any
     chosen = {name: _chosen(scene, scan, point, groups) for name, point in points.items() if point is not None}

@@ -8,6 +8,7 @@ import typer
 from ..cli.output import write_output
 from ..running.options import BothSigns, Directions, Records, Units, other_motions, rows_of
 from ..running.progress import compile_kernels, spinner
+from ..running.solving import in_file
 
 LEAST_SPAN = 0.1  # per cent
 STEPS = 400  # of a scan, from no change to the largest
@@ -58,7 +59,7 @@ def command(
     groups = other_motions(what, records, both_signs, directions, units)
     compile_kernels()
     scan: dict[str, Any] = {"tilt": tilt, "span": span / 100, "step": span / 100 / STEPS}
-    with spinner(f"{what.name}: margins") as tell:
+    with spinner(f"{what.name}: margins") as tell, in_file(scene):
         nearest = margins(what, **scan, progress=lambda name: tell(f"{what.name}: {name}"))
         response = _decided(what)
     contact, warnings = Contact.of(what, response), (*scene_warnings(what), *response.warnings)

@@ -22,8 +22,8 @@ from ..running.options import (
     named_by_options,
     other_motions,
 )
-from ..running.progress import bar, say, stdout_to_stderr
-from ..running.solving import ANALYTIC, check_solver, ground_motion
+from ..running.progress import bar, compile_kernels, say, stdout_to_stderr
+from ..running.solving import ANALYTIC, check_solver, ground_motion, in_file
 
 if TYPE_CHECKING:
     from ..schemas.runs import Report
@@ -109,6 +109,8 @@ def _motion(scene, record, said):
 
 def _simulate(output, scene, motion, engines, variants, many):
     """Write the result files of the page; {scene: its file and options, and the action needed before}."""
+    from analytic import simulate
+
     from ..report.runs import load_scenes
     from ..report.study import make_own_results, make_results
 
@@ -117,6 +119,10 @@ def _simulate(output, scene, motion, engines, variants, many):
             make_results(output, motion, engines=engines)
             return {}
         scenes = load_scenes(scene, motion)
+        compile_kernels()
+        for place, one in zip(scene, scenes.values(), strict=True):
+            with in_file(place):  # before the engines' runs
+                simulate(one, history=False)
         motions = {name: other_motions(one, *many) for name, one in scenes.items()}
         make_own_results(output, scenes, engines=engines, variants=variants, motions=motions)
     first = "" if motion is None else "First write this motion into the table [motion] of its file."

@@ -14,6 +14,7 @@ from ..running.solving import (
     TIME_LIMIT_HELP,
     check_solver,
     check_time_limit,
+    in_file,
     near_motion,
     parse_settings,
     print_failures,
@@ -56,16 +57,17 @@ def command(
     check_solver(engine)
     what, chosen = load_scene(scene), parse_settings(settings or [])
     about, groups = scene_warnings(what), other_motions(what, records, both_signs, directions, units)
-    response = simulate(
-        what,
-        engine,
-        variant,
-        chosen,
-        history=bool(csv or plot),
-        time_limit=time_limit,
-        words=f"{what.name}: {engine}",
-        compare=True,
-    )
+    with in_file(scene):
+        response = simulate(
+            what,
+            engine,
+            variant,
+            chosen,
+            history=bool(csv or plot),
+            time_limit=time_limit,
+            words=f"{what.name}: {engine}",
+            compare=True,
+        )
     rows = rows_of(what, groups, lambda one: simulate(one, engine, variant, chosen, False, time_limit))
     response = replace(response, warnings=(*response.warnings, *near_motion(what)))
     if response.history is None and (csv or plot):

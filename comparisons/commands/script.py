@@ -26,6 +26,7 @@ def command(
 
     from ..running.files import check_writable, write_text
     from ..running.progress import compile_kernels
+    from ..running.solving import in_file
     from ..showing.terminal import echo
 
     if engine in BROKEN:
@@ -38,7 +39,8 @@ def command(
     what = load_scene(scene)
     if what.duration is None or what.friction is not None:  # the model is run
         compile_kernels()
-    files = write_script(ENGINES[engine], what, Path(output).stem if output else None)
+    with in_file(scene):
+        files = write_script(ENGINES[engine], what, Path(output).stem if output else None)
     folder = Path(output).parent if output else Path()
     places = {str(folder / file): text for file, text in files.items()}
     check_writable(places, inputs=[scene])

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import inspect
 import json
 import math
 import tempfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -89,6 +90,15 @@ def scene_of(text: str, file: str) -> Scene:
             return load_scene(part.name)
         except SceneError as error:
             raise error.in_file(file) from None
+
+
+@contextlib.contextmanager
+def in_file(place: str) -> Iterator[None]:
+    """What a model refuses inside is a mistake in the scene file called `place`."""
+    try:
+        yield
+    except SceneError as error:
+        raise error.in_file(place) from None
 
 
 def simulate(

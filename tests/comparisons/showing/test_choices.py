@@ -28,7 +28,9 @@ VARIANTS = [
 def choice(**changed):
     own = dict(scene="a scene", criterion="tilt", error=1e-3, safety_factor=2.0, neighbours=[1.0, 0.95], until=3.0)
     own |= dict(chosen=CHOSEN, best=None, cpu_seconds=3.0, analytic_cpu_seconds=1e-3, variants=VARIANTS, parts=[])
-    own |= dict(command="rocking run s.toml --engine exudyn", snippet="response = 1\n", missing={}, left_out={}, warnings=[])
+    own |= dict(
+        command="rocking run s.toml --engine exudyn", snippet="response = 1\n", missing={}, left_out={}, warnings=[]
+    )
     return Choice(**own | changed)
 
 

@@ -1,0 +1,316 @@
+"""Every kind of scene with every command: an answer, or a refusal that says what to do; nothing is lost or hidden.
+
+Engines that lie take the place of slow ones (`lying_engine`). The scans of margins and bearings are coarse here; that a
+user's are not is a test of its own. The slow form has the real engines, and `choose`.
+"""
+
+import json
+import math
+import re
+
+import jsonschema
+import pytest
+from lying_engine import FAULTS, LIES, liars
+from roads import KINDS, REFUSED, write_records
+
+from analytic import bearing_scan
+from analytic.response import DIFFERENCES, JUDGED, Difference
+from comparisons.commands import margin
+from comparisons.running.executors import Done, Executor, lines_of
+from comparisons.running.provenance import RESULTS
+from comparisons.schemas.__main__ import schemas
+from engines import ENGINES, installed_engines
+
+ENGINE = "lying"  # of the commands that take one
+SCHEMAS = schemas()
+USUAL = {"steps": margin.STEPS, "period": bearing_scan.PERIOD_STEP, "damping": bearing_scan.DAMPING_STEP}
+ERROR = re.compile(r"^Error: (?P<file>\S+): (?P<field>[\w.]+)(?: = (?P<value>.+?))?: (?P<problem>.+); (?P<remedy>.+)$")
+RECORDS = 5  # of the folder that are earthquakes
+SOUND = ("honest", "nan")  # of the faults, the engines that claim an outcome
+occurred = set()
+
+
+class Here(Executor):
+    """Runs in this process, so that they find its engines."""
+
+    slots = 1
+
+    def __init__(self, *_):
+        self.done = []
+
+    def submit(self, task):
+        self.done.append(Done(task.ticket, lines_of(task)))
+
+    def next(self):
+        return self.done.pop()
+
+    def __exit__(self, *_):
+        pass
+
+
+@pytest.fixture
+def road(rocking, tmp_path, monkeypatch):
+    """Runs a command on a kind of scene, in its folder; (status, JSON or None, standard output, standard error)."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(margin, "STEPS", 8)
+    monkeypatch.setattr(bearing_scan, "PERIOD_STEP", 0.4)
+    monkeypatch.setattr(bearing_scan, "DAMPING_STEP", 0.05)
+    monkeypatch.setattr("comparisons.running.study.Processes", Here)
+    for name in list(ENGINES):
+        monkeypatch.delitem(ENGINES, name)
+    for name, engine in liars().items():
+        monkeypatch.setitem(ENGINES, name, engine)
+    write_records(tmp_path / "records")
+
+    def call(command, kind, *words):
+        text = KINDS[kind][0] if kind in KINDS else REFUSED[kind][0]
+        (tmp_path / "scene.toml").write_text(text)
+        (tmp_path / "out.json").unlink(missing_ok=True)
+        before = ("lying",) if command == "script" else ()
+        status, out, err = rocking(command, *before, "scene.toml", *words, "--json", "out.json")
+        assert "Traceback" not in out + err
+        answer = checked(tmp_path / "out.json") if (tmp_path / "out.json").exists() else None
+        return status, answer, " ".join(out.split()), err
+
+    return call
+
+
+def checked(file):
+    """The JSON of a file, which is valid by the schema that it names."""
+
+    def refuse(word):
+        raise AssertionError(f"{word} is no JSON")
+
+    answer = json.loads(file.read_text(), parse_constant=refuse)
+    jsonschema.validate(answer, SCHEMAS[answer["schema"].replace(" ", "-")])
+    return answer
+
+
+def shown(words, out):
+    """Whether a sentence is printed, however its lines are broken."""
+    return " ".join(words.split()) in out
+
+
+def all_is_told(warnings, out):
+    """Of each quantity that is warned of, one sentence is printed."""
+    groups = {}
+    for one in warnings:
+        groups.setdefault((one["kind"], one["quantity"] or one["text"]), []).append(one["text"])
+    for texts in groups.values():
+        assert any(shown(text, out) for text in texts), texts
+
+
+def differences_are_told(response, out):
+    """Each difference is printed; null is a number that was none."""
+    for one in response["differences"]:
+        here = math.nan if one["here"] is None else one["here"]
+        assert shown(str(Difference(**{**one, "here": here})), out), one
+
+
+def asked(names):
+    return [word for name in names for word in ("--engine", name)]
+
+
+def motions_are_told(answer, out, count):
+    """Each motion has its row, its warnings, and the headline what they come to."""
+    rows = answer["motions"]
+    assert len({row["record"] for row in rows}) == count
+    all_is_told([one for row in rows for one in row["warnings"]], out)
+    assert shown(answer["headline"], out)
+    beyond = {row["record"] for row in rows if "peak_base_displacement" in [one["quantity"] for one in row["warnings"]]}
+    assert (f"the base exceeds x_max under {len(beyond)} of {count} record" in answer["headline"]) == bool(beyond)
+    for row in rows:
+        assert (row["outcome"] == "failed") == bool(row["failure"])
+        assert row["failure"] is None or shown(row["failure"], out)
+
+
+def counted(kind):
+    """Records of a scene under the folder's: its own motion is one more, unless it is among them."""
+    return RECORDS + ("[motion]" in KINDS[kind][0] and kind != "record")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_run(road, kind):
+    status, answer, out, _ = road("run", kind, "--records", "records", "--units", "m/s2")
+    assert status == 0 and answer["outcome"] == KINDS[kind][1]
+    assert answer["decided"] == (kind != "undecided")
+    all_is_told(answer["warnings"], out)
+    motions_are_told(answer, out, counted(kind))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_compare(road, kind):
+    """Each lie is found wherever the scene lets it show, and printed."""
+    status, answer, out, _ = road("compare", kind, *asked(LIES))
+    assert status == 0
+    assert [one["engine"] for one in answer["responses"]] == ["analytic", *LIES]
+    for response in answer["responses"]:
+        all_is_told(response["warnings"], out)
+        occurred.update(one["quantity"] for one in response["differences"])
+        differences_are_told(response, out)
+    found = {one["engine"]: {each["quantity"] for each in one["differences"]} for one in answer["responses"]}
+    judged = answer["responses"][1]["comparable"] in JUDGED
+    assert bool(found["outcome"]) == (judged and answer["responses"][0]["decided"]) and not found["analytic"]
+    assert not judged or found["tilt"] or KINDS[kind][1] == "overturns"
+
+
+@pytest.mark.parametrize("kind", ["stands", "overturns", "slides on bearings", "flies"])
+def test_compare_with_engines_that_fail(road, kind):
+    """Each failure costs its row: the others stand, and the reason is said."""
+    status, answer, out, err = road("compare", kind, *asked(FAULTS), "--time-limit", 5)
+    assert status == 0
+    found = {one["engine"]: one for one in answer["responses"]}
+    assert [*found] == ["analytic", *FAULTS]
+    assert [name for name, one in found.items() if one["failure"]] == [name for name in FAULTS if name not in SOUND]
+    for name, one in found.items():
+        assert not one["failure"] or f"{name} failed: {one['failure']['reason']}" in err
+        differences_are_told(one, out)
+    assert not found["honest"]["differences"] and found["nan"]["differences"]
+    assert "Newton did not converge" in err and "--time-limit allows more" in err and "not in this engine" in err
+
+
+def test_every_kind_of_difference_has_occurred():
+    """After `test_compare`, on one worker."""
+    assert occurred == set(DIFFERENCES)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_margin(road, kind):
+    status, answer, out, _ = road("margin", kind, "--records", "records", "--units", "m/s2")
+    assert status == 0
+    assert answer["outcome"] == KINDS[kind][1] or kind == "undecided"
+    for one in answer["margins"]:
+        for way in ("ends_down", "ends_up"):
+            assert shown(one[way], out)
+        lows, highs = [band["low"] for band in one["bands"]], [band["high"] for band in one["bands"]]
+        assert lows[1:] == highs[:-1] and (lows[0] <= 0 <= highs[-1])
+    all_is_told(answer["warnings"], out)
+    motions_are_told(answer, out, counted(kind))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_design(road, kind):
+    added = () if "[base]" in KINDS[kind][0] else ("--base-mass", 200)
+    status, answer, out, _ = road("design", kind, "--stroke", 0.3, *added, "--records", "records", "--units", "m/s2")
+    assert status == 0
+    assert len(answer["motions"]) == counted(kind)
+    all_is_told([one for row in answer["motions"] for one in row["warnings"]] + answer["warnings"], out)
+    held = [one for row in answer["holds"] for one in row]
+    assert bool(answer["chosen"]) == any(held) and ("bearings of" in out)
+    assert any(held) or "no bearings" in out
+    for proposal in answer["chosen"].values():
+        motions_are_told(proposal, out, counted(kind))
+        assert proposal["stroke"] == max(row["stroke"] for row in proposal["motions"])
+
+
+@pytest.mark.parametrize("part", range(3))
+def test_report(road, rocking, tmp_path, part):
+    """All kinds, in three reports: of the model, an engine that lies, one that fails, and one that gives no numbers."""
+    road("run", "stands")
+    (tmp_path / "studies").mkdir()
+    (tmp_path / "studies" / "tolerances.json").write_bytes((RESULTS / "tolerances.json").read_bytes())
+    kinds, files = [*KINDS][part::3], []
+    for kind in kinds:
+        files.append(tmp_path / f"{kind.replace(' ', '-')}.toml")
+        files[-1].write_text(KINDS[kind][0])
+    words = (
+        "--records",
+        "records",
+        "--units",
+        "m/s2",
+        "--studies",
+        "studies",
+        "--output",
+        "page",
+        "--json",
+        "page.json",
+    )
+    engines = ("honest", "lying", "fails", "nan")
+    status, out, err = rocking("report", *files, *words, *asked(engines))
+    assert status == 0 and "Traceback" not in out + err
+    answer = checked(tmp_path / "page.json")
+    assert len(answer["rows"]) == len(kinds) * (1 + len(engines))
+    assert {row["scene"]: row["outcome"] for row in answer["rows"] if row["engine"] == "analytic"} == {
+        file.stem: KINDS[kind][1] for kind, file in zip(kinds, files, strict=True)
+    }
+    page = " ".join(re.sub("<[^>]+>", " ", (tmp_path / "page" / "report.html").read_text()).split())
+    for kind, file in zip(kinds, files, strict=True):
+        assert len({row["record"] for row in answer["motions"][file.stem]}) == counted(kind)
+        assert plain(answer["headlines"][file.stem]) in plain(page)
+
+
+def plain(words):
+    """Words without what a page marks up."""
+    return re.sub(r"[\s_]|&#39;|'|’", "", words)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_run_in_an_engine(road, kind):
+    engine = ("lying", "nan", "fails")[[*KINDS].index(kind) % 3]
+    status, answer, out, err = road("run", kind, "--engine", engine, "--records", "records", "--units", "m/s2")
+    assert status == int(engine == "fails") and answer["engine"] == engine
+    differences_are_told(answer, out)
+    all_is_told(answer["warnings"], out)
+    motions_are_told(answer, out, counted(kind))
+    assert engine != "fails" or "it blew up" in err
+
+
+@pytest.mark.parametrize("name", ["exudyn", "pybullet"])
+@pytest.mark.parametrize("kind", KINDS)
+def test_script(rocking, tmp_path, monkeypatch, name, kind):
+    monkeypatch.chdir(tmp_path)
+    write_records(tmp_path / "records")
+    (tmp_path / "scene.toml").write_text(KINDS[kind][0])
+    status, out, err = rocking("script", name, "scene.toml", "--output", "own.py")
+    assert status == 0, err
+    compile((tmp_path / "own.py").read_text(), "own.py", "exec")
+
+
+@pytest.mark.parametrize("command", ["run", "compare", "margin", "design", "report"])
+@pytest.mark.parametrize("kind", REFUSED)
+def test_a_scene_that_the_model_refuses_is_named_with_its_remedy(road, kind, command):
+    more = {"design": ("--stroke", 0.2, "--base-mass", 100)}.get(command, ())
+    if command == "design":
+        pytest.skip("it runs the block on bearings, not the scene")
+    status, answer, _, err = road(command, kind, *more)
+    assert status == 2 and answer is None
+    said = ERROR.match(err.strip().splitlines()[-1])
+    assert said and said["file"] == "scene.toml" and said["field"] == REFUSED[kind][1], err
+    assert float(said["value"]) and said["remedy"].startswith(("give", "leave"))
+
+
+def test_the_scans_of_a_user_are_fine():
+    assert USUAL == {"steps": 400, "period": 0.01, "damping": 0.005}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("engine", installed_engines())
+@pytest.mark.parametrize("kind", KINDS)
+def test_real_engines_answer(rocking, tmp_path, monkeypatch, kind, engine):
+    """Each variant of each engine that is installed."""
+    monkeypatch.chdir(tmp_path)
+    write_records(tmp_path / "records")
+    (tmp_path / "scene.toml").write_text(KINDS[kind][0])
+    for variant in ENGINES[engine].variants:
+        status, out, err = rocking(
+            "run", "scene.toml", "--engine", engine, "--variant", variant, "--json", "out.json", "--time-limit", 300
+        )
+        refused = status == 2 and "block.restitution" in err
+        assert refused or status in (0, 1), (variant, err)
+        if not refused:
+            answer = checked(tmp_path / "out.json")
+            assert (answer["outcome"] == "failed") == (status == 1)
+            words = " ".join(out.split())
+            differences_are_told(answer, words)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", KINDS)
+def test_choose(rocking, tmp_path, monkeypatch, kind):
+    monkeypatch.chdir(tmp_path)
+    write_records(tmp_path / "records")
+    (tmp_path / "scene.toml").write_text(KINDS[kind][0])
+    status, out, err = rocking("choose", "scene.toml", "--engine", "pybullet", "--json", "out.json")
+    answer = checked(tmp_path / "out.json")
+    assert status == int(answer["chosen"] is None), err
+    all_is_told(answer["warnings"], " ".join(out.split()))
