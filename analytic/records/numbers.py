@@ -58,12 +58,11 @@ def fortran_values(lines: Sequence[str], begin: int) -> np.ndarray:
     rows = [(f"line {at}", line.rstrip()) for at, line in enumerate(lines[begin:], begin + 1) if line.strip()]
     tokens = [(where, token) for where, line in rows for part in line.split() for token in _parted(where, part)]
     values = np.array([number(where, token) for where, token in tokens])
-    forms = [form_of(token) for _, token in tokens]
     # The last line may be shorter; lines of one number are as long as that is.
     widths = Counter(len(line) for _, line in rows[:-1] if len(line.split()) > 1)
-    ((usual, _),) = Counter(forms).most_common(1) or [(None, 0)]
-    for (where, token), form in zip(tokens, forms, strict=True):
-        if form != usual and not _tiny(form, usual, token):
+    ((usual, _),) = Counter(form_of(token) for _, token in tokens).most_common(1) or [(None, 0)]
+    for where, token in tokens:
+        if not printed_as(usual, token):
             raise SceneError(where, token, "not printed as the other numbers are: a damaged number", REMEDY)
     if len(widths) == 2 and min(widths.values()) == 1 < max(widths.values()):
         where, line = next((where, line) for where, line in rows if widths[len(line)] == 1)
@@ -101,10 +100,11 @@ def form_of(token: str) -> tuple[int, int, bool] | None:
     return match and (len(match[2]), len(match[3] or ""), bool(match[3]) and len(match[1]) > 1)
 
 
-def _tiny(form: tuple[int, int, bool] | None, usual: tuple[int, int, bool] | None, token: str) -> bool:
-    """Whether a number has the usual form but for an exponent of three digits, as tiny ones have: "1.2E-105"."""
-    if form is None or usual is None or (form[1], usual[1]) != (3, 2):
-        return False
+def printed_as(usual: tuple[int, int, bool] | None, token: str) -> bool:
+    """Whether a number has the usual form, but for an exponent of three digits, as tiny ones have: "1.2E-105"."""
+    form = form_of(token)
+    if form == usual or form is None or usual is None or (form[1], usual[1]) != (3, 2):
+        return form == usual
     return (form[0], form[2]) == (usual[0], usual[2]) and token[-3] != "0" and token[-4] == "-"
 
 

@@ -4,7 +4,7 @@ import re
 from collections.abc import Sequence
 
 from ..errors import SceneError
-from .content import HEADER_WIDTH, Asked, Content
+from .content import HEADER_WIDTH, MARK, Asked, Content
 from .numbers import NUMBER, check_count, count, fortran_values
 from .statements import read_statements, stated_unit
 
@@ -35,7 +35,8 @@ def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
     if old:
         numbered[-1] = head + 1, f"dt = {old[2]} {old[3] or ''}"
     found = read_statements(numbered)
-    values = fortran_values(lines, head + 1)
+    marked = MARK.fullmatch("".join(lines[head + 1 : head + 2])[:HEADER_WIDTH])
+    values = fortran_values(lines, head + (2 if marked else 1))
     check_count(f"{where}, NPTS", count(f"{where}, NPTS", npts), values)
     return (Content(found.step, values, stated_unit(found.rest, titles=head)),)
 

@@ -3,22 +3,31 @@
 import itertools
 import math
 import re
+from collections import Counter
 from collections.abc import Sequence
 
 from ..errors import SceneError
 from .content import HEADER_WIDTH, UNKNOWN, first_of
-from .numbers import form_of, value_of
+from .numbers import form_of, printed_as, value_of
 from .statements import read_statements, stated_count, stated_unit
-from .times import in_seconds
+from .times import exact, in_seconds
+from .units import in_latin
 
 # A line that begins like a number is data, so that a damaged row is not taken for a header.
 DATA = re.compile(r"\s*(?:[-+.0-9]|[,;](?!\s*(?!nan|inf)[^\W\d_])|(?:nan|inf|infinity)\b)", re.I)
+HEADING = re.compile(r"[1-9][0-9]?\. ?[^\W\d_]{4}")  # "4. DATOS DE ACELERACION", as Peru's networks number their header
 COMMENT = ("#", "%", "!", "//")
 HEADER_LINES = 200
 NUMERIC = re.compile(r"[-+]?[.,]?[0-9]")
 RULER = re.compile(r"[-=_*~+|]{3,}(?:\s+[-=_*~+|]{3,})*")  # below titles
 SIGNS_OF_NUMBERS = "0123456789.,;+-eEdD \t"
 QUOTED = re.compile(r'(?:(?:[^"]*[,;\s])?"[^"]*"(?=[,;\s]|$))+(?:[,;\s][^"]*)?')  # fields, some of them in quotes
+
+LEADING = 6  # numbers of a list that may be no accelerations: its step, its number, a factor, zeros between them
+USUAL = 0.99  # share of the numbers of a list that are printed in one form, where there is one
+FAR = 10  # times as large as what follows it, a number is no part of the motion
+SAY_WHICH = "and say which: # dt = .01 s"
+OR_HOW_MANY = f"{SAY_WHICH}; or, if it is an acceleration, say above how many there are: # samples: 300"
 
 Table = Sequence[tuple[int, list[str]]]  # line numbers and fields of the rows
 
@@ -53,11 +62,11 @@ def split(lines: Sequence[str]) -> tuple[list[tuple[int, str]], list[tuple[int, 
             continue
         if text.startswith(COMMENT):
             if not rows:
-                header.append((at, text[:HEADER_WIDTH]))
-            elif (found := read_statements([(at, text[:HEADER_WIDTH])])).step or stated_unit(found.rest):
+                header.append((at, in_latin(text[:HEADER_WIDTH])))
+            elif (found := read_statements([(at, in_latin(text[:HEADER_WIDTH]))])).step or stated_unit(found.rest):
                 raise SceneError(f"line {at}", text, "a statement inside the data", "give one record of the file")
-        elif text and not rows and (at <= begin or not DATA.match(text)):
-            header.append((at, text[:HEADER_WIDTH]))
+        elif text and not rows and (at <= begin or not DATA.match(text) or HEADING.match(text)):
+            header.append((at, in_latin(text[:HEADER_WIDTH])))
         elif text:
             rows.append((at, in_seconds(f"line {at}", text.split("#")[0].strip())))
     if not rows or len(header) > HEADER_LINES:
@@ -115,9 +124,13 @@ def counted(table: Table) -> tuple[Table, list[tuple[int, str]]]:
     """(rows, (line number, statement)) of a table that begins with the number of its values or rows, and perhaps their
     step, as eqsig and many programs write; or the table as it is."""
     (at, first), rest = table[0], table[1:]
-    if len(first) == 1 and rest and first[0] == str(len(rest) - 1) and len(rest[0][1]) == 1:
+    if (
+        len(first) == len(rest[0][1] if rest else ()) == 1
+        and first[0] == str(len(rest) - 1)
+        and value_of(rest[0][1][0])
+    ):
         first, rest = [*first, *rest[0][1]], rest[1:]  # each in a line of its own
-    size, width = sum(len(fields) for _, fields in rest), len(rest[0][1]) if rest else 0
+    size, width = sum(len(fields) for _, fields in rest), max((len(fields) for _, fields in rest), default=0)
     if rest and len(first) < 3 and re.fullmatch("[0-9]{1,9}", first[0]) and value_of(first[-1]) >= 0:
         known = int(first[0]) in (size, len(rest)) and any("." in field for _, fields in rest for field in fields)
         if not known and len(first) == 2 and width != 2:
@@ -126,18 +139,48 @@ def counted(table: Table) -> tuple[Table, list[tuple[int, str]]]:
         rising = width == 2 == len(first) and value_of(rest[0][1][0]) > int(first[0])
         if known and not rising:
             return rest, [(at, f"samples: {first[0]}" + (f", dt = {first[1]} s" if len(first) == 2 else ""))]
-    _check_first(at, first, rest)
+    falls = len(first) == 2 == width and len(rest) > 2 and rises(rest, 0) and not rises(table, 0)
+    if falls or len(first) == 1 < width:
+        problem = "no row as those below are, and may be their step, their number or a factor"
+        raise SceneError(f"line {at}", " ".join(first), problem, f"begin the line with #, {SAY_WHICH}")
     return table, []
 
 
-def _check_first(at: int, first: Sequence[str], rest: Table) -> None:
-    """Refuse a first number, other than 0, that is not printed as all others of the only column are."""
-    if len(first) != 1 or not abs(value_of(first[0])) > 0 or len(rest) < 2 or any(fields[1:] for _, fields in rest):
-        return
-    forms = {form_of(field) for _, (field,) in rest}
-    if len(forms) == 1 and form_of(first[0]) not in forms:
-        problem = "not printed as the numbers below are, and may be their step or their number"
-        raise SceneError(f"line {at}", first[0], problem, "begin the line with #, and say which: # dt = .01 s")
+def check_leading(values: Sequence[tuple[int, str]], step: float | None) -> None:
+    """Refuse a number at the head of a list, (line number, number), that may be no acceleration.
+
+    That is one other than 0 that is not printed as those below; says how many follow; or, first or behind numbers that
+    are rounder or far larger than those below, is the step that is given [s], or both rounder and far larger itself.
+    """
+    below = Counter(form_of(token) for _, token in values if value_of(token))
+    decimals = sorted(map(_decimals, (token for _, token in values if value_of(token))))
+    odd: list[bool] = []  # of each number before that is not 0: whether it is rounder or far larger
+    for place, (at, token) in enumerate(values[:LEADING]):
+        value, count = value_of(token), len(values) - place - 1
+        if not value:
+            continue
+        below -= Counter([form_of(token)])
+        ((usual, often),) = below.most_common(1) or [(None, 0)]
+        following = max((abs(value_of(later)) for _, later in values[place + 1 :][: LEADING - 1]), default=math.inf)
+        rounder, far = _decimals(token) < decimals[len(decimals) // 2] - 1, abs(value) >= FAR * following
+        problem = ""
+        if below.total() > 1 and often >= USUAL * below.total() and not printed_as(usual, token):
+            problem = "not printed as the numbers below are"
+        elif step is not None and math.isclose(value, step, rel_tol=1e-3) and (not place or (odd and all(odd))):
+            problem = "equal to the step that is given"
+        elif count > 2 * LEADING and count - value in (0, 1, 2) and all(odd):
+            problem = "as many as the numbers below"
+        elif rounder and far and all(odd):
+            problem = "rounder and far larger than the numbers below"
+        if problem:
+            problem += ", and may be their step, their number or a factor"
+            raise SceneError(f"line {at}", token, problem, f"write it in a line that begins with #, {OR_HOW_MANY}")
+        odd.append(rounder or far)
+
+
+def _decimals(token: str) -> int:
+    """Digits of a number behind the point, as many as it needs; fewer than 0 of a multiple of ten."""
+    return -int(exact(token).normalize().as_tuple().exponent)
 
 
 def unpaired(table: Table, titles: Sequence[str]) -> Table:

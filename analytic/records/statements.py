@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from ..errors import SceneError
 from .numbers import NUMBER, number
 from .times import OTHER_TIMES, PER_SECOND, SAME, exact, usable
-from .units import END, NOT_ACCELERATIONS, START, WORDS, Unit, factor_of, plain
+from .units import END, NOT_ACCELERATIONS, START, UNITS, WORDS, Unit, factor_of, plain
 
 TIMES = "time|t|zeit|tiempo|temps|zaman"  # words for it, folded
 _RATE = "|".join(
@@ -90,12 +90,18 @@ _APART = r"""(?:(?<![^\s,;:=(\[{<'"|])|(?<=^[#!])|(?<=[^\W_][_-]))"""
 _QUOTIENT = re.compile(rf"{_APART}({_LENGTH}{_BY}[^\s,;:\]=]+)", re.I)
 # One that stands so is that of another length, or damaged: "km/s2".
 _SQUARED = re.compile(rf"[^\s,;:=(\[]*?{_LENGTH}/s(?:ec)?(?:/s|(?:\^|\*\*)?[-{{(]*[2²])", re.I)
+# One in letters of another script that stands so: "εκ/δ²".
+_OF_ANOTHER_SCRIPT = re.compile(
+    r"[^\s,;:=()\[\]/]{1,12}/[^\s,;:=()\[\]/]{1,12}?(?:/[^\W\d_]|\.?(?:\^|\*\*)?[-−⁻{(]*[2²])"
+)
+_ANOTHER_SCRIPT = re.compile("[\u0370-\u1dff\u2e80-\ud7ff\uf900-\uffff]")  # all signs but Latin ones
 UNKNOWN = "unknown unit"
 _AFTER_NUMBER = re.compile(r"[0-9.] ?$")
-_WORD = r"((?:% ?)?[a-z][^\s,;:\]=]*)"
+_WORD = r"((?:% ?)?[^\W\d_][^\s,;:\]=]*)"
 # Short words are units only where a header introduces one.
 _UNIT = (
-    rf"(?:[a-z]*unit(?:s|es|[eé]s?)?|unidad(?:es)?|einheit(?:en)?|birimi?){END}"
+    rf"(?:[a-z]*unit(?:s|es|[eé]s?)?|unit[aà]|unidad(?:es?)?|einheit(?:en)?|birimi?"
+    rf"|единиц[аы](?: измерения)?|单位|單位|単位|μονάδ(?:α|ες)){END}"
     r"(?: (?:of|in|is|are|de los datos)(?=[ :=(\[]))?[ :=]*[(\[]?"
 )
 _SCALED = re.compile(
@@ -107,7 +113,10 @@ _INTRODUCED = re.compile(
 _SUGGESTED = re.compile(rf"(?:\bin |[(\[] ?|\b(?:acceleration|accel|acc)\.?,? (?!in )){_WORD}", re.I)
 _GALS = re.compile(r"[(\[] ?(gals?) ?[)\]]", re.I)  # nothing else is called so
 _SUFFIX = re.compile(rf"(?<=[^\W_])_({'|'.join(word for word in WORDS if word.isalpha())})(?![^\W_])", re.I)
-ACCELERATION = "acc(?:el|elerations?|elerograms?)?|pga|aceleracion(?:es)?|beschleunigung(?:en)?|ivme"
+ACCELERATION = (
+    "acc(?:el|elerations?|elerograms?)?|pga|aceleracion(?:es)?|beschleunigung(?:en)?|ivme"
+    "|accelerazion[ei]|ускорени[ея]|加速度|επιταχυνσ(?:η|εις)"
+)
 OTHER = (
     "velocit(?:y|ies)|veloc|vel|displacements?|displ|disp|velocidad(?:es)?|desplazamientos?"
     "|geschwindigkeit(?:en)?|verschiebung(?:en)?|vitesses?|deplacements?"
@@ -294,6 +303,12 @@ def stated_unit(header: Iterable[tuple[int, str]], titles: int | None = None) ->
         other = other or names[1] and (number_of_line, names[1][0])
         for key, word in _units_in(line, number_of_line == titles, any(names)):
             factor = None if key == UNKNOWN else factor_of(word)
+            if factor is None and _ANOTHER_SCRIPT.search(word):
+                problem, remedy = (
+                    "not an acceleration in a unit that is known",
+                    f"write one of {', '.join(UNITS)} in its place",
+                )
+                raise SceneError(f"line {number_of_line}, {key}", word, problem, remedy)
             if factor is None:
                 raise SceneError(
                     f"line {number_of_line}, {key}",
@@ -337,6 +352,9 @@ def _units_in(line: str, titles: bool, named: bool) -> Iterator[tuple[str, str]]
     for match in _SQUARED.finditer(line):
         apart = any(match.start() <= found.start(1) < match.end() for found in _QUOTIENT.finditer(line))
         if not apart and not re.match(r"[-+]?\.?[0-9]", match[0]):
+            yield UNKNOWN, match[0]
+    for match in _OF_ANOTHER_SCRIPT.finditer(line):
+        if _ANOTHER_SCRIPT.search(match[0]):
             yield UNKNOWN, match[0]
     suggested = _SUGGESTED if titles or named else _GALS
     for match in (*suggested.finditer(line), *(_SUFFIX.finditer(line) if titles else ())):

@@ -30,6 +30,14 @@ _WORDS = {
     NUMBERS: "index|no|nr|num|number|samples?|points?|row|id|unnamed",
 }
 _OF = {kind: re.compile(rf"{START}(?:{words})(?![a-z])") for kind, words in _WORDS.items()}
+# Whole titles of a table of earthquakes, a row each: at least two of them, of which one may be the peak.
+_EVENT = re.compile(
+    "record sequence number|rsn|eqid|(?:earthquake|event|eq)(?: (?:name|id|no|code|date|time|magnitude))?"
+    "|station(?: (?:name|id|no|code|sequence number))?|year|mw|(?:moment )?magnitude|vs ?30.*|(?:epi|hypo)[cd].*"
+    "|latitude|longitude"
+)
+ONE_RECORD = "give the file of one record, its accelerations over time"
+_PEAK = re.compile(r"pg[avd]\b.*")
 # Whole titles.
 _ALONE = {"a": ACCELERATED, "f": FREQUENCY, "hz": FREQUENCY, **dict.fromkeys(("per", "tn", "t n", "t0", "t 0"), PERIOD)}
 _TIME = re.compile(rf"(?:{TIMES}){END}")
@@ -41,7 +49,7 @@ _BRACKETS = re.compile(r"[(\[]([^)\]]*)[)\]]?")
 _GLUED = re.compile(rf"({'|'.join(LENGTHS)})[ _]?(p|per)?[ _]?s(?:ec)?[ _]?(2?)")  # cms2, m_per_s2, mps
 # Words in brackets that are no unit: numbers, directions and processing of the values.
 _REMARK = re.compile(
-    "[^a-z%µ°]*|[nsew]?[0-9]+-?[nsew]|[new]|[nsew]-?[nsew]|u-?d|[xyzuhrtl][0-9]?|[behs][hnlg][enz12]|north|south|east|west|up|down"
+    r"(?:[^\w%°]|[\dº_])*|[東东西南北上下]{1,2}|[сюзв](?:-[сюзв])?|[nsew]?[0-9]+-?[nsew]|[new]|[nsew]-?[nsew]|u-?d|[xyzuhrtl][0-9]?|[behs][hnlg][enz12]|north|south|east|west|up|down"
     "|vert(?:ical)?|horiz(?:ontal)?|raw|(?:un)?(?:corrected|filtered|processed)|matched|scaled"
 )
 _RAW = ("count", "counts", "cts", "volt", "volts", "mv", "lsb", "adc", "digits")
@@ -85,7 +93,7 @@ def _parted(line: str, separator: str | None, width: int, is_one: Callable[[str]
 
 
 def _is_name(word: str) -> bool:
-    return bool(re.search(r"[^\W\d_]", name_of(word))) and not NUMERIC.match(word)
+    return bool(re.search(r"[^\W\d_]", name_of(word))) and not NUMERIC.match(word) and not word.endswith(":")
 
 
 def _is_unit(word: str) -> bool:
@@ -112,6 +120,15 @@ def kinds_of(titles: Titles, spectrum: bool) -> list[str]:
     if ACCELERATED in kinds:  # "a, v, d"; else v may be vertical
         kinds = [OTHER_QUANTITY if name in ("v", "d") else kind for name, kind in zip(names, kinds, strict=True)]
     return kinds
+
+
+def check_events(titles: Titles) -> None:
+    """Refuse the titles of a table of earthquakes or stations, which holds a peak of each and no motion."""
+    names = [folded(name_of(word)).strip(" .") for word in titles.words]
+    of_events = [name for name in names if _EVENT.fullmatch(name)]
+    if not any(map(_TIME.match, names)) and of_events and len(of_events) + any(map(_PEAK.fullmatch, names)) > 1:
+        problem = f"are those of a table of earthquakes or stations ({of_events[0]})"
+        raise SceneError(f"line {titles.at}, titles", ", ".join(titles.words), problem, ONE_RECORD)
 
 
 def _kind_of(title: str) -> str:

@@ -20,11 +20,9 @@ LONG_NAMES = (
     ("gals?", "gal"),
     ("gravity", "g"),
 )
+OF_G = {"g": G, "g's": G, "mg": 1e-3 * G, "%g": 1e-2 * G}
 WORDS = {
-    "g": G,
-    "g's": G,
-    "mg": 1e-3 * G,
-    "%g": 1e-2 * G,
+    **OF_G,
     "gal": 1e-2,
     "mgal": 1e-5,
     **{
@@ -35,8 +33,17 @@ WORDS = {
 }  # -> m/s2, as `plain` writes them
 NOT_ACCELERATIONS = {f"{length}{rate}" for length in LENGTHS for rate in ("", "/s", ".s-1", "s-1")}
 
+# Signs of full width and plain words of units in other scripts.
+_SIGNS = str.maketrans(
+    dict(zip("（）［］【】／：，", "()[][]/:,", strict=True)) | {"㎨": "m/s2", "㎝": "cm", "㎜": "mm"}
+)
+_SCRIPTS = {
+    **{"см": "cm", "мм": "mm", "м": "m", "мс": "ms", "с": "s", "сек": "s", "гал": "gal"},
+    **{"厘米": "cm", "毫米": "mm", "米": "m", "毫秒": "ms", "秒": "s", "伽": "gal", "ガル": "gal"},
+}
 # A word begins and ends where no letter of any alphabet is.
 START, END = r"(?<![^\W\d_])", r"(?![^\W\d_])"
+_OF_SCRIPTS = re.compile(rf"{START}(?<![^\W\d_]-)(?:{'|'.join(_SCRIPTS)})(?:(?=²)|{END}(?!-[^\W\d_]))", re.I)
 
 
 @dataclass(frozen=True)
@@ -46,6 +53,11 @@ class Unit:
     word: str
     factor: float
     where: str
+
+    @property
+    def of_g(self) -> bool:
+        """Whether it is g or a part of it."""
+        return self.factor in OF_G.values()
 
 
 def factor_of(word: str) -> float | None:
@@ -78,6 +90,13 @@ def resolve(unit: Unit | None, given: str | None, no_unit: str) -> Unit:
             "remove units, or correct the record",
         )
     return unit
+
+
+def in_latin(line: str) -> str:
+    """A line of a header with plain words of units in Latin letters: "(см/с²)" is "(cm/s²)", "（ガル）" is "(gal)"."""
+    if line.isascii():
+        return line
+    return _OF_SCRIPTS.sub(lambda word: _SCRIPTS[word[0].lower()], line.translate(_SIGNS))
 
 
 def plain(word: str) -> str:

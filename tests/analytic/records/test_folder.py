@@ -79,6 +79,78 @@ def test_a_vertical_motion_and_what_is_no_record_are_left_out_and_said(tmp_path)
     assert len(found) == 1 and sorted(line.split(":")[0] for line in left) == ["README.md", "RSN1_A-UP.csv"]
 
 
+def mixed(folder):
+    """A motion that states its unit; the same without it, 98.1 times too large in g; and a spectrum without titles."""
+    write(folder, "motion.csv", 100 * FIRST)
+    text = (folder / "motion.csv").read_text()
+    (folder / "motion.csv").write_text(text.replace("a [m/s2]", "加速度(cm/s²)"))
+    (folder / "gal_no_unit.csv").write_text(text.replace("a [m/s2]", "acc"))
+    (folder / "spectrum.txt").write_text("".join(f"{0.02 * k:.3f}\t{0.4 + 0.01 * k:.4f}\n" for k in range(20)))
+    return folder
+
+
+def test_units_hold_for_files_that_state_none_and_what_looks_like_no_earthquake_is_left_out(tmp_path):
+    found, left = folder_motions(mixed(tmp_path), units="g")
+    ((motion,),) = found.values()
+    assert motion.label == "motion.csv" and motion.samples == pytest.approx(FIRST) and motion.warnings == ()
+    assert left == [
+        "gal_no_unit.csv: left out, the peak of 200 g is above 3 g: check the unit (read in g, units)",
+        "spectrum.txt: left out, all accelerations have one sign: check that they are no spectrum and have no offset",
+    ]
+    found, left = folder_motions(tmp_path, units="gal")
+    assert [*found] == ["gal_no_unit.csv", "motion.csv"] and len(left) == 1
+    _, left = folder_motions(tmp_path)
+    assert left[0].startswith("gal_no_unit.csv: left out, motion.units: missing; the header names no unit; add units, ")
+
+
+def test_a_step_holds_for_files_that_state_none(tmp_path):
+    write(tmp_path, "a.csv")
+    (tmp_path / "b.txt").write_text("# acc [m/s2]\n" + "".join(f"{a}\n" for a in FIRST))
+    found, left = folder_motions(tmp_path, dt=0.02)
+    assert left == [] and [motion.dt for (motion,) in found.values()] == [0.01, 0.02]
+
+
+def test_what_is_left_out_is_named_with_its_value_and_the_remedy(tmp_path):
+    write(tmp_path, "a.csv")
+    write(tmp_path, "b.csv", [0, 1, "1.2.3", 4])
+    write(tmp_path, "c.csv", 1e-5 * FIRST)
+    _, (bad, small) = folder_motions(tmp_path)
+    assert bad == "b.csv: left out, line 4 = '1.2.3': not a number; mend or remove it"
+    assert small.startswith("c.csv: left out, the peak of 2.039e-06 g is below 1e-4 g: check the unit (read in m/s2, ")
+
+
+def test_a_motion_of_ones_own_is_never_left_out(tmp_path):
+    mine = SampledMotion(0.01, 981 * FIRST, "as the scene calls it")
+    found, left = folder_motions(mixed(tmp_path), own=mine, units="g")
+    assert [*found] == ["gal_no_unit.csv", "motion.csv"] and [line.split(":")[0] for line in left] == ["spectrum.txt"]
+
+
+def test_other_warnings_stay_on_the_motion(tmp_path):
+    write(tmp_path, "a.csv")
+    text = (tmp_path / "a.csv").read_text()
+    (tmp_path / "a.csv").write_text("# number of samples: 9\n" + text)
+    found, left = folder_motions(tmp_path)
+    ((motion,),) = found.values()
+    assert left == [] and "states 9 samples, the data have 4" in motion.warnings[0]
+
+
+def test_an_odd_channel_is_left_out_and_the_others_stay(tmp_path):
+    rows = "".join(f"{0.01 * k:.2f},{a},{abs(a) + 1}\n" for k, a in enumerate(FIRST))
+    (tmp_path / "a.csv").write_text(f"t [s],E [m/s2],N [m/s2]\n{rows}")
+    found, (left,) = folder_motions(tmp_path)
+    assert [*found] == ["a.csv, column 2 (E)"] and left.startswith(
+        "a.csv, column 3 (N): left out, all accelerations have"
+    )
+
+
+def test_a_folder_of_which_nothing_is_left_is_refused_with_the_reasons(tmp_path):
+    write(tmp_path, "a.csv", abs(FIRST))
+    with pytest.raises(
+        SettingError, match="no horizontal ground motion in it; a.csv: left out, all accelerations have"
+    ):
+        folder_motions(tmp_path)
+
+
 def test_an_empty_folder_and_none_are_refused(tmp_path):
     for folder in (tmp_path, tmp_path / "none"):
         with pytest.raises(SettingError, match="--records"):

@@ -10,6 +10,7 @@ import pytest
 from made_up_records import corrected, csmnc, knet_csv
 from record_files import assert_refused, write
 
+from analytic.errors import SceneError
 from analytic.records import G, read_channels, read_record
 
 DT = 0.02
@@ -51,6 +52,28 @@ READ = {
     "number and step, a line each": ("36\n0.02\n" + rows("{a:.7f}"), {"units": "g"}),
     "number alone": ("36\n" + rows("{a:.7f}"), {"units": "g", "dt": DT}),
     "NPTS and DT, a line each": ("NPTS = 36\nDT = 0.02\nUNITS = g\n" + rows("{a:.7f}"), {}),
+    "numbered headings, as in Peru": (
+        "1. ESTACION\n   NOMBRE : X\n2. SISMO\n3. REGISTRO\n NUMERO DE MUESTRAS : 36\n MUESTREO (muestras/s) : 50\n"
+        " UNIDADES : cm/s2\n4. DATOS DE ACELERACION\n  Z  N  E\n" + rows("1.0000 {a:.4f} -1.0000", GAL),
+        {"column": "N"},
+    ),
+    "PEER with marked data": (
+        "made up\n36 points at equal spacing of 0.02 sec\nThe units are (g)\n*** Begin data ***\n"
+        "NPTS=  36, DT= .02000 SEC\n" + lines(" {a:9.7f}", 8) + "*** End data ***\n",
+        {},
+    ),
+    "PEER, marked below its counts": (
+        "made up\nin g\nNPTS= 36, DT= .02 SEC\n*** BEGIN ACCELERATION DATA ***\n" + lines(" {a:9.7f}", 8) + "** END **",
+        {"units": "g"},
+    ),
+    "columns with marked data": (
+        "t [s] a [g]\n*** Begin data ***\n" + rows("{t:.2f} {a:.7f}") + "*** End data ***\n",
+        {"units": "g"},
+    ),
+    "a number above that is an acceleration": (
+        "# samples: 36\n" + rows("{a:.7f}").replace("0.0", "0", 1),
+        {"units": "g", "dt": DT},
+    ),
     "a step in a line": ("Time Step: 0.02\n" + rows("{a:.9f}"), {"units": "g"}),
     "OpenSees": (FIVE, {"units": "g", "dt": DT}),
     "Excel, all in quotes": ('"Time (s)","Acc (g)"\n' + rows('"{t:.2f}","{a:.7f}"'), {}),
@@ -176,16 +199,59 @@ REFUSED = {
     "the step alone above": (
         "0.02\n" + rows("{a:.7f}"),
         {"units": "g", "dt": DT},
-        "line 1 = '0.02': not printed as the numbers below are, and may be their step or their number; begin the line",
+        "line 1 = '0.02': not printed as the numbers below are, and may be their step, their number or a factor; write",
         "# dt = .02 s\n" + rows("{a:.7f}"),
         {"units": "g"},
     ),
     "another number than follow": (
         "40\n" + rows("{a:.7f}"),
         {"units": "g", "dt": DT},
-        "line 1 = '40': not printed as the numbers below are, and may be their step or their number",
+        "line 1 = '40': not printed as the numbers below are, and may be their step, their number or a factor",
         "# 40\n" + rows("{a:.7f}"),
         {"units": "g", "dt": DT},
+    ),
+    "a row of number and step above times": (
+        "0.02 36\n" + rows("{t:.2f} {a:.7f}"),
+        {"units": "g", "dt": DT, "column": 2},
+        "line 1 = '0.02 36': no row as those below are, and may be their step, their number or a factor; begin",
+        "# dt = .02 s\n" + rows("{t:.2f} {a:.7f}"),
+        {"units": "g"},
+    ),
+    "a number above several a line": (
+        "0.02\n" + FIVE,
+        {"units": "g", "dt": DT},
+        "line 1 = '0.02': no row as those below are, and may be their step, their number or a factor; begin the line",
+        "# dt = .02 s\n" + FIVE,
+        {"units": "g"},
+    ),
+    "the step first of five a line": (
+        lines(" {a:14.7E}", 5, [DT, *IN_G]),
+        {"units": "g", "dt": DT},
+        "line 1 = '2.0000000E-02': equal to the step that is given, and may be",
+        "# samples: 37\n" + lines(" {a:14.7E}", 5, [DT, *IN_G]),
+        {"units": "g", "dt": DT},
+    ),
+    "a table of earthquakes": (
+        "Record Sequence Number,EQID,Earthquake Name,YEAR,PGA (g)\n"
+        '1,0001,"Hill, North-01",1935,0.15\n2,0002,Hill,1936,0.04\n',
+        {"column": 5},
+        "line 1, titles = 'Record Sequence Number, EQID, Earthquake Name, YEAR, PGA (g)': are those of a table",
+        None,
+        {},
+    ),
+    "peaks by year": (
+        "Year,PGA (g)\n1935,0.15\n1936,0.04\n1937,.1\n",
+        {},
+        "are those of a table of earthquakes or stations (year); give the file of one record, its accelerations over",
+        None,
+        {},
+    ),
+    "marks inside": (
+        rows("{t:.2f} {a:.7f}") + "*** End data ***\n" + rows("{t:.2f} {a:.7f}"),
+        {"units": "g"},
+        "line 37 = '***': not a number; mend or remove it",
+        None,
+        {},
     ),
     "days first": (
         "time,acc (g)\n" + rows("02.01.2030 03:04:{t:06.3f},{a:.7f}"),
@@ -231,7 +297,7 @@ def test_a_layout_is_refused_and_its_remedy_works(tmp_path, text, said, message,
     assert_refused(write(tmp_path, text), message, **said)
     if mended:
         motion = read_record(write(tmp_path, mended), **then)
-        assert len(motion.samples) in (35, 36) and motion.dt in (DT, 0.05)
+        assert len(motion.samples) in (35, 36, 37) and motion.dt in (DT, 0.05)
 
 
 def test_columns_that_are_no_accelerations_are_not_offered(tmp_path):
@@ -311,3 +377,83 @@ def test_a_damaged_knet_csv_is_refused(tmp_path, old, new, message):
     text = knet_csv(GAL)
     assert text.count(old) >= 1
     assert_refused(write(tmp_path, text.replace(old, new, 1)), message)
+
+
+FORMS = "{:.2f}|{:.5f}|{:.0f}|{:.7E}|{:g}|{!r}|{:.12g}|{:9.4f}".split("|")
+NOISE = [(-1) ** i * (1.7 * i * i % 9.73) * math.exp(-i / 60) for i in range(120)]
+COSINE = [math.cos(0.3 * i) for i in range(80)]
+SINE = [*map(math.sin, range(40)), *[0.0] * 20]
+STEPS = [1.0] * 30 + [-1.0] * 30 + [0.0] * 20
+LATE = [0.0] * 12 + NOISE
+
+
+def one_a_line(form, values):
+    return "".join(f"{form.format(value)}\n" for value in values)
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("size", [0.05, 116.0])
+@pytest.mark.parametrize("values", [NOISE, COSINE, SINE, STEPS, LATE])
+def test_a_list_of_accelerations_is_read_however_it_is_printed(tmp_path, form, size, values):
+    for first in ("", "0\n"):
+        text = first + one_a_line(form, [size * value for value in values])
+        motion = read_record(write(tmp_path, text), "m/s2", dt=0.005)
+        assert motion.samples.tolist() == [float(line) for line in text.split()]
+
+
+# What stands above lists: of the form of their numbers, or of its own.
+ABOVE = {
+    "step": [DT],
+    "factor, step": [1, DT],
+    "another factor, step": [9.81, DT],
+    "step, number": [DT, len(NOISE)],
+    "number": [len(NOISE)],
+    "factor, number, step": [386.4, len(NOISE), DT],
+    "number, step, wrong": [len(NOISE) + 9, DT],
+}
+REST = [*(2e-6 * i for i in range(10)), *(0.1 * value for value in NOISE[10:])]
+
+
+@pytest.mark.parametrize("above", ABOVE.values(), ids=ABOVE)
+@pytest.mark.parametrize("form", ["{:.7E}", "{:.6f}", "{:g}", "{!r}"])
+@pytest.mark.parametrize("zeros", [0, 2])
+@pytest.mark.parametrize("given", [DT, 0.005])
+def test_numbers_above_a_list_are_never_taken_for_accelerations(tmp_path, above, form, zeros, given):
+    """They are refused, or read as what they are; a step given wrongly does not help them."""
+    for own in (form, "{}", "{:g}"):
+        for header in ("", "# made up\n"):
+            text = header + one_a_line(own, above) + "0\n" * zeros + one_a_line(form, REST)
+            try:
+                motion = read_record(write(tmp_path, text), "g", dt=given)
+            except SceneError as error:
+                words = (
+                    "their step, their number",
+                    "the number of values and their step",
+                    "the step of the record itself",
+                )
+                assert any(word in error.problem for word in words)
+            else:
+                assert motion.samples.tolist() == [G * float(form.format(value)) for value in [0.0] * zeros + REST]
+
+
+@pytest.mark.parametrize("above, line", [("1\n0.01\n", 1), ("0.01\n", 1), ("5.123457e+00\n0.01\n", 2)])
+def test_a_number_above_a_list_is_named_and_the_remedy_works(tmp_path, above, line):
+    values = one_a_line("{:.6e}", REST)
+    text = above + "0\n0\n" + values
+    assert_refused(write(tmp_path, text), f"line {line} = ", units="g", dt=0.01)
+    text = "# dt = .01 s\n0\n0\n" + values
+    assert len(read_record(write(tmp_path, text), "g").samples) == len(REST) + 2
+
+
+def test_a_whole_number_above_integers_that_counts_them_is_refused(tmp_path):
+    integers = one_a_line("{:.0f}", [20 * value for value in NOISE])
+    assert_refused(write(tmp_path, f"120\n{integers}"), "line 1 = '120': as many as the numbers", units="gal", dt=DT)
+    assert len(read_record(write(tmp_path, f"3\n{integers}"), "gal", dt=DT).samples) == 121
+
+
+def test_a_chosen_column_without_times_begins_with_an_acceleration(tmp_path):
+    text = "36 0.02\n" + rows("{a:.4f} {a:.4f}")
+    for column, number in ((1, "1"), (2, "0.02")):
+        assert len(read_record(write(tmp_path, text), "g", dt=DT, column=column).samples) == 36
+        path = write(tmp_path, text.replace("36", "1"))
+        assert_refused(path, f"line 1 = '{number}': ", units="g", dt=DT, column=column)

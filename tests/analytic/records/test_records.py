@@ -114,6 +114,61 @@ def test_a_unit_stands_by_itself_behind_what_parts_words(tmp_path, header):
     np.testing.assert_allclose(motion.samples, np.array(VALUES) * 0.01, rtol=1e-15)
 
 
+@pytest.mark.parametrize("unit", ["inch/s2", "in/s^2", "inches/sec/sec", "in/sec2"])
+def test_inches(tmp_path, unit):
+    motion = read_record(write(tmp_path, f"# time [s] acceleration [{unit}]{ROWS}"))
+    np.testing.assert_allclose(motion.samples, np.array(VALUES) * 0.0254, rtol=1e-15)
+
+
+IN_CENTIMETRES = (
+    "время(с) ускорение(см/с²)|# ускорение (см/с^2)|# Единицы: см/с/с|# единицы измерения: гал|t, с; a, СМ/С²"
+    "|# 加速度（ガル）|# 単位：ガル|時間(s) 加速度(ガル)|時間(秒) 加速度(伽)|时间(s) 加速度(厘米/秒²)"
+    "|# 单位: 伽|# a, ㎝/s²|# Unità: gal|# Unidade: gal"
+)
+
+
+@pytest.mark.parametrize("header", IN_CENTIMETRES.split("|"))
+def test_a_plain_unit_in_another_script_is_read_and_not_overruled(tmp_path, header):
+    path = write(tmp_path, header + ROWS)
+    np.testing.assert_allclose(read_record(path).samples, np.array(VALUES) * 0.01, rtol=1e-15)
+    assert_refused(path, "but the record carries its own unit", units="g")
+
+
+@pytest.mark.parametrize(
+    "header, word",
+    [
+        ("χρόνος επιτάχυνση(εκ/δ²)", "εκ/δ²"),
+        ("# επιτάχυνση, εκ/δ/δ", "εκ/δ/δ"),
+        ("# μονάδες: εκ", "εκ"),
+        ("# Unit: 重力加速度", "重力加速度"),
+        ("時間(s) 加速度(重力)", "重力"),
+        ("# تسارع (سم/ث²)", "سم/ث²"),
+        ("# ความเร่ง (ซม/วินาที²)", "ซม/วินาที²"),
+        ("время ускорение(ж)", "ж"),
+    ],
+)
+def test_an_unknown_word_for_a_unit_in_another_script_is_asked_about(tmp_path, header, word):
+    path = write(tmp_path, header + ROWS)
+    for units in (None, "g"):
+        assert_refused(path, word, units=units)
+        assert_refused(path, "; write one of m/s2, cm/s2, g, gal, mm/s2, %g in its place", units=units)
+
+
+def test_a_column_is_named_as_the_file_writes_it(tmp_path):
+    path = write(tmp_path, "時間(s) 加速度（ガル） 東西（伽）" + ROWS.replace("\n", " 1\n")[2:] + " 1")
+    for column, number in (("加速度（ガル）", "2"), ("加速度", "2"), ("東西(伽)", "3")):
+        assert read_record(path, column=column).label.startswith(f"record, column {number}")
+
+
+def test_velocities_in_another_script_are_refused(tmp_path):
+    assert_refused(write(tmp_path, "время(с) скорость(см/с)" + ROWS), "unit = 'cm/s': not an acceleration")
+
+
+@pytest.mark.parametrize("header", ["時間(s) 加速度(東西)", "t a(С-Ю)", "t a(90º)"])
+def test_a_direction_in_another_script_is_no_unit(tmp_path, header):
+    assert read_record(write(tmp_path, header + ROWS), "g").peak == pytest.approx(1.5 * G)
+
+
 @pytest.mark.parametrize("units, factor", [("m/s2", 1.0), ("cm/s2", 0.01), ("g", G)])
 @pytest.mark.parametrize("row", ["{t:8.4f} {a:14.6E}", "{t},{a}", "{t}\t{a}  # remark"])
 def test_two_columns(tmp_path, units, factor, row):
