@@ -198,6 +198,8 @@ class Difference:
     near: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
+        if self.here is None:
+            object.__setattr__(self, "here", math.nan)  # null, from JSON
         if self.near is not None:
             object.__setattr__(self, "near", tuple(self.near))  # a list, from JSON
 

@@ -207,8 +207,9 @@ def graph_distance(
 @njit(cache=True)
 def _segment_distance(t, y, t0, y0, t1, y1):
     dt, dy = t1 - t0, y1 - y0
-    along = ((t - t0) * dt + (y - y0) * dy) / (dt * dt + dy * dy)
-    along = min(1.0, max(0.0, along))
+    length2, along = dt * dt + dy * dy, 0.0
+    if length2 > 0:  # else both samples are one point, as the last two of a history may be in rounding
+        along = min(1.0, max(0.0, ((t - t0) * dt + (y - y0) * dy) / length2))
     return math.hypot(t - t0 - along * dt, y - y0 - along * dy)
 
 

@@ -152,8 +152,8 @@ BASE_OUTCOMES = (
 
 
 def _demand(row):
-    demand = row.get("friction_demand")
-    return "∞ (N ≤ 0)" if demand is None and row.get("min_normal_ratio", 1) <= 0 else demand
+    demand, least = row.get("friction_demand"), row.get("min_normal_ratio")
+    return "∞ (N ≤ 0)" if demand is None and least is not None and least <= 0 else demand
 
 
 def _slip(head: str, key: str) -> Column:

@@ -7,7 +7,7 @@ from typing import Any
 
 from analytic import Scene, SceneError, simulate
 from analytic.limits import scene_warnings
-from analytic.margins import SPAN, TILT, limit_states, margins
+from analytic.margins import SPAN, STEP, TILT, limit_states, margins
 from analytic.motion import Motion
 from analytic.nearby import SHARE, cliffs, nearby
 from analytic.records.folder import reversed_sign, same_reversed
@@ -80,7 +80,7 @@ def statue_of(scene: Scene, motions: Mapping[str, Sequence[Motion]], progress: A
                     if why
                 ],
             }
-            for margin in margins(scene, progress=progress)
+            for margin in margins(scene, step=STEP, progress=progress)
         ]
     except SceneError as error:  # too long to be run so often
         found["cautions"].append(f"The distance to another outcome was not searched: {error.remedy}.")

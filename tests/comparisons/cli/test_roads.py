@@ -5,7 +5,6 @@ user's are not is a test of its own. The slow form has the real engines, and `ch
 """
 
 import json
-import math
 import re
 
 import jsonschema
@@ -13,9 +12,10 @@ import pytest
 from lying_engine import FAULTS, LIES, liars
 from roads import KINDS, REFUSED, write_records
 
-from analytic import bearing_scan
+from analytic import bearing_scan, margins, nearby
 from analytic.response import DIFFERENCES, JUDGED, Difference
 from comparisons.commands import margin
+from comparisons.report import next_step, statue
 from comparisons.running.executors import Done, Executor, lines_of
 from comparisons.running.provenance import RESULTS
 from comparisons.schemas.__main__ import schemas
@@ -23,9 +23,13 @@ from engines import ENGINES, installed_engines
 
 ENGINE = "lying"  # of the commands that take one
 SCHEMAS = schemas()
-USUAL = {"steps": margin.STEPS, "period": bearing_scan.PERIOD_STEP, "damping": bearing_scan.DAMPING_STEP}
+USUAL = {
+    "margin": margin.STEPS,
+    "design": (bearing_scan.PERIOD_STEP, bearing_scan.DAMPING_STEP),
+    "report": (statue.STEP, next_step.STEP, nearby.STEP),
+}
 ERROR = re.compile(r"^Error: (?P<file>\S+): (?P<field>[\w.]+)(?: = (?P<value>.+?))?: (?P<problem>.+); (?P<remedy>.+)$")
-RECORDS = 5  # of the folder that are earthquakes
+RECORDS = 3  # of the folder that are earthquakes: the others are left out by name
 SOUND = ("honest", "nan")  # of the faults, the engines that claim an outcome
 occurred = set()
 
@@ -55,6 +59,9 @@ def road(rocking, tmp_path, monkeypatch):
     monkeypatch.setattr(margin, "STEPS", 8)
     monkeypatch.setattr(bearing_scan, "PERIOD_STEP", 0.4)
     monkeypatch.setattr(bearing_scan, "DAMPING_STEP", 0.05)
+    monkeypatch.setattr(statue, "STEP", 0.05)
+    monkeypatch.setattr(next_step, "STEP", 0.2)
+    monkeypatch.setattr(nearby, "STEP", 0.0125)
     monkeypatch.setattr("comparisons.running.study.Processes", Here)
     for name in list(ENGINES):
         monkeypatch.delitem(ENGINES, name)
@@ -101,10 +108,8 @@ def all_is_told(warnings, out):
 
 
 def differences_are_told(response, out):
-    """Each difference is printed; null is a number that was none."""
     for one in response["differences"]:
-        here = math.nan if one["here"] is None else one["here"]
-        assert shown(str(Difference(**{**one, "here": here})), out), one
+        assert shown(str(Difference(**one)), out), one
 
 
 def asked(names):
@@ -280,7 +285,8 @@ def test_a_scene_that_the_model_refuses_is_named_with_its_remedy(road, kind, com
 
 
 def test_the_scans_of_a_user_are_fine():
-    assert USUAL == {"steps": 400, "period": 0.01, "damping": 0.005}
+    assert USUAL == {"margin": 400, "design": (0.01, 0.005), "report": (margins.STEP, 0.01, margins.STEP)}
+    assert (margins.SPAN, margins.STEP) == (0.2, 5e-4)
 
 
 @pytest.mark.slow

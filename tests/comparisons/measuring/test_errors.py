@@ -101,6 +101,13 @@ def test_graph_distance_of_shifted_lines_is_that_of_their_ends():
     assert of_graphs(graph(time, 2 * time), graph(fine, 2 * fine + 0.5)) == pytest.approx(0.5, rel=1e-12)
 
 
+def test_graph_distance_of_graphs_with_a_point_twice_or_with_one_point():
+    """The last samples of a history may be one in rounding, and a horizon may leave none but the first."""
+    time = np.array([0.0, 1.0, 2.0, 2.0])
+    assert of_graphs(graph(time, 0 * time), graph(time, 0 * time + 0.25)) == pytest.approx(0.25, rel=1e-12)
+    assert of_graphs(graph(time, time), graph(time, time), until=0.5) is None
+
+
 @pytest.mark.parametrize("cut", [0.0, 0.003, 0.4])
 def test_graph_distance_is_over_the_same_span(cut):
     """A falling block whose history ends `cut` seconds before the other's, off its samples."""
