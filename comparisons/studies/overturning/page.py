@@ -76,7 +76,10 @@ def page(result: Result) -> Page:
                 LARGEST,
                 Column("where N < 0: found [-]", "{beyond_found} of {beyond}"),
                 Column("largest there [%]", lambda row: row["beyond_largest"] and 100 * row["beyond_largest"]),
-                Column("overturning missed or added, of outcomes [-]", "{wrong} of {outcomes}"),
+                Column(
+                    "overturning missed or added, of outcomes [-]",
+                    lambda row: f"{row['wrong']} of {row['outcomes']}" if row["outcomes"] else "none compared",
+                ),
             ),
             table(
                 f"Coarse scan: of {_scanned(s)} pulses those further than {band} from every boundary, with the block "

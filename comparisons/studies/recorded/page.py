@@ -123,7 +123,7 @@ def page(result: Result) -> Page:
 
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
-    """Whether the outcomes are equal to the model's, and the errors of the peaks, by (engine, variant)."""
+    """How many outcomes differ from the model's, and the errors of the peaks, by (engine, variant)."""
     runs = grouped(where(result.rows, part="run"), "engine", "variant")
     rows = {pair: where(summary(members), configuration=BOTH)[0] for pair, members in runs.items()}
     return (

@@ -332,7 +332,7 @@ def _halves(cells, cases, variants):
             Axis("", -0.5, len(names) - 0.5, ticks=tuple(enumerate(names.values()))),
             Axis("", len(half) - 0.5, -0.5, ticks=tuple(enumerate(map(_readable, half)))),
             f"Right of {len(half)} cases: {', '.join(f'{name} {count}' for name, count in right.items())}.",
-            left=168,
+            left=room(map(_readable, half), 168),
             right=4,
             foot=foot,
             height=16 + foot + 19 * len(half),

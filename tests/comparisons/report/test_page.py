@@ -39,7 +39,7 @@ def test_a_section_that_is_old_says_so_in_its_closed_heading_and_in_the_index(pa
 
 
 def test_every_cell_of_the_first_tables_has_its_sign_and_the_legend_says_what_it_means(page):
-    legend = re.sub("<[^>]*>", "", re.search(r'<p class="legend">(.*?)</p>', page)[1])
+    legend = html.unescape(re.sub("<[^>]*>", "", re.search(r'<p class="legend">(.*?)</p>', page)[1]))
     cells = [
         (level, html.unescape(re.sub("<[^>]*>", "", re.split("<br>", cell)[0])).strip())
         for table in re.findall(r'<table class="answers">(.*?)</table>', page, re.DOTALL)
@@ -50,4 +50,4 @@ def test_every_cell_of_the_first_tables_has_its_sign_and_the_legend_says_what_it
     for level, words in cells:
         sign, meaning = SIGNS[level]
         assert words.endswith(f"\u00a0{sign}") or words.startswith(rated), words
-        assert f"{sign} {meaning}" in legend
+        assert f"{sign}\u00a0{meaning}" in legend
