@@ -1,5 +1,6 @@
 """What README.md tells a user to type is run as it stands there, but for making environments and installing."""
 
+import itertools
 import re
 import shlex
 import subprocess
@@ -7,12 +8,12 @@ import sys
 import textwrap
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
 # Seconds that `rocking ...` of these words may take; what is not here is quick.
 LONG = {"report": 600, "choose": 600, "lessons export": 1200}
+OUTPUTS = ("--output", "--plot", "--to")  # options of what is written
 NOT_RUN = ("venv", "pip", "pytest", "pdoc", "open")  # made, installed or tested elsewhere, or opens a browser
 
 
@@ -41,22 +42,43 @@ def cases():
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """Where the user's files lie: a record of their own, and one called like the paper's (its values are not)."""
-    made = tmp_path_factory.mktemp("readme")
-    values = 3.0 * np.random.default_rng(5).normal(size=2000) / 4
-    (made / "own.csv").write_text("".join(f"{0.01 * k:.2f},{value:.5f}\n" for k, value in enumerate(values)))
-    text = (made / "own.csv").read_text()
-    (made / "own.csv").write_text("time [s],acc [m/s2]\n" + text)
-    head = "PEER NGA STRONG MOTION DATABASE RECORD\nMade up\nACCELERATION TIME SERIES IN UNITS OF G\n"
-    rows = "\n".join(" ".join(f"{value / 9.81: .7E}" for value in row) for row in values.reshape(-1, 5))
-    (made / "RSN1605_DUZCE_DZC270.AT2").write_text(f"{head}NPTS=   2000, DT=   .0100 SEC\n{rows}\n")
-    return made
+    """Where the user is: nothing lies there but what the commands themselves write."""
+    return tmp_path_factory.mktemp("readme")
 
 
 def test_there_are_commands_to_run():
     names = {words[1] for words in commands()}
     assert {"new", "report", "choose", "lessons"} <= names
     assert all(words[0] == "rocking" for words in commands())
+
+
+def test_a_command_reads_no_file_that_none_before_it_writes():
+    written = set()
+    for words in commands():
+        files = {word for word in words if re.search(r"\.[A-Za-z]\w*$", word)}
+        made = {word for before, word in itertools.pairwise(words) if before in (*OUTPUTS, "new")}
+        assert files - made <= written, words
+        written |= made
+    assert "bust.toml" in written
+
+
+def spans():
+    """The words of every command of ours: in the blocks, those that are not run here too, and within the text."""
+    lines = [line for block in blocks("sh") for line in block.replace("\\\n", " ").splitlines()]
+    inline = re.findall(r"`(rocking [^`]+)`", re.sub(r"^```.*?^```", "", README, flags=re.DOTALL | re.MULTILINE))
+    parts = [part.replace(".venv/bin/", "") for line in lines for part in line.split("&&")]
+    return [shlex.split(one) for one in (*parts, *inline) if one.strip().startswith("rocking ")]
+
+
+@pytest.mark.parametrize(
+    "words", [words for words in spans() if any(word.startswith("--") for word in words)], ids=" ".join
+)
+def test_an_option_that_it_names_is_one_of_the_command(words):
+    names = words[1:3] if words[1] in ("lessons", "study") else words[1:2]
+    done = rocking(Path.cwd(), ["rocking", *(name for name in names if name.islower()), "--help"], 60)
+    assert done.returncode == 0, done.stderr
+    for option in (word for word in words if word.startswith("--") and word != "--help"):
+        assert re.search(rf"(?<![\w-]){option}(?![\w-])", done.stdout), option
 
 
 @pytest.mark.parametrize("words, seconds", list(cases()))
@@ -83,6 +105,12 @@ def test_its_python_runs(source):
     assert done.returncode == 0, done.stderr
     first, second = map(float, done.stdout.splitlines()[-1].split())
     assert first == pytest.approx(second, rel=1e-3)  # the two solvers' displacement
+
+
+def test_its_scene_file_is_the_one_that_its_first_command_writes(tmp_path):
+    new = next(words for words in commands() if words[1] == "new")
+    assert rocking(tmp_path, new, 60).returncode == 0
+    assert (tmp_path / new[2]).read_text(encoding="utf-8") in blocks("toml")
 
 
 @pytest.mark.parametrize("place", ["README", "analytic.scene_file"])

@@ -13,7 +13,7 @@ from typing import Any
 from jinja2 import Environment
 from markupsafe import Markup, escape
 
-from ..running.age import age
+from ..running.age import age, briefly
 from ..running.files import write_all
 from ..running.plan import Study
 from ..running.provenance import ResultError
@@ -100,6 +100,7 @@ def environment() -> Environment:
         "indexed": lambda text: Markup(indexed(str(escape(unbroken(str(text)))))),
         "glossed": glossed,
         "unbroken": unbroken,
+        "briefly": briefly,
         "number": number,
         "signed": signed,
         "key": lambda who: Markup(key_of(who)),

@@ -260,9 +260,9 @@ def restitution_section(result: Result, given: bool = False) -> Section:
         "Restitution of this block",
         (
             f"Free rocking for {result.settings['seconds']:g} s, released from rest at φ/γ = {starts}, {grounds}. "
-            "Restitution is φ̇⁺/φ̇⁻, from the states at the impact, and is compared with eq. (7). Error and CPU time "
-            f"are those of the same runs. Trusted: error, root mean square, at most {TRUSTED:g}, no failed run and no "
-            f"missed impact; usable: at most {USABLE:g}.",
+            "Restitution is measured by states, φ̇⁺/φ̇⁻ at the impact, without slip, and compared with eq. (7). Error "
+            "and CPU time are those of the same runs. Trusted: error, root mean square, at most "
+            f"{TRUSTED:g}, no failed run and no missed impact; usable: at most {USABLE:g}.",
             *(["The scene gives a restitution; it is left out here, as it rates no engine."] if given else []),
         ),
         (

@@ -14,11 +14,12 @@ from markupsafe import Markup
 
 from engines.statue_range import RANGE, in_words
 
+from ..measuring.statistics import wilson
 from ..running.age import age
 from ..running.files import write_all
 from ..running.provenance import PACKAGES, RESULTS, read_result
 from ..showing import diagrams, modes
-from ..showing.parts import Section, Table
+from ..showing.parts import SIGNS, Section, Table, percent
 from ..showing.wording import TRUSTED, USABLE
 from . import equations
 from .answer import Stored, commit_of, not_to_do, origin_of, own_restitution, setups_of, stored_studies, variants_of
@@ -159,6 +160,8 @@ def _answer(scenes: Result, block: Result | None, stored: list[Stored]) -> dict[
         "not_to_do": not_to_do(setups),
         "decision": setups,
         "headings": {each.heading: where[each.heading] for each in judgements},
+        "signs": SIGNS,
+        "least": percent(wilson(0, 50)[1]),
         "trusted": f"{TRUSTED:g}",
         "usable": f"{USABLE:g}",
         "computed": _computed(scenes),

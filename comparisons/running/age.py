@@ -11,6 +11,7 @@ from .sources import PROJECT, computes, digests_of_all, version_of
 if TYPE_CHECKING:
     from .provenance import Result
 
+OLDER = "older than the code"
 NAMED = 3  # modules that a sentence on a stale result names
 
 
@@ -26,6 +27,13 @@ def age(result: Result) -> str | None:
     found = [(words, "; ".join(filter(None, (_changed(one), _other_versions(one))))) for words, one in judged]
     old = "; ".join(f"{words}{changes}" for words, changes in found if changes)
     return "; ".join(filter(None, (old, last_check(result)))) if old else None
+
+
+def briefly(words: str) -> str:
+    """What `age` says, for a heading: that it is so, not why."""
+    if OLDER not in words:
+        return "computed with other versions"
+    return OLDER if words.startswith(OLDER) else f"in part {OLDER}"
 
 
 def last_check(result: Result) -> str | None:
@@ -57,7 +65,7 @@ def _changed(origin):
         return None
     others = f" and {len(changed) - NAMED} more" if len(changed) > NAMED else ""
     return (
-        f"older than the code: computed on {date_of(origin)} {at_commit(origin['commit'])}; since then changed: "
+        f"{OLDER}: computed on {date_of(origin)} {at_commit(origin['commit'])}; since then changed: "
         f"{', '.join(changed[:NAMED])}{others}"
     )
 

@@ -143,6 +143,17 @@ def mains(variants: Iterable[Row]) -> dict[str, str]:
     return {one["engine"]: one["variant"] for one in reversed([*variants])}
 
 
+def leading(rows: Sequence[Row], variants: Iterable[Row]) -> list[Row]:
+    """Of rows of variants those of the tuned main variants of the engines in question; all of them if there are none.
+
+    variants: those that settings list, as of `mains`.
+    """
+    main = mains(variants)
+    return [
+        row for row in rows if row["tier"] == "tuned" and subject(row) and main[row["engine"]] == row["variant"]
+    ] or [*rows]
+
+
 def kind(row: Row) -> str:
     """Engine and kind of a row's variant: "exudyn, tuned"."""
     return f"{row['engine']}, {row['tier']}"

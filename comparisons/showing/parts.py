@@ -54,6 +54,16 @@ class Figure:
         return max(1, self.svg.count(b'<svg class="chart"'))
 
 
+# Sign of a `Mark` by its level, and what it says: no mark is told by its colour alone.
+SIGNS = {
+    "good": ("✓", "good"),
+    "fair": ("~", "fair"),
+    "bad": ("✗", "bad"),
+    "part": ("?", "inconclusive: too little was tested"),
+    "none": ("○", "not rated"),
+}
+
+
 @dataclass(frozen=True)
 class Mark:
     """What a study says of one solver: in words, and as "good", "fair" or "bad"; "part" where so little was tested that
@@ -66,6 +76,10 @@ class Mark:
     level: str
     note: str = ""
     value: float | None = None
+
+    @property
+    def sign(self) -> str:
+        return SIGNS[self.level][0]
 
 
 RESTITUTION, COST = "restitution", "cost"  # keys of judgements that the report's first screen takes numbers of

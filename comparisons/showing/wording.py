@@ -1,13 +1,14 @@
 """Words that several pages share."""
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from analytic.response import COMPARED, EDGE, UNCOMPARED, Difference
+from engines.comparison import END
 
-from ..measuring.statistics import EQUAL, equality
-from .parts import Mark, percent
+from ..measuring.statistics import EQUAL, equality, wilson
+from .parts import NAME, Column, Mark, percent
 
 # Root mean square error of restitution: measured restitution of stone scatters by some per cent.
 TRUSTED, USABLE = 1e-3, 1e-2
@@ -56,30 +57,98 @@ def trust(rms: float | None, failed: int) -> str:
     return RATINGS[rating(rms, failed)]
 
 
-def tally(rows: Sequence[Mapping[str, Any]], group: str) -> dict[str, Any]:
-    """Of the runs of a variant: how many are judged (not left out), differ from the model, failed ones among them, and
-    whether that is equal, with the interval of the share that differs; runs alike in the column `group` count as one.
+# Ways in which a judged run is not right, or why it is not judged: {key in a `tally`: what they are called in a table}.
+TURNED, FALL, INSTEAD, ELSE = "turned", "fall", "instead", "else"
+ENDS = {
+    TURNED: "overturning missed or added [-]",
+    FALL: "falls at another time [-]",
+    INSTEAD: "stands, slides or rocks instead [-]",
+    ELSE: "differs elsewhere [-]",
+    "failed": "failed [-]",
+    "edge": "left out near an outcome boundary [-]",
+    "out": "left out otherwise [-]",
+}
+
+
+def end_of(row: Mapping[str, Any], turned: Callable[[Mapping[str, Any]], bool]) -> str:
+    """Key of `ENDS` of a run, or "right".
+
+    turned: of a run that differs, whether the block overturns in one of engine and model alone.
+    """
+    if row["class"] == "left out":
+        return "edge" if row["comparable"] == EDGE else "out"
+    if row["class"] != "differs":
+        return row["class"]
+    quantities = set(row["quantities"])
+    if turned(row):
+        return TURNED
+    return INSTEAD if "outcome" in quantities else FALL if quantities & END else ELSE
+
+
+def tally(rows: Sequence[Mapping[str, Any]], group: str, turned: Callable[[Mapping[str, Any]], bool]) -> dict[str, Any]:
+    """Of the runs of a variant: how many are judged (not left out) and differ from the model or fail, the share of
+    those with its interval, what `equality` calls it, and how many end in each way of `ENDS`.
+
+    Runs alike in the column `group` count as one in the interval; groups: how many there are. turned: of `end_of`.
     """
     judged = [row for row in rows if row["class"] != "left out"]
-    differs = [row["class"] != "right" for row in judged]
-    equal, interval = equality(differs, [row[group] for row in judged]) if judged else (None, None)
-    failed = sum(row["class"] == "failed" for row in judged)
-    counts = {"runs": len(judged), "left_out": len(rows) - len(judged), "differing": sum(differs), "failed": failed}
+    differs, groups = [row["class"] != "right" for row in judged], [row[group] for row in judged]
+    equal, interval = equality(differs, groups) if judged else (None, None)
+    ends = [end_of(row, turned) for row in rows]
+    counts = {"runs": len(judged), "groups": len(set(groups)), "differing": sum(differs)}
+    counts |= {way: ends.count(way) for way in ENDS}
     return {**counts, "share": sum(differs) / len(judged) if judged else None, "equal": equal, "interval": interval}
 
 
-def equal_mark(found: Mapping[str, Any]) -> Mark:
-    """What a study says of a `tally`. An engine that is neither shown to be equal nor shown to differ by more than
-    `EQUAL` is fair.
+def ends(rows: Sequence[Mapping[str, Any]]) -> tuple[Column, ...]:
+    """Columns of tables of `tally` rows: one for each way that any of them has, or in which outcomes could change."""
+    always = {TURNED, FALL, "failed", "edge"}
+    return tuple(Column(head, way) for way, head in ENDS.items() if way in always or any(row[way] for row in rows))
+
+
+def ends_in_words(rows: Sequence[Mapping[str, Any]]) -> str:
+    """What `tally` rows of variants found, as a clause: of how many runs each, and how many turn."""
+    judged = [row for row in rows if row["runs"]]
+    if not judged:
+        return "no run is judged"
+    single = len({row["engine"] for row in judged}) == len(judged)
+    found = [
+        f"{row['differing']} of {row['runs']}{' runs' * (not k)} ({row['engine'] if single else NAME.of(row)})"
+        for k, row in enumerate(judged)
+    ]
+    turned, failed = (sum(row[way] for row in judged) for way in (TURNED, "failed"))
+    lost = f"{turned} miss or add an overturning" if turned else "no overturning is missed or added"
+    how = "tuned, " if all(row["tier"] == "tuned" for row in judged) else ""
+    return f"{how}{listed(found)} end otherwise than the model’s{' or fail' * bool(failed)}; {lost}"
+
+
+def least_shown(rows: Iterable[Mapping[str, Any]], what: str) -> str:
+    """What so few groups, `what` they are, can show at best, from `tally` rows: a clause."""
+    sizes = sorted({row["groups"] for row in rows if row["groups"]}, reverse=True)
+    limits = [f"{size}{f' {what}' * (not k)} cannot show less than {percent(wilson(0, size)[1])}"
+              for k, size in enumerate(sizes)]  # fmt: skip
+    return listed(limits)
+
+
+def left_out(row: Mapping[str, Any]) -> str:
+    """How many runs of a `tally` are not judged, and why."""
+    return f"left out: {row['edge']} near an outcome boundary" + (f", {row['out']} otherwise" if row["out"] else "")
+
+
+def equal_mark(found: Mapping[str, Any], *more: str) -> Mark:
+    """What a study says of a `tally`, and more in its note. Good: the upper limit of the interval is below `EQUAL`;
+    bad: the lower is above it; fair: neither, or too few runs to be good, of which more than `EQUAL` differ.
     """
     if not found["runs"]:
         return Mark("no run judged", "part")
     equal, (low, high) = found["equal"], found["interval"]
-    levels = {"yes": "good", "no": "bad" if low > EQUAL else "fair"}
-    words, most = f"{found['differing']} of {found['runs']}", percent(high)
-    note = {"yes": "equal", "no": "not shown to be equal"}.get(equal, "inconclusive: too few motions")
-    note += f"; {found['failed']} failed"
-    return Mark(f"{words} (at most {most})", levels.get(equal, "part"), note, found["share"])
+    limit = f"{100 * EQUAL:g} %"
+    level, note = {
+        "yes": ("good", f"shown to be below {limit}"),
+        "no": ("bad", f"shown to be above {limit}") if low > EQUAL else ("fair", f"not shown to be below {limit}"),
+    }.get(equal) or ("fair" if found["share"] > EQUAL else "part", f"too few motions to show less than {limit}")
+    words = f"{found['differing']} of {found['runs']} (at most {percent(high)})"
+    return Mark(words, level, "; ".join((note, f"{found['failed']} failed", *more)), found["share"])
 
 
 def differing(comparable: str, differences: Iterable[Difference]) -> list[str]:

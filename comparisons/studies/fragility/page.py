@@ -5,13 +5,14 @@ from typing import Any
 import numpy as np
 from scipy.stats import norm
 
-from ...measuring.statistics import EQUAL, TOO_FEW
+from engines.comparison import FALL
+
 from ...running.provenance import Result
 from ...showing.charts import REFERENCE, Axis, Chart, figure
-from ...showing.figures import as_it_comes, beside, ranks, shades, subject
+from ...showing.figures import as_it_comes, beside, leading, ranks, shades, subject
 from ...showing.glance import Glance, counted
 from ...showing.parts import NAME, Column, Head, Judgement, Page, grouped, number, percent, short, table, where
-from ...showing.wording import equal_mark, tally
+from ...showing.wording import ends, ends_in_words, equal_mark, least_shown, left_out, tally
 
 LEVEL = 0.05  # of the test between an engine and the model, and least p of a curve that is shown
 OVERTURNING = "overturning"
@@ -51,15 +52,13 @@ def page(result: Result) -> Page:
     chosen = [row for row in fits if row["measure"] == best.get(row["scene"], "PGA")]
     tones = dict(zip(dict.fromkeys(row["state"] for row in fits), TONES, strict=False))
     found = tallies(result)
-    tiers = {NAME.of(one): one["tier"] for one in result.settings["variants"]}
-    few = [NAME.of(row) for row in where(found, equal=TOO_FEW)]
     return Page(
-        _title(found),
+        f"Many earthquakes: {ends_in_words(leading(found, result.settings['variants']))}",
         (
             "Rocking cannot be predicted point by point over a whole motion, but probabilities can. Engines are "
-            f"compared with the analytic model run by run. “Equal” means that at most {100 * EQUAL:g} % of outcomes "
-            "differ, by the upper limit of the 95 % interval. A failed run counts as differing.",
-            *([f"Inconclusive (too few motions): {'; '.join(few)}."] if few else ()),
+            f"compared with the analytic model run by run. A fall counts as another one if its time is off by more "
+            f"than {percent(FALL, 1)} of a rocking period, or the number of impacts before it is another. A failed run "
+            f"counts as differing. Even without a difference, {least_shown(found, 'motions')} (upper 95 % limit).",
         ),
         first=(
             beside(
@@ -70,19 +69,17 @@ def page(result: Result) -> Page:
                     "intervals, over the measure of least dispersion for overturning. A lognormal curve is drawn where "
                     f"it fits (p ≥ {LEVEL:g}). Small marks: overturning.",
                 ),
-                _differing([{**row, "tier": tiers[NAME.of(row)]} for row in found]),
+                _differing(found),
             ),
             table(
-                "All scenes together: runs with another outcome than the analytic model's or a fall at another time, "
-                "with 95 % Wilson intervals by motion",
+                "All scenes together: runs by how they end beside the analytic model’s, with 95 % Wilson intervals by "
+                "motion",
                 found,
                 NAME,
                 Column("runs judged [-]", "runs"),
-                Column("left out [-]", "left_out"),
-                Column("that differ [-]", "differing"),
-                Column("of these failed [-]", "failed"),
-                Column("share that differs", "share", percent=True, within="interval"),
-                Column("equal", "equal"),
+                Column("that differ or fail [-]", "differing"),
+                *ends(found),
+                Column("share that differs or fails", "share", percent=True, within="interval"),
             ),
         ),
         more=(
@@ -158,17 +155,21 @@ def page(result: Result) -> Page:
 
 
 def tallies(result: Result) -> list[dict[str, Any]]:
-    """A row for each variant: its runs of all scenes, those that end otherwise than the model's or failed, their share
-    with its interval, runs under one motion taken as one, and whether that is equal."""
+    """A row for each variant: the `tally` of its runs of all scenes, runs under one motion taken as one."""
+    tiers = {NAME.of(one): one["tier"] for one in result.settings["variants"]}
+
+    def turned(row):
+        return row["overturns"] != row["model_overturns"]
+
     return [
-        {"engine": engine, "variant": variant, **tally(runs, "seed")}
+        {"engine": engine, "variant": variant, "tier": tiers[NAME.of(runs[0])], **tally(runs, "seed", turned)}
         for (engine, variant), runs in grouped(where(result.rows, part="run"), "engine", "variant").items()
     ]
 
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
-    """Whether the outcomes are equal to the model's, by (engine, variant)."""
-    marks = {(row["engine"], row["variant"]): equal_mark(row) for row in tallies(result) if row["runs"]}
+    """How many outcomes differ from the model's, by (engine, variant)."""
+    marks = {(row["engine"], row["variant"]): equal_mark(row, left_out(row)) for row in tallies(result) if row["runs"]}
     return (Judgement("outcomes that differ under synthetic motions", marks),)
 
 
@@ -199,13 +200,6 @@ def _differing(found):
         panel=lambda row: "all scenes: engines",
         opened=as_it_comes,
     )
-
-
-def _title(found):
-    words = [row["equal"] for row in found]
-    title = f"Many earthquakes: {words.count('yes')} of {len(found)} engine variants are shown to differ in at "
-    title += f"most {100 * EQUAL:g} % of outcomes"
-    return title + (f"; {words.count(TOO_FEW)} inconclusive (too few motions)" if TOO_FEW in words else "")
 
 
 def _fits(row):

@@ -1,5 +1,6 @@
 """What is shown of the overturning study."""
 
+import math
 import statistics
 from functools import partial
 
@@ -56,7 +57,8 @@ def page(result: Result) -> Page:
             "A pulse overturns a block above some amplitude. At larger amplitudes there may be a safe gap: the first "
             "impact dissipates so much energy that the block does not overturn. Engines are rated by the shift of "
             "these boundaries, as long as the analytic model keeps the block pressed on its base. An outcome nearer "
-            "to a boundary than the engine's shift is uncertain.",
+            "to a boundary than the engine's shift is uncertain. Only whether the block overturns is compared, not "
+            "when it falls.",
             *_under_jumps(result),
         ),
         first=(
@@ -74,7 +76,23 @@ def page(result: Result) -> Page:
                 LARGEST,
                 Column("where N < 0: found [-]", "{beyond_found} of {beyond}"),
                 Column("largest there [%]", lambda row: row["beyond_largest"] and 100 * row["beyond_largest"]),
-                Column("outcomes that differ [-]", "{wrong} of {outcomes}"),
+                Column(
+                    "overturning missed or added, of outcomes [-]",
+                    lambda row: f"{row['wrong']} of {row['outcomes']}" if row["outcomes"] else "none compared",
+                ),
+            ),
+            table(
+                f"Coarse scan: of {_scanned(s)} pulses those further than {band} from every boundary, with the block "
+                "pressed on its base; the others are left out. 95 % Wilson intervals, pulses of one shape and "
+                "frequency on one ground as one",
+                where(result.rows, part="scan"),
+                NAME,
+                Column("runs judged [-]", "runs"),
+                Column("left out [-]", lambda row: _scanned(s) - row["runs"]),
+                Column("overturning missed [-]", "only_a"),
+                Column("overturning added [-]", "only_b"),
+                Column("failed [-]", "failed"),
+                Column("share that differs or fails", _share, percent=True, within="interval"),
             ),
         ),
         more=(
@@ -105,7 +123,7 @@ def page(result: Result) -> Page:
             Head("Outcomes between the boundaries"),
             _confusions(result, band),
             table(
-                f"Outcomes that differ further than {band} from every boundary",
+                f"Overturning missed or added further than {band} from every boundary",
                 where(result.rows, part="disagreement"),
                 NAME,
                 GROUND,
@@ -169,6 +187,15 @@ def glance(result: Result) -> Glance:
             for row in where(result.rows, part="scan")
         )
     )  # fmt: skip
+
+
+def _scanned(settings):
+    """How many pulses the coarse scan has."""
+    return math.prod(len(settings[key]) for key in ("grounds", "shapes", "frequencies", "scan"))
+
+
+def _share(row):
+    return (row["only_a"] + row["only_b"] + row["failed"]) / row["runs"]
 
 
 def _rated(result):

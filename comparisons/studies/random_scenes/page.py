@@ -4,11 +4,12 @@ from typing import Any
 
 from analytic.response import EDGE
 
-from ...measuring.statistics import CLASSES, wilson
+from ...measuring.statistics import wilson
 from ...running.provenance import Result
 from ...showing.charts import Axis
 from ...showing.figures import as_it_comes, ranks
 from ...showing.parts import NAME, Column, Judgement, Mark, Page, grouped, table, typeset, where
+from ...showing.wording import ends, left_out, tally
 
 TRUSTED = 0.95  # share of right runs, of those not left out
 LEAST = 1e-3  # that the figure's axis begins at
@@ -43,7 +44,8 @@ def page(result: Result) -> Page:
                 counts,
                 NAME,
                 Column("kind", "tier"),
-                *(Column(name, name) for name in CLASSES),
+                Column("right [-]", "right"),
+                *ends(counts),
                 Column("right, of those not left out", "share", percent=True, within="share_within"),
                 Column("near an outcome boundary, and beyond it", "{beyond} of {edge}"),
             ),
@@ -74,31 +76,36 @@ def page(result: Result) -> Page:
 
 
 def tallies(result: Result) -> list[dict[str, Any]]:
-    """A row for each variant: its runs by class, those judged (not left out), the shares of right and of wrong ones
-    with their 95 % intervals; None where none is judged."""
+    """A row for each variant: the `tally` of its runs, how many are right, the shares of right and of wrong ones with
+    their 95 % intervals; None where none is judged."""
     found = []
     for (engine, variant), rows in grouped(result.rows, "engine", "variant").items():
-        counts = {name: len(where(rows, **{"class": name})) for name in CLASSES}
-        judged = len(rows) - counts["left out"]
+        counts = tally(rows, "index", _turned)
+        judged, wrong = counts["runs"], counts["differing"]
         edge = where(rows, comparable=EDGE)
         beyond = [row for row in edge if row.get("failure") or row.get("differences")]
-        wrong = judged - counts["right"]
+        right = judged - wrong
         found.append(
             {
                 "engine": engine,
                 "variant": variant,
                 "tier": rows[0]["tier"],
                 **counts,
+                "right": right,
                 "judged": judged,
-                "edge": len(edge),
                 "beyond": len(beyond),
-                "share": counts["right"] / judged if judged else None,
-                "share_within": wilson(counts["right"], judged) if judged else None,
-                "wrong": wrong / judged if judged else None,
+                "share": right / judged if judged else None,
+                "share_within": wilson(right, judged) if judged else None,
+                "wrong": counts["share"],
                 "wrong_within": wilson(wrong, judged) if judged else None,
             }
         )
     return found
+
+
+def _turned(row):
+    """Whether the sentence on the outcome has one that overturns and one that does not: no row keeps the model's."""
+    return any(words.count("overturns") == 1 for words in row["differences"] if words.startswith("the block "))
 
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
@@ -107,6 +114,7 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
         if row["judged"]:
             level = "good" if row["share"] >= TRUSTED else "fair" if row["share"] >= 0.5 else "bad"
             words = f"{row['right']} of {row['judged']}"
-            wrong = f"{row['differs']} differ, {row['failed']} failed"
-            marks[row["engine"], row["variant"]] = Mark(words, level, wrong, row["share"])
+            note = f"{row['differing'] - row['failed']} differ, {row['failed']} failed"
+            note += f"; {left_out(row)}"
+            marks[row["engine"], row["variant"]] = Mark(words, level, note, row["share"])
     return (Judgement("random scenes right", marks),)

@@ -1,4 +1,4 @@
-"""What is shown of recorded motions: whether outcomes are equal, and every run that is another."""
+"""What is shown of recorded motions: how many runs end otherwise, in which way, and every one of them."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 
 from analytic.records.fema import PREFIX
+from engines.comparison import FALL
 
-from ...measuring.statistics import TOO_FEW
 from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure, key_of
-from ...showing.figures import as_it_comes, kind, mains, subject
+from ...showing.figures import as_it_comes, kind, leading, mains, subject
 from ...showing.glance import Glance, counted
 from ...showing.parts import (
     NAME,
@@ -27,10 +27,11 @@ from ...showing.parts import (
     typeset,
     where,
 )
-from ...showing.wording import NOT_COMPARED, equal_mark, tally
+from ...showing.wording import NOT_COMPARED, ends, ends_in_words, equal_mark, least_shown, left_out, tally
 from .study import ERRORS
 
 MANY = 0.95  # share of the runs whose error a quantile tells
+FALLS = "overturns"
 BOTH = "both"  # of the column "configuration": free-standing and isolated together
 # tilt over slenderness: the axes begin, "overturns" stands, and the model's axis and the engine's end, there "failed"
 LEAST, FALLEN, MOST, FAILED = 0.01, 4.0, 6.0, 10.0
@@ -46,14 +47,8 @@ WORDS = {
 
 RECORD = Column("record", lambda row: f"{row['record'].removeprefix(PREFIX)}/{row['component']}")
 CONFIGURATION = Column("configuration", "configuration")
-COUNTS = (
-    Column("runs judged", "runs"),
-    Column("that differ", "differing"),
-    Column("of these failed", "failed"),
-    Column("left out", "left_out"),
-    Column("share that differs", "share", percent=True, within="interval"),
-    Column("equal", lambda row: row["equal"] or "–"),
-)
+JUDGED, DIFFERING = Column("runs judged [-]", "runs"), Column("that differ or fail [-]", "differing")
+SHARE = Column("share that differs or fails", "share", percent=True, within="interval")
 
 
 def page(result: Result) -> Page:
@@ -62,24 +57,26 @@ def page(result: Result) -> Page:
     runs = where(result.rows, part="run")
     summaries = [row for members in grouped(runs, "engine", "variant").values() for row in summary(members)]
     both = where(summaries, configuration=BOTH)
-    equal = f"{100 * result.settings['equal']:g} %"
+    variants = result.settings["variants"]
+    counts = (JUDGED, DIFFERING, *ends(summaries), SHARE)
     return Page(
-        _title(both, equal),
+        f"Recorded motions: {ends_in_words(leading(both, variants))}",
         (
-            "The outcome is whether the block stands, rocks or overturns, and in which swing it falls. “Equal” means "
-            f"that the upper limit of the 95 % interval is below {equal}. A failed run counts as differing. Runs under "
-            "one record are not independent, so the interval counts records. Inconclusive: too few records to show "
-            "equality even without a difference.",
+            "Compared are whether the block stands, rocks or overturns, and when it falls: a fall counts as another "
+            f"one if its time is off by more than {percent(FALL, 1)} of a rocking period, or the number of impacts "
+            "before it is another. A failed run counts as differing.",
+            f"Runs under one record are not independent, so the interval counts records. Even without a difference, "
+            f"{least_shown(both, 'records')} (upper 95 % limit).",
         ),
         first=(
-            _tilts(runs, mains(result.settings["variants"])),
+            _tilts(runs, mains(variants)),
             table(
-                "Free-standing and isolated together: runs with another outcome than the analytic model or a fall at "
-                f"another time, with 95 % Wilson intervals by record; equal: at most {equal} differ",
+                "Free-standing and isolated together: runs by how they end beside the analytic model’s, with 95 % "
+                "Wilson intervals by record",
                 both,
                 NAME,
                 Column("kind", "tier"),
-                *COUNTS,
+                *counts,
             ),
         ),
         more=(
@@ -88,7 +85,7 @@ def page(result: Result) -> Page:
                 [row for row in summaries if row["configuration"] != BOTH],
                 NAME,
                 CONFIGURATION,
-                *COUNTS,
+                *counts,
             ),
             table(
                 "Relative errors of peaks, run by run: median, largest, number of runs, 95 % quantile; up to the "
@@ -126,11 +123,14 @@ def page(result: Result) -> Page:
 
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
-    """Whether the outcomes are equal to the model's, and the errors of the peaks, by (engine, variant)."""
+    """How many outcomes differ from the model's, and the errors of the peaks, by (engine, variant)."""
     runs = grouped(where(result.rows, part="run"), "engine", "variant")
     rows = {pair: where(summary(members), configuration=BOTH)[0] for pair, members in runs.items()}
     return (
-        Judgement("outcomes that differ under recorded motions", {name: equal_mark(row) for name, row in rows.items()}),
+        Judgement(
+            "outcomes that differ under recorded motions",
+            {name: equal_mark(row, left_out(row)) for name, row in rows.items()},
+        ),
         *(
             Judgement(
                 f"{words} under recorded motions: error, median",
@@ -164,7 +164,11 @@ def summary(rows: Sequence[dict[str, Any]]) -> Iterator[dict[str, Any]]:
         mine = [row for row in rows if configuration in (row["configuration"], BOTH)]
         errors = {name: _spread([row.get(name) for row in mine if row["class"] != "left out"]) for name in ERRORS}
         named = {**{key: rows[0][key] for key in ("engine", "variant", "tier")}, "configuration": configuration}
-        yield named | tally(mine, "record") | errors
+        yield named | tally(mine, "record", _turned) | errors
+
+
+def _turned(row):
+    return (row["outcome"] == FALLS) != (row["model_outcome"] == FALLS)
 
 
 def _spread(errors: Sequence[float | None]) -> list[float | int] | None:
@@ -179,14 +183,6 @@ def _peak_mark(errors):
     median, most, count, high = errors
     note = f"{count} runs, {100 * MANY:g} % of them below {percent(high)}, worst {percent(most)}"
     return Mark(percent(median), "none", note, median)
-
-
-def _title(both: list[dict[str, Any]], equal: str) -> str:
-    words = [row["equal"] for row in both]
-    title = f"Recorded motions: {words.count('yes')} of {len(words)} engine variants are shown to differ in at most "
-    title += f"{equal} of outcomes"
-    few = words.count(TOO_FEW)
-    return title + (f"; {few} inconclusive (too few records)" if few else "")
 
 
 def _tilts(runs: list[dict[str, Any]], main: Mapping[str, str]) -> Figure | None:
@@ -233,7 +229,7 @@ def _tilts(runs: list[dict[str, Any]], main: Mapping[str, str]) -> Figure | None
 
 
 def _place(row, side):
-    at = {"overturns": FALLEN, "failed": FAILED}.get(row[f"{side}outcome"])
+    at = {FALLS: FALLEN, "failed": FAILED}.get(row[f"{side}outcome"])
     return at or max(row[f"{side}tilt"], LEAST)
 
 

@@ -29,7 +29,7 @@ def causes(result: Result, variants: Mapping[str, Row]) -> Iterator[Figure | Tab
         joined=False,
     )
     yield table(
-        "Step phase: a sawtooth of the impact's place within the step, fitted to the error",
+        "Step phase: a sawtooth of the impact's place within the step, fitted to the error by swings",
         phases,
         NAME,
         Column("step [ms]", lambda row: 1e3 * row["step"]),

@@ -6,9 +6,10 @@ FLOOR = 1e-9  # errors below are drawn here
 
 ERROR = Column("error of restitution by swings, rms [-]", "rms")
 DRAWN_ERROR = Column(ERROR.head, lambda row: row["rms"] and max(row["rms"], FLOOR))
-MEAN, WORST = Column("mean error [-]", "bias"), Column("worst impact [-]", "worst")
+MEAN, WORST = Column("mean error by swings [-]", "bias"), Column("worst impact by swings [-]", "worst")
 JUMP = Column("base velocity jump, relative error, rms [-]", "jump_rms")
-STATE = Column("error of restitution at the impact, rms [-]", "rms_state")
+STATE = Column("error of restitution by states, rms [-]", "rms_state")
+WORST_STATE = Column("worst impact by states [-]", "worst_state")
 WORST_JUMP = Column("worst base velocity jump [-]", "jump_worst")
 LATE = Column("impact times, relative, rms [-]", "time_rms")
 LOST = Column("missed impacts [-]", "lost")

@@ -6,7 +6,7 @@ from itertools import product
 from engines.statue_range import in_words
 
 from ...running.provenance import Result
-from ...showing.charts import Axis, Chart, broad, figure, room
+from ...showing.charts import REFERENCE, Axis, Chart, broad, figure, room
 from ...showing.figures import as_it_comes, kind, subject
 from ...showing.parts import NAME as ENGINE
 from ...showing.parts import Column, Head, Judgement, Mark, Page, grouped, short, table, where
@@ -47,7 +47,7 @@ TOLERANCE = Column("tolerance", "tolerance", digits=None)
 
 def page(result: Result) -> Page:
     cases, measures = result.settings["cases"], result.settings["measures"]
-    cells, variants = _cells(result), result.settings["variants"]
+    cells, variants = _cells(result), _judged(result)
     within, apart = _parted(cases)
     chosen = [one for one in variants if one["best"] or subject(one) and as_it_comes(one)]
     counts = sorted(_counts(result, cells), key=lambda row: -row[RIGHT])
@@ -58,6 +58,7 @@ def page(result: Result) -> Page:
             "Real integrators have failed on these scenes. A result is right if every measure is within its tolerance; "
             "otherwise it differs. It fails if the solver gives up, exceeds its time limit or moves the block in a "
             "physically impossible way.",
+            _reference(result),
             _most(where(counts, kind="stepping")),
             *(
                 [
@@ -142,11 +143,10 @@ def page(result: Result) -> Page:
             ),
         ),
         how=(
-            "Judged by the analytic kernel, its independent second implementation and, for free rocking, the closed "
-            "form. With friction the model judges, and is judged by Moreau’s time stepping, which shares no code with "
-            "it. Trajectories are compared up to each scene’s sensitivity horizon and unstable point; beyond, only "
-            "outcomes that a change of 10⁻⁴ does not alter. Energy drift and gain are what exceeds the same measure "
-            "of the reference.",
+            "The reference itself is judged by its independent second implementation and, for free rocking, by the "
+            "closed form; with friction by Moreau’s time stepping, which shares no code with it. Trajectories are "
+            "compared up to each scene’s sensitivity horizon and unstable point; beyond, only outcomes that a change "
+            "of 10⁻⁴ does not alter. Energy drift and gain are what exceeds the same measure of the reference.",
             "Where a result is not right, finer levels are run in turn. Scenes of ten minutes are run by the engines’ "
             f"main variants only. A run may take {result.settings['time_limit']:g} s.",
             f"The range for which engines are tested: {in_words()}.",
@@ -182,6 +182,21 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
     return (Judgement("hard cases right", marks),)
 
 
+def _judged(result):
+    """The variants that have a row: all but the reference, which judges them."""
+    return [one for one in result.settings["variants"] if one["engine"] != REFERENCE]
+
+
+def _reference(result):
+    """Who judges, and how the judge itself fares with others."""
+    own = where(result.rows, part=DEFAULT, engine=REFERENCE)
+    right = len(where(own, result=RIGHT))
+    return (
+        "The reference is the analytic model. It judges all others, and so has no row of its own. Its own judges, see "
+        f"the method, find it right in {right} of {len(own)} cases."
+    )
+
+
 def _cells(result):
     """{(case, name): row at the default level, its measure farthest outside, and the result of finer levels}.
 
@@ -192,10 +207,12 @@ def _cells(result):
         if case["oracle"] == SLIDING and not may_slide(one["engine"], one["applies_impact"])
         else NOT_RUN
         for name, case in result.settings["cases"].items()
-        for one in result.settings["variants"]
+        for one in _judged(result)
     }
     finer = {(row["case"], NAME.of(row)): row for row in where(result.rows, part=FINER)}
     for row in where(result.rows, part=DEFAULT):
+        if row["engine"] == REFERENCE:
+            continue
         key = row["case"], NAME.of(row)
         cells[key] = {**row, **_farthest(row, result.settings["measures"]), "remedy": _remedy(row, finer.get(key))}
     return cells
@@ -229,7 +246,7 @@ def _counts(result, cells):
     """Each variant with the numbers of its results, of runs, and of finer levels run and right, inside the range; and,
     in words, of its right results outside."""
     _, apart = _parted(result.settings["cases"])
-    for variant in result.settings["variants"]:
+    for variant in _judged(result):
         ran = {case: cell for (case, name), cell in cells.items() if name == NAME.of(variant) and "engine" in cell}
         beyond = [cell for case, cell in ran.items() if case in apart]
         rows = [cell for case, cell in ran.items() if case not in apart]
@@ -270,8 +287,8 @@ def _most(counts):
     names = " and ".join(NAME.of(row) for row in counts if row[RIGHT] == most)
     run, right, tried, cured = (sum(row[key] for row in counts) for key in ("run", RIGHT, "tried", FINER))
     return (
-        f"Among time-stepping solvers, most cases are right in {names}: {most}. Of their {run - right} results that "
-        f"are not right, {tried} were run again at finer levels, and {cured} became right."
+        f"Among time-stepping solvers, most cases are right in {names}: {most}. Of the {run - right} results of all of "
+        f"them that are not right, {tried} were run again at finer levels, and {cured} became right."
     )
 
 
@@ -315,7 +332,7 @@ def _halves(cells, cases, variants):
             Axis("", -0.5, len(names) - 0.5, ticks=tuple(enumerate(names.values()))),
             Axis("", len(half) - 0.5, -0.5, ticks=tuple(enumerate(map(_readable, half)))),
             f"Right of {len(half)} cases: {', '.join(f'{name} {count}' for name, count in right.items())}.",
-            left=168,
+            left=room(map(_readable, half), 168),
             right=4,
             foot=foot,
             height=16 + foot + 19 * len(half),
@@ -345,8 +362,8 @@ def _short(variant):
 def _judge(case):
     """Who judges a case, and its own tolerances."""
     until = case["twin_until"]
-    known = {FREE: "closed form", SLIDING: "model, and Moreau’s time stepping"}
-    words = known.get(case["oracle"], f"kernel and {TWIN}")
+    known = {FREE: "closed form", SLIDING: "Moreau’s time stepping"}
+    words = f"reference, itself by {known.get(case['oracle'], f'the {TWIN}')}"
     words += "" if until is None else f" (this one up to {until:g} s; beyond, the energy ledger)"
     own = [
         f"{name} {short(limit)} for {kind} solvers: {reason}"

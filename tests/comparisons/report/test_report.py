@@ -150,7 +150,7 @@ def test_every_number_of_the_first_table_is_that_of_a_study(copied, studies):
             if column.startswith(f"{engine}, ") and column.split(" ")[2].rstrip(":") == variant
         )
         rows = where(summaries, engine=engine, variant=variant)
-        cell = found["restitution at impacts, free rocking: error, rms", column]
+        cell = found["restitution by states, free rocking without slip: error, rms", column]
         assert number_in(cell.partition(" (")[0]) == pytest.approx(max(row["rms_state"] for row in rows), rel=0.06)
         for key, words in (("failed", "failed"), ("lost", "missed")):
             count = sum(row[key] for row in rows)

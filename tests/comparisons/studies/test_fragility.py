@@ -10,6 +10,7 @@ from answered import answered, by_model, stored
 
 from analytic import simulate
 from analytic.linear_oscillator import displacement_spectrum
+from analytic.response import EDGE
 from comparisons.measuring.statistics import fit_fragility
 from comparisons.running.plan import Request
 from comparisons.showing.parts import NAME, where
@@ -108,7 +109,11 @@ def test_an_engine_that_is_the_model_does_not_differ_and_the_page_says_what_woul
     runs = where(equal.rows, part="run", engine="exudyn", variant="compliant-corners")
     runs = [row for row in runs if row["class"] != "left out"]  # three scenes on an edge, or where N falls to 0
     assert len(runs) == 107 and mark.words.startswith("2 of 107 (at most 6.6 %)")  # Wilson; a failed run differs
-    assert (mark.level, mark.note) == ("fair", "not shown to be equal; 2 failed")
+    near = sum(row["comparable"] == EDGE for row in where(equal.rows, part="run", engine="exudyn"))
+    assert near < 6 and mark.level == "fair"
+    assert re.fullmatch(
+        r"not shown to be below 5 %; 2 failed; left out: \d near an outcome boundary(, \d otherwise)?", mark.note
+    )
     # two of ten fail in the tier "defaults": few as they are, they differ by more than 5 %
     assert STUDY.judgements(equal)[0].marks["pybullet", "first-script"].level == "bad"
 

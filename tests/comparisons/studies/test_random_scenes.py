@@ -12,6 +12,7 @@ from comparisons.running.plan import Request
 from comparisons.running.provenance import RESULTS, read_result
 from comparisons.running.sweep import Row
 from comparisons.showing.parts import NAME
+from comparisons.showing.wording import ENDS, TURNED
 from comparisons.studies import get_study
 from comparisons.studies.random_scenes.study import plan, random_scene
 from engines import ENGINES
@@ -65,18 +66,31 @@ def test_tables_and_marks_count_the_stored_rows(result):
         classes.setdefault(NAME.of(row), Counter())[row["class"]] += 1
     table, marks = study.page(result).opening().tables[0], study.judgements(result)[0].marks
     assert study.page(result).whole().tables[0] == table and [row[0] for row in table.rows] == list(classes)
-    for name, _, *counts, share, edge in table.rows:
+    for row in table.rows:
+        name, share, edge = row[0], *row[-2:]
+        counts = {head: int(cell) for head, cell in zip(table.columns[2:-2], row[2:-2], strict=True)}
         mine = [row for row in result.rows if NAME.of(row) == name and row["comparable"] == EDGE]
         beyond = sum(bool(row.get("failure") or row.get("differences")) for row in mine)
         assert edge == f"{beyond} of {len(mine)}" and all(row["class"] == "left out" for row in mine)
         right, differs, failed, left_out = [classes[name][word] for word in ("right", "differs", "failed", "left out")]
-        assert [int(count) for count in counts] == [right, differs, failed, left_out]
+        assert sum(counts.values()) == right + differs + failed + left_out
+        assert (counts.pop("right [-]"), counts.pop("failed [-]")) == (right, failed)
+        assert sum(count for head, count in counts.items() if head.startswith("left out")) == left_out
+        assert counts[ENDS["edge"]] == len(mine) and counts[ENDS[TURNED]] == turned(result, name)
         assert number_in(share) == pytest.approx(100 * right / (right + differs + failed), rel=0.06)
         mark = marks[tuple(name.split(", "))]
         assert (mark.words, mark.note) == (
             f"{right} of {right + differs + failed}",
-            f"{differs} differ, {failed} failed",
+            f"{differs} differ, {failed} failed; left out: {len(mine)} near an outcome boundary"
+            + f", {left_out - len(mine)} otherwise" * (left_out > len(mine)),
         )
+
+
+def turned(result, name):
+    """Runs of a variant with a sentence on the outcome in which one of engine and model overturns."""
+    rows = [row for row in result.rows if NAME.of(row) == name and row["class"] == "differs"]
+    told = [words.split(", in the analytic model it ") for row in rows for words in row["differences"]]
+    return sum(len(two) == 2 and (two[0] == "the block overturns") != (two[1] == "overturns") for two in told)
 
 
 def test_every_run_that_failed_is_evidence_and_every_tuned_one_that_differs_is_named(result):

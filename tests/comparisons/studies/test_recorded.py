@@ -19,6 +19,7 @@ from comparisons.running.plan import Request
 from comparisons.running.provenance import read_result, write_result
 from comparisons.running.sweep import Row
 from comparisons.showing.parts import where
+from comparisons.showing.wording import ENDS, TURNED
 from comparisons.studies import get_study
 from comparisons.studies.fragility.study import peak_velocity
 from comparisons.studies.recorded.page import summary
@@ -176,6 +177,7 @@ def test_errors_are_those_of_peaks_up_to_a_time(folder):
 
 def test_a_summary_counts_by_record():
     usual = {"engine": "e", "variant": "v", "tier": "tuned", "configuration": "isolated", "tilt_error": -0.1}
+    usual |= {"outcome": "rocks", "model_outcome": "overturns", "quantities": ["outcome"], "comparable": EDGE}
     rows = [
         {**usual, "record": str(k // 2), "class": word}
         for k, word in enumerate(["differs", "failed", *["right"] * 97, "left out"])
@@ -184,7 +186,8 @@ def test_a_summary_counts_by_record():
     assert (empty["runs"], empty["equal"], empty["interval"]) == (0, None, None)
     assert [row["configuration"] for row in found] == ["isolated", "both"]
     for row in found:
-        assert (row["runs"], row["differing"], row["failed"], row["left_out"]) == (99, 2, 1, 1)
+        assert (row["runs"], row["groups"], row["differing"]) == (99, 50, 2)
+        assert [row[way] for way in ENDS] == [1, 0, 0, 0, 1, 1, 0]
         word, interval = equality([True] * 2 + [False] * 97, [str(k // 2) for k in range(99)])
         assert (row["equal"], row["interval"]) == (word, interval)
         assert row["tilt_error"] == [pytest.approx(0.1), pytest.approx(0.1), 99, pytest.approx(0.1)]
@@ -196,15 +199,21 @@ def test_the_page_counts_the_rows_and_names_every_run_that_differs(found, tmp_pa
     study, result = get_study("recorded"), stored(tmp_path, "recorded", found)
     page, opening = study.page(result).whole(), study.page(result).opening()
     assert len(opening.figures) == 1 and 20 < len(opening.title) < 200
-    runs = where(result.rows, part="run")
-    for name, _, judged, differ, failed, left, share, equal in opening.tables[0].rows:
+    runs, counts = where(result.rows, part="run"), opening.tables[0]
+    for row in counts.rows:
+        (name, _, judged, differ), share = row[:4], row[-1]
+        ways = {head: int(cell) for head, cell in zip(counts.columns, row, strict=True) if head in ENDS.values()}
         mine = Counter(row["class"] for row in runs if name == f"{row['engine']}, {row['variant']}")
-        assert [int(judged), int(left)] == [mine.total() - mine["left out"], mine["left out"]]
-        assert [int(differ), int(failed)] == [mine["differs"] + mine["failed"], mine["failed"]] and failed == "1"
+        assert int(judged) == mine.total() - mine["left out"]
+        assert (
+            sum(ways[head] for way, head in ENDS.items() if way in ("edge", "out") and head in ways) == mine["left out"]
+        )
+        assert int(differ) == mine["differs"] + mine["failed"] and ways[ENDS["failed"]] == mine["failed"] == 1
+        assert ways[ENDS[TURNED]] == mine["differs"] == 1  # the toppled one
         assert number_in(share) == pytest.approx(100 * int(differ) / int(judged), rel=0.06)
         mark = study.judgements(result)[0].marks[tuple(name.split(", "))]
         assert mark.words.startswith(f"{differ} of {judged} (at most ")
-        assert (mark.level, equal) in (("bad", "no"), ("part", "inconclusive (too few runs)"))
+        assert mark.level in ("bad", "fair") and f"; left out: {ways[ENDS['edge']]} near an" in mark.note
     wrong = [row for row in runs if row["class"] in ("differs", "failed")]
     assert len(page.tables[-1].rows) == len(wrong) and len(page.evidence) == sum(
         row["class"] == "failed" for row in wrong

@@ -9,9 +9,9 @@ from page_numbers import number_in
 from analytic import simulate
 from analytic.rocking import restitution
 from comparisons.report.detail import write_study
-from comparisons.running.provenance import read_result
+from comparisons.running.provenance import RESULTS, read_result
 from comparisons.running.study import compute
-from comparisons.showing.parts import Figure, Table, where
+from comparisons.showing.parts import RESTITUTION, Figure, Table, number, where
 from comparisons.studies import get_study
 from comparisons.studies.restitution.cases import (
     CARYATID_BASE,
@@ -135,3 +135,19 @@ def test_its_own_page_needs_no_other_file(small, tmp_path):
     text = file.read_text()
     assert file == tmp_path / "shown" / "restitution.html" and "<style>" in text and "pybullet, impact-aware" in text
     assert not [link for link in ("src=", "href=", "<link", "@import") if link in text]
+
+
+def test_the_error_of_the_first_screen_is_the_one_by_states_in_the_section():
+    """Of both grounds the worse, as the stored rows have it; the other measure has its own name and column."""
+    result, study = read_result(RESULTS / "restitution.json"), get_study("restitution")
+    opening = study.page(result).opening()
+    (table,) = opening.tables
+    marks = next(one for one in study.judgements(result) if one.key == RESTITUTION).marks
+    assert "without slip" in opening.title and "by states" in opening.figures[0].caption
+    for row in table.rows:
+        cells, pair = dict(zip(table.columns, row, strict=True)), tuple(row[0].split(", "))
+        summaries = where(result.rows, scope="all", engine=pair[0], variant=pair[1])
+        for head, key in (("by states", "rms_state"), ("by swings", "rms")):
+            worst = max(one[key] for one in summaries)
+            assert cells[f"error of restitution {head}, rms [-]"] == number(worst, 2)
+        assert marks[pair].words.partition(" (")[0] == cells["error of restitution by states, rms [-]"]

@@ -1,6 +1,7 @@
 """The study of sliding: what is drawn, which fate a scene has, and that tables and titles count the rows."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -10,7 +11,8 @@ from sliding_scenes import LOST, SAVED, SLIDES, scene_of
 from analytic import SceneError, Start, simulate, synthetic_motion
 from comparisons.running.cases import Case
 from comparisons.running.plan import Request
-from comparisons.showing.parts import NAME, where
+from comparisons.running.provenance import RESULTS, read_result
+from comparisons.showing.parts import NAME, number, percent, where
 from comparisons.studies import get_study
 from comparisons.studies.sliding import study
 from comparisons.studies.sliding.page import SHARES, judged, summed, tallies
@@ -169,7 +171,7 @@ def test_failed_runs_are_shown_apart_and_counted_as_wrong(tmp_path):
     page, known = STUDY.page(result), {NAME.of(row): row for row in tallies(result)}
     for name in NAMES:
         row = known[f"{name}, {get_engine(name).default_variant}"]
-        assert row["judged"] > 0 and row["left_out"] == len(where(judged_scenes(result), judged=False))
+        assert row["judged"] > 0 and row["edge"] + row["out"] == len(where(judged_scenes(result), judged=False))
         assert (row["right"], row["alike"], row["failed"]) == (
             (0, 0, row["judged"]) if name == second else (row["judged"], row["judged"], 0)
         )
@@ -183,6 +185,24 @@ def test_failed_runs_are_shown_apart_and_counted_as_wrong(tmp_path):
     (judgement,) = STUDY.judgements(result)
     mark = judgement.marks[second, get_engine(second).default_variant]
     assert (mark.words, mark.level) == (f"0 of {row['judged']}", "bad") and "failed" in mark.note
+
+
+def test_what_is_right_as_a_whole_in_its_outcome_and_at_slipping_impacts_is_told_apart():
+    """From stored rows, counted here by hand: three counts that differ, each with what it counts."""
+    result = read_result(RESULTS / "sliding.json")
+    _, counted, errors = STUDY.page(result).opening().text
+    for name in (name for name, engine in ENGINES.items() if engine.subject):
+        runs = where(result.rows, part="run", engine=name, variant=get_engine(name).default_variant)
+        runs = [row for row in runs if row["class"] != "left out"]
+        assert f"{sum(row['class'] == 'right' for row in runs)} of {len(runs)} ({name})" in counted
+        other = sum("failure" in row or "outcome" in row["quantities"] for row in runs)
+        assert re.search(rf"another one or none in .*\b{other} \({name}\).* of these", counted)
+        hits = [error for row in runs for error in row["slipping"]]
+        assert f"{number(math.sqrt(np.mean(np.square(hits))), 2)} ({name})" in errors
+        assert (
+            f"{percent(max(abs(row['slip_error']) for row in runs if row['slip_error']))} (worst) in {name}" in errors
+        )
+    assert "is one for impacts without slip" in errors
 
 
 def judged_scenes(result):
