@@ -64,6 +64,23 @@ def holding(scene: Scene) -> Scene:
     return scene if asked <= (scene.friction or FRICTION) else scene.with_(friction=asked)
 
 
+def unkept_friction(scene: Scene) -> str:
+    """That a script does not keep the friction of a scene, a sentence: a couple needs more; "" where it does.
+
+    Raises
+    ------
+    SceneError
+        As `share_of`.
+    """
+    held = holding(scene).friction
+    if None in (scene.friction, share_of(scene)) or held == scene.friction or share_of(scene) == MOST:
+        return ""
+    return (
+        f"The scene's friction, {scene.friction:g}, is not kept, and the block does not slide: below {held:.3g} it "
+        "slips under the couple that gives the restitution."
+    )
+
+
 @dataclass
 class Couple:
     """The couple of a scene. kept: f; inertia: J' [kg m2]; acts: time before a landing [s]; gain: k, 0 outside it.

@@ -23,7 +23,7 @@ from analytic.decision import motion_end, shortest_duration
 from analytic.errors import SceneError, SettingError
 from analytic.motion import SampledMotion
 
-from .couple import holding, share_of
+from .couple import FRICTION, holding, share_of, unkept_friction
 from .scale import UNIT_RADIUS
 
 if TYPE_CHECKING:
@@ -96,12 +96,15 @@ def _check(scene: Scene) -> None:
 
 def _context(engine: Engine, scene: Scene, name: str, record: str | None) -> dict[str, Any]:
     """What a template is rendered with."""
-    block, start = scene.block, scene.start
+    block, start, given = scene.block, scene.start, (share_of(scene) or 1.0) < 1.0
+    friction, unkept = holding(scene).friction if given else scene.friction, unkept_friction(scene)
     return {
         "engine": engine.name,
         "scene": scene,
         "title": f"{shorten(scene.name or 'A scene', 60)}: a rocking block {_support(scene)}".translate(UNSAFE),
-        "friction": scene.friction if holding(scene) is scene else None,  # as the script's own holds
+        "friction": None if unkept else scene.friction,
+        "sticking": max(friction or 0.0, FRICTION),  # where a script has none
+        "unkept": unkept,
         "name": name,
         "record": record and json.dumps(record, ensure_ascii=False),  # a string in quotes
         "pulse": scene.motion if scene.motion and not record else None,
@@ -112,7 +115,7 @@ def _context(engine: Engine, scene: Scene, name: str, record: str | None) -> dic
         "f0": BearingLaw.of(scene.bearings).constants.f0,
         "memory": scene.bearings is not None and BearingLaw.of(scene.bearings).unit.memory,
         "inertia": None if block.corner_inertia is None else block.corner_inertia / (block.mass * block.radius**2),
-        "given": (share_of(scene) or 1.0) < 1.0,
+        "given": given,
         "start": start,
         "moved": bool(start.tilt or start.tilt_rate),
         "base_moved": bool(start.base_displacement or start.base_velocity),

@@ -37,6 +37,6 @@ Start = namedtuple("Start", "gravity ground force")
     HELD_X, HELD_FRICTION, HELD_NORMAL, HELD_ACCELERATION,
 ) = range(37)  # fmt: skip
 TOTALS = 37
-# Endings, after those of the kernel: an impact of a given restitution leaves the cone, or comes while the block slides;
-# no mode is admissible, or more than one.
-GIVEN_LEAVES, NO_MODE = 5, 6
+# Endings, after those of the kernel: an impact of a given restitution leaves the cone; no mode is admissible, or more
+# than one; an impact of a given restitution comes while the block slides, or after a jump.
+GIVEN_LEAVES, NO_MODE, GIVEN_SLIDES, GIVEN_JUMPS = range(5, 9)

@@ -14,6 +14,7 @@ from ..compiled import compiling
 from ..decision import longest_duration, run_warnings
 from ..errors import SceneError
 from ..response import Energy, Failure, Impact, Response, Sliding, State
+from ..rocking import momentum_restitution
 from . import layout as S
 from .bounds import paradoxical_friction, slipping_friction
 from .march import arrays, march
@@ -26,6 +27,9 @@ if TYPE_CHECKING:
 # reading by 1/1000, 17 of 1492 random scenes slide (by up to 2e-6 R), by 1/20 two, by 1/10 none of 2989. Above this
 # share of the friction the march decides, at 3 to 12 times the kernel's CPU time.
 NEAR = 0.9
+GIVEN = "block.restitution"
+STICKS = 1e6  # a friction at which no block slides that carries weight
+ABOVE = 1.0006  # factor of a limit that is told in four digits, so that what is told is beyond it
 
 
 def is_needed(par: Parameters, contact: S.Contact, totals: np.ndarray) -> bool:
@@ -83,19 +87,52 @@ def outcome(par: Parameters, contact: S.Contact, ground: Ground, options: Option
 _SHARED = {L.LIFTED: S.LIFTED, L.CERTAIN: S.CERTAIN, L.PEAK_TILT: S.PEAK_TILT, L.PEAK_X: S.PEAK_X, L.IMPACTS: S.IMPACTS}
 
 
-def problem(par: Parameters, contact: S.Contact, totals: np.ndarray) -> tuple[str, str, str] | None:
-    """(key, problem, remedy) where the motion of the block is not determined."""
+def problem(par: Parameters, contact: S.Contact, totals: np.ndarray) -> tuple[str, str] | None:
+    """(key, problem) where the motion of the block is not determined; for what to do see `remedies`."""
     limit, bound, when = slipping_friction(par), paradoxical_friction(par, contact), totals[S.TIME]
-    if totals[S.STATUS] == S.GIVEN_LEAVES:
-        words = f"needs, at {when:.6g} s, a friction of {limit:.4g} (it is {contact.mu:.4g}), and a block that sticks"
-        return "block.restitution", words, "leave it out, or give a larger friction"
+    given = {
+        S.GIVEN_LEAVES: f"needs, at the impact at {when:.6g} s, a friction of {limit:.4g} (it is {contact.mu:.4g})",
+        S.GIVEN_SLIDES: f"needs a block that sticks; at a friction of {contact.mu:.4g} it lands sliding, {when:.6g} s",
+        S.GIVEN_JUMPS: f"needs a block that stays on a corner; it lands after a jump, {when:.6g} s",
+    }
+    if words := given.get(int(totals[S.STATUS])):
+        return GIVEN, words
     if (par.tilt != 0 or par.rate != 0) and contact.mu < limit and totals[S.IMPACTS] > 0:
         words = f"below {limit:.4g}, where an impact of a block released by hand depends on the law of friction in it"
-        return "friction", words, f"give {limit:.4g} or more, or let the block start at rest"
+        return "friction", words
     if totals[S.STATUS] in (S.NO_MODE, L.STUCK) and contact.mu > bound:
         words = f"above {bound:.4g} (Painleve), where a block that slides, as at {when:.6g} s, may have no motion"
-        return "friction", words, f"give {bound:.4g} or less"
+        return "friction", words
     return None
+
+
+def remedies(key: str, scene: Scene, par: Parameters, contact: S.Contact, ground: Ground, options: Options) -> str:
+    """What to give instead, in words; each is tried, the motion of the block is then determined.
+
+    A friction is named that suffices for the impacts, or else for all of the motion up to the fall, so that the block
+    does not slide before; or one at the bound of Painleve. Without a friction the motion is always determined.
+    """
+
+    def tried(par, contact):
+        totals, *_ = marched(par, contact, ground, options._replace(record=False, output_step=0.0))
+        sound = totals[S.STATUS] in (L.COMPLETE, L.DECIDED) and problem(par, contact, totals) is None
+        return float(totals[S.HELD_FRICTION]) if sound else None
+
+    words, of, own = [], "a friction of " if key == GIVEN else "", max(momentum_restitution(scene), 0.0)
+    if key == GIVEN and tried(par._replace(e=own), contact._replace(given=False)) is not None:
+        words.append("leave it out")
+    limit, asked = slipping_friction(par), tried(par, contact._replace(mu=STICKS))
+    least = [limit, *((max(limit, asked), max(limit, asked / NEAR)) if asked is not None else ())]
+    for mu in (float(f"{one * ABOVE:.4g}") for one in least if one * ABOVE > contact.mu):
+        if tried(par, contact._replace(mu=mu)) is not None:
+            words.append(f"give {of}{mu:.4g} or more")
+            break
+    mu = float(f"{paradoxical_friction(par, contact) / ABOVE:.4g}")
+    if key != GIVEN and mu < contact.mu and tried(par, contact._replace(mu=mu)) is not None:
+        words.append(f"give {mu:.4g} or less")
+    if key != GIVEN and tried(par._replace(tilt=0.0, rate=0.0), contact) is not None:
+        words.append("let the block start at rest")
+    return ", or ".join(words) or f"leave {'the friction' if key == GIVEN else 'it'} out"
 
 
 def response(
@@ -119,8 +156,9 @@ def response(
     if totals[S.NORMAL] > 0 and stays(totals):
         return None
     if found := problem(par, contact, totals):
-        key, words, remedy = found
+        key, words = found
         value = scene.friction if key == "friction" else scene.block.restitution
+        remedy = remedies(key, scene, par, contact, ground, options)
         raise SceneError(key, value, words, remedy, scene.name or None)
     fallen = totals[S.END_MODE] == S.FALLEN
     if not fallen and abs(totals[S.END_TILT]) > par.gamma and totals[S.TIME] >= ground.shaking.end:

@@ -25,7 +25,7 @@ def struck(par, contact, block, base, rest_rate, at, t, into):
             s = -s
             kind, after, push, count = level_impact(par, contact, s, before)
         if contact.given and (kind != S.NEW_STICKS or block.sigma != 0):
-            status = S.GIVEN_LEAVES
+            status = S.GIVEN_JUMPS if block.mode == FLIGHT else S.GIVEN_LEAVES if block.sigma == 0 else S.GIVEN_SLIDES
         s, slips = 0.0 if after.rate == 0 else -s, kind == S.NEW_SLIPS or kind == S.BOTH_SLIP
         c = par.R * math.cos(par.gamma)
     else:

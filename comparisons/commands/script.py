@@ -22,6 +22,7 @@ def command(
     from analytic.errors import SettingError
     from analytic.scene_file import load_scene
     from engines import BROKEN, ENGINES
+    from engines.couple import unkept_friction
     from engines.scripting import write_script
 
     from ..running.files import check_writable, write_text
@@ -46,4 +47,4 @@ def command(
     check_writable(places, inputs=[scene])
     for place, text in places.items():
         write_text(place, text)
-    echo(*(f"{place} written" for place in places))
+    echo(*(f"{place} written" for place in places), *filter(None, [unkept_friction(what)]))

@@ -88,8 +88,7 @@ def logistic(features: npt.ArrayLike, happened: npt.ArrayLike, chosen: np.ndarra
         The search has not settled.
     """
     features, happened = np.asarray(features, dtype=float), np.asarray(happened, dtype=float)
-    centre, spread = features[chosen].mean(axis=0), features[chosen].std(axis=0)
-    columns = np.column_stack([np.ones(len(features)), (features - centre) / np.where(spread > 0, spread, 1)])
+    columns = np.column_stack([np.ones(len(features)), _standard(features, chosen)])
     mine, yes = columns[chosen], happened[chosen]
     ridge = RIDGE * np.append(0, np.ones(columns.shape[1] - 1))
 
@@ -114,9 +113,15 @@ def logistic(features: npt.ArrayLike, happened: npt.ArrayLike, chosen: np.ndarra
 def bent(features: npt.ArrayLike) -> np.ndarray:
     """Features, standardised, with their squares and products: a logistic curve of these may bend."""
     features = np.asarray(features, dtype=float)
-    plain = (features - features.mean(axis=0)) / features.std(axis=0)
+    plain = _standard(features, np.ones(len(features), dtype=bool))
     pairs = combinations_with_replacement(range(plain.shape[1]), 2)
     return np.column_stack([plain, *(plain[:, one] * plain[:, other] for one, other in pairs)])
+
+
+def _standard(features, chosen):
+    """By the mean and the standard deviation of those chosen; what is alike in all of them is left as it is."""
+    centre, spread = features[chosen].mean(axis=0), features[chosen].std(axis=0)
+    return (features - centre) / np.where(spread > 0, spread, 1)
 
 
 def clustered(values: npt.ArrayLike, groups: Sequence[Any], seed: int = 0) -> list[float]:

@@ -32,6 +32,12 @@ LOADS = "ground: its acceleration at the step's end"
 CHORD = "bearings: within a step a spring along the law's chord"
 _MODULES = {"compliant-corners": corners, "switched-joints": joints, "native-contact": native}
 TUNED, SWITCHED, NATIVE = corners.CompliantCorners(), joints.SwitchedJoints(), native.NativeContact()
+# Such an impact lasts, and the block slides meanwhile; stiffer corners or shorter steps change nothing, a tenth of
+# `rebound` or `slip` leaves .3 to .9 of the error. Among 264 drawn scenes with vertical motion that slip by 1e-4 R or
+# more, the largest slip is off by 3e-5 in the median, by more than 2 % (and 1e-4 R) in 4.
+SLIDES_INTO_IMPACTS = (
+    "an impact into which the block slides is up to .02 off in e, and the slip after it by up to 6e-4 R"
+)
 VARIANTS = {
     "compliant-corners": Variant(
         TUNED,
@@ -56,6 +62,7 @@ VARIANTS = {
         "agreement verifies law and integration); a plane; steps: explicit through impacts, implicit between; start: "
         f"with the motion, on corners deflected by what they carry; {LOADS}, of explicit steps its mean; {CHORD}; "
         "restitution given: a couple before each landing",
+        faults=SLIDES_INTO_IMPACTS,
     ),
     "switched-joints": Variant(
         SWITCHED,

@@ -26,6 +26,14 @@ if TYPE_CHECKING:
 
 TUNED, FIXED = ImpactAware(1e-3, 1e-3), FixedStep(1e-4)
 PLAIN = FirstScript(1 / 240)  # Bullet's own default
+# Bullet holds the corner by velocities, with the lever (n, -c) of the centre where a step begins: the corner creeps by
+# h^2 n phi'^2/2 in a step h. And a slip that turns back within a step keeps one sign of its friction N mu to the end,
+# which leaves a velocity of up to 2 N mu h/m. Among 525 drawn scenes with vertical motion that slip by 1e-4 R or more,
+# the largest slip is off by 1e-5 in the median, by 3.4 % at most; by half of that with half the step.
+CREEPS = (
+    "the corner of a rocking block creeps by some 1e-5 R in a swing, and a slip turns back at the end of a step: first "
+    "order in the step; a slip below .002 R is up to 4 % off"
+)
 VARIANTS = {
     "impact-aware": Variant(
         TUNED,
@@ -36,6 +44,7 @@ VARIANTS = {
         computes="motion, contact, impact and rest",
         imposes=f"a plane, by joints; {RULED}; {GIVEN}",
         calls=calls.impact_aware(TUNED),
+        faults=CREEPS,
     ),
     "fixed-step": Variant(
         FIXED,

@@ -1,5 +1,6 @@
 """A scene's script is exact, short and alone, and holds what the scene needs."""
 
+import ast
 import math
 import re
 import subprocess
@@ -19,6 +20,7 @@ from analytic.pairing import paired
 from analytic.rocking import RockingModel
 from analytic.synthetic import synthetic_motion
 from engines import ENGINES
+from engines.couple import unkept_friction
 from engines.scripting import write_script
 
 PROJECT = Path(__file__).parents[2]
@@ -299,6 +301,27 @@ def test_a_restitution_of_equation_7_needs_no_couple(engine):
     plain = write_script(ENGINES[engine], scene, "script")
     natural = RockingModel.of(scene).restitution
     assert write_script(ENGINES[engine], scene.with_(block={"restitution": natural}), "script") == plain
+
+
+@every_engine
+def test_a_script_keeps_the_friction_of_its_scene_or_says_why_not(engine, tmp_path):
+    """Why not: with the scene's own the block slips under the couple, and e is off."""
+    scene = OTHERS["friction, given"]
+    text = written(engine, scene, tmp_path).read_text()
+    words = "The scene's friction, 0.6, is not kept, and the block does not slide: below 4.93 it slips under the couple"
+    assert words in " ".join(ast.get_docstring(ast.parse(text)).split()) and words in unkept_friction(scene)
+    natural = RockingModel.of(scene.with_(block={"restitution": None})).restitution
+    for kept in (scene.with_(friction=6.0), *(scene.with_(block={"restitution": e}) for e in (natural, None))):
+        text = written(engine, kept, tmp_path).read_text()
+        assert f"\nmu = {kept.friction}  #" in text and "not kept" not in text and unkept_friction(kept) == ""
+
+
+def test_a_script_without_a_friction_has_as_much_as_a_couple_needs(tmp_path):
+    slender = released(on_ground(block_of(0.1)))
+    for restitution, mu in ((None, 5.0), (0.8, 1 / math.tan(0.1))):
+        scene = slender.with_(block={"restitution": restitution})
+        said = re.search(r"^mu = (\S+)", written("exudyn", scene, tmp_path).read_text(), re.MULTILINE)
+        assert float(said[1]) == pytest.approx(mu, rel=1e-5) and unkept_friction(scene) == ""
 
 
 @every_engine

@@ -9,7 +9,7 @@ from sliding_scenes import LOST, SAVED, SLIDES, random_slider, scene_of
 
 from analytic import PulseMotion, simulate
 from engines import comparison, get_engine
-from engines.checks import energy_gain, pivoting_centre
+from engines.checks import LEAST_SLIP, energy_gain, pivoting_centre, slips
 from engines.swings import Trace
 
 ENGINES = ("exudyn", "pybullet")
@@ -109,6 +109,36 @@ def test_what_mujoco_is_said_to_get_wrong_it_gets_wrong():
     for variant in ("impact-aware", "fixed-step"):
         assert engine.simulate(low, variant=variant).outcome == "overturns" != simulate(low, history=False).outcome
         assert engine.variants[variant].faults
+
+
+@pytest.mark.parametrize("step", [1e-3, 5e-4])
+def test_the_corner_under_a_rocking_block_creeps_in_bullet_as_is_said(step):
+    """By half the step times the integral of n phi'^2, which is no slip: less than `LEAST_SLIP`."""
+    needs("pybullet")
+    scene = scene_of(5.0, 0.3, start={"tilt": 0.21}, duration=0.9)
+    engine = get_engine("pybullet")
+    run, trace = engine.traced(scene, largest_step=step)
+    turning = scene.block.radius * np.sin(np.sign(trace.tilt) * 0.3 - trace.tilt) * trace.tilt_rate**2
+    creep = np.cumsum(np.diff(trace.time) ** 2 * (turning[1:] + turning[:-1])) / 4
+    seen = slips(scene, trace)
+    assert len(run.impacts) == 1 and "creeps" in engine.variants["impact-aware"].faults
+    assert -seen[1:] == pytest.approx(creep, abs=1e-2 * np.abs(creep).max())
+    assert 4e-3 * step < np.abs(seen).max() / scene.block.radius < 2e-2 * step < LEAST_SLIP
+
+
+def test_what_exudyn_is_said_to_get_wrong_it_gets_wrong():
+    """An impact into which the block slides, and the slip after it; the next one, after which it sticks, is right."""
+    needs("exudyn")
+    engine, up = get_engine("exudyn"), PulseMotion("one-cosine", 7.4, 14.2)
+    scene = scene_of(0.69, 0.3066, 1.51, motion=PulseMotion("one-cosine", 8.13, 14.2, vertical=up), duration=1.0)
+    model, run = simulate(scene, history=False), engine.simulate(scene)
+    wrong, right = (
+        abs(a.rate_after / a.rate_before - b.rate_after / b.rate_before)
+        for a, b in zip(run.impacts, model.impacts, strict=True)
+    )
+    assert 0.005 < wrong < 0.015 and right < 1e-3
+    assert 0.5e-4 < abs(run.sliding.peak - model.sliding.peak) / scene.block.radius < 2.5e-4
+    assert "slides" in engine.variants[engine.default_variant].faults and run.comparable == "yes"
 
 
 @pytest.mark.slow

@@ -77,6 +77,13 @@ def flag(file: str | PathLike[str], number: int, column: str, row: dict) -> bool
     return float(value) == 1
 
 
+def thinned(tests: Sequence[TableTest], every: int) -> Sequence[TableTest]:
+    """The first of so many tests, of fewer where those were all under one record."""
+    while every > 1 and len({test.record for test in tests[::every]}) < 2:
+        every -= 1
+    return tests[::every]
+
+
 def outcomes_of(tests: Sequence[TableTest], specimen: int) -> np.ndarray:
     """What overturned, bool, shape (tests,)."""
     return np.array([bool(test.overturned[specimen]) for test in tests])

@@ -61,7 +61,7 @@ def agreement(specimens: Sequence[dict[str, Any]], right: dict[str, np.ndarray])
         angles = np.degrees(specimen["grid"])
         chart = Chart(
             Axis("slenderness [deg]", float(angles[0]), float(angles[-1])),
-            Axis("right answers", 0.98 * low, 1.02 * high),
+            Axis("right answers", 0.98 * low, max(1.02 * high, 1.0)),
             f"{specimen['name']}: right answers of the model over the slenderness; {', '.join(right)}.",
             title=specimen["name"],
             height=300,

@@ -17,7 +17,8 @@ from analytic import Block, SampledMotion, Scene, SceneError
 from analytic.errors import SettingError
 from analytic.records import read_record
 
-from .campaign import Campaign, Specimen, TableTest, flag
+from .campaign import Campaign, Specimen, TableTest, flag, thinned
+from .measures import unfit
 
 DOI = "10.26443/seismica.v3i1.692"
 REPOSITORY = "https://github.com/ZhiangChen/virtual_shake_robot_pybullet"
@@ -70,10 +71,10 @@ def place_in(folder: Path) -> Path | None:
 def read(place: Path, every: int, progress: Callable[[int, int], None]) -> Campaign:
     """The published campaign in a folder; see `reading.read_campaign`."""
     results = _table(place / RESULTS, NUMBER, SHEET)
-    records = {row["Test No."]: row for _, row in _table(place / RECORDS, "Test No.")}
+    records = {row["Test No."]: (at, row) for at, row in _table(place / RECORDS, "Test No.")}
     names = list(BOULDERS)
     authors = [_settings(results, number) for number in range(1, len(names) + 1)]
-    found, missing = [], []
+    files, known, missing = {}, [], []
     for at, row in results:
         number = row[NUMBER]
         if type(number) is not int or number not in records:
@@ -82,16 +83,21 @@ def read(place: Path, every: int, progress: Callable[[int, int], None]) -> Campa
             )
         measured = tuple(flag(place / RESULTS, at, MEASURED.format(k), row) for k in range(1, len(names) + 1))
         said = tuple({word: flag(place / RESULTS, at, title, row) for word, title in one.items()} for one in authors)
-        record = records[number]
-        stated = {key: float(record[title]) for title, key in STATED.items() if isinstance(record.get(title), float)}
+        line, record = records[number]
+        stated = {key: float(record[title]) for title, key in STATED.items() if type(record.get(title)) in (int, float)}
+        if zero := next((title for title, key in STATED.items() if not stated.get(key, 1.0) > 0), None):
+            raise SettingError(
+                f"{place / RECORDS}, row {line}, {zero} = {record[zero]!r}: not above 0; fetch the file again"
+            )
         test = TableTest(str(number), record_of(record[RECORD]), measured, None, said, stated)
         if (file := _file(place, number)) is None:
             missing.append(test)
         else:
-            found.append((file, test))
-    chosen, tests = found[::every], []
-    for count, (file, test) in enumerate(chosen, 1):
-        tests.append(replace(test, motion=motion_of(file)))
+            files[test.name] = file
+            known.append(test)
+    chosen, tests = thinned(known, every), []
+    for count, test in enumerate(chosen, 1):
+        tests.append(replace(test, motion=motion_of(files[test.name])))
         progress(count, len(chosen))
     cite = f"{CITE}; {WHERE}"
     return Campaign("two granite boulders", specimens(), tuple(tests), cite, tuple(missing), PUBLISHED)
@@ -104,7 +110,10 @@ def motion_of(file: Path) -> SampledMotion:
     except SceneError as error:
         raise SettingError(f"{error} (a test without its file is left out)") from error
     rest = motion.samples[: max(int(SECONDS / motion.dt), 1)]
-    return SampledMotion(motion.dt, motion.samples - np.median(rest), file.name, motion.warnings)
+    motion = SampledMotion(motion.dt, motion.samples - np.median(rest), file.name, motion.warnings)
+    if why := unfit(motion):
+        raise SettingError(f"{file}: {why} (a test without its file is left out)")
+    return motion
 
 
 def record_of(said: Any) -> str:

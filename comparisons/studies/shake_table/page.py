@@ -181,7 +181,7 @@ def _bars(result: Result, engines: Sequence[dict[str, Any]]) -> Figure | None:
     ) * any(row["right"] is None for row in engines)
     agree = result.settings["agree"]
     rules = () if agree is None else ((agree / len(result.settings["tests"]), "the other boulder"),)
-    first = math.floor(10 * min(low for row in rows for low in row["within"]))  # tenths
+    first = min(math.floor(10 * min(low for row in rows for low in row["within"])), 9)  # tenths
     marked = range(first, 11, 1 if first >= 5 else 2)
     return ranks(
         rows,

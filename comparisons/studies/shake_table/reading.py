@@ -6,7 +6,11 @@ That of the tests of two granite boulders, as their authors publish them (`grani
 repository. Or one's own: a scene file ``scene.toml`` of the block, and ``tests.csv`` with a line for each test, its
 columns ``motion`` (a record file in the folder), ``overturned`` (1 or 0) and, if there are any, ``units`` (of a file
 that states none), ``name`` and ``record``: tests under one record at several scales say the same there, and count as
-one where intervals are told. Its motions are taken as they are.
+one where intervals are told. Its motions are taken as they are. The scene has no motion, start, duration or restitution
+of its own.
+
+All that is computed of a campaign later is asked of it here, before anything is run: two records or more, as each is
+held out in turn, and motions that have a PGA and a PGV.
 """
 
 import csv
@@ -21,7 +25,8 @@ from analytic.files import read_plain
 from analytic.records import UNITS, read_record
 
 from . import granite
-from .campaign import Campaign, Specimen, TableTest, flag
+from .campaign import Campaign, Specimen, TableTest, flag, thinned
+from .measures import unfit
 
 SCENE, TESTS = "scene.toml", "tests.csv"
 LARGEST = 10_000_000  # bytes of a list of tests
@@ -33,7 +38,8 @@ OWN_COLUMNS = ("motion", "overturned", "name", "record", "units")
 def read_campaign(
     folder: str | PathLike[str], every: int = 1, progress: Callable[[int, int], None] = lambda done, total: None
 ) -> Campaign:
-    """The campaign in a folder; every: only the first of so many tests that have a motion.
+    """The campaign in a folder; every: only the first of so many tests that have a motion, or of fewer where these are
+    under one record.
 
     Raises
     ------
@@ -47,9 +53,9 @@ def read_campaign(
     if not place.is_dir():
         raise SettingError(f"--data {folder}: no such folder; give the one that holds the tests")
     if (published := granite.place_in(place)) is not None:
-        found = granite.read(published, every, progress)
+        found, listed = granite.read(published, every, progress), published / granite.RECORDS
     elif (place / TESTS).is_file():
-        found = _own(place, every, progress)
+        found, listed = _own(place, every, progress), place / TESTS
     else:
         raise SettingError(
             f"--data {folder}: holds neither {granite.RESULTS} (as published) nor {TESTS} (your own tests); "
@@ -57,32 +63,56 @@ def read_campaign(
         )
     if not found.tests:
         raise SettingError(f"--data {folder}: no test has a motion; fetch them again, or give another folder")
+    if len({test.record for test in found.tests}) == 1:
+        test = found.tests[0]
+        raise SettingError(
+            f"{listed}, record = {test.record!r}: no test is under another ({len(found.tests)} in all), and each "
+            "record is held out in turn; add tests under a second record"
+        )
     return found
 
 
 def _own(place, every, progress):
+    scene, rows = _scene(place), _rows(place / TESTS)
+    tests, rows_of = [], {}
+    for count, (number, row) in enumerate(rows, 1):
+        name = row.get("name") or str(number - 1)
+        record, fell = row.get("record") or name, flag(place / TESTS, number, "overturned", row)
+        motion = _motion(place, number, row, scene)
+        first, known = rows_of.setdefault(motion.digest(), (number, record))
+        if known != record:
+            raise SettingError(
+                f"{place / TESTS}, row {number}, record = {record!r}: its motion is that of row {first}, under the "
+                f"record {known!r}; tests under one motion tell the same: give both one record"
+            )
+        tests.append(TableTest(name, record, (fell,), motion))
+        progress(count, len(rows))
+    names = [test.name for test in tests]
+    if twice := next((name for name in names if names.count(name) > 1), None):
+        raise SettingError(f"{place / TESTS}: two tests are called {twice!r}; give each a name of its own")
+    drawn = scene.block.slenderness
+    span = (OWN_SPAN[0] * drawn, min(OWN_SPAN[1] * drawn, STEEPEST))
+    note = f"slenderness of its scene file: {drawn:.4g} rad"
+    return Campaign(place.resolve().name, (Specimen(scene.name, scene, span, note),), tuple(thinned(tests, every)))
+
+
+def _scene(place):
+    """The block and its support; what a test brings itself, or a solver, is refused."""
     try:
         scene = load_scene(place / SCENE)
     except SceneError as error:
         raise SettingError(f"--data {place}: {error}") from error
-    rows = _rows(place / TESTS)
-    tests = []
-    for count, (number, row) in enumerate(rows[::every], 1):
-        name = row.get("name") or str(number - 1)
-        fell = flag(place / TESTS, number, "overturned", row)
-        tests.append(TableTest(name, row.get("record") or name, (fell,), _motion(place, number, row)))
-        progress(count, len(rows[::every]))
-    names = [test.name for test in tests]
-    if twice := next((name for name in names if names.count(name) > 1), None):
-        raise SettingError(f"{place / TESTS}: two tests are called {twice!r}; give each a name of its own")
-    if (given := scene.block.restitution) is not None:
-        words = "engines that are judged decide it; leave it out"
-        raise SettingError(f"{place / SCENE}: block.restitution = {given!r}: {words}")
-    drawn = scene.block.slenderness
-    span = (OWN_SPAN[0] * drawn, min(OWN_SPAN[1] * drawn, STEEPEST))
-    note = f"slenderness of its scene file: {drawn:.4g} rad"
-    specimen = Specimen(scene.name, scene.with_(motion=None, duration=None), span, note)
-    return Campaign(place.resolve().name, (specimen,), tuple(tests))
+    moves = {f"start.{name}": value or None for name, value in scene.start.model_dump().items()}
+    given = {
+        "block.restitution": (scene.block.restitution, "engines that are judged decide it"),
+        "motion": (scene.motion and scene.motion.label, "each test has its own"),
+        "run.duration": (scene.duration, "a test is run until its outcome is decided"),
+        **{name: (value, "a tested block stands at rest before its motion") for name, value in moves.items()},
+    }
+    for name, (value, why) in given.items():
+        if value is not None:
+            raise SettingError(f"{place / SCENE}: {name} = {value!r}: {why}; leave it out")
+    return scene
 
 
 def _rows(path):
@@ -97,6 +127,8 @@ def _rows(path):
         raise SettingError(f"{path}, row 1: no column {absent[0]!r}; it needs {OWN_COLUMNS[0]} and {OWN_COLUMNS[1]}")
     if unknown := [name for name in head if name not in OWN_COLUMNS]:
         raise SettingError(f"{path}, row 1: column {unknown[0]!r} is none of {', '.join(OWN_COLUMNS)}; remove it")
+    if twice := next((name for name in head if head.count(name) > 1), None):
+        raise SettingError(f"{path}, row 1: two columns are called {twice!r}; remove one")
     rows = []
     for number, line in enumerate(lines[1:], 2):
         if not any(word.strip() for word in line):
@@ -107,8 +139,8 @@ def _rows(path):
     return rows
 
 
-def _motion(place, number, row):
-    """The table's motion of a test, as its file has it."""
+def _motion(place, number, row, scene):
+    """The table's motion of a test, as its file has it; the scene can be run with it."""
     where = f"{place / TESTS}, row {number}"
     if row.get("units", "") not in ("", *UNITS):
         raise SettingError(
@@ -116,7 +148,12 @@ def _motion(place, number, row):
         )
     if not row["motion"]:
         raise SettingError(f"{where}, motion = '': missing; give a record file, or remove the row")
+    where += f", motion = {row['motion']!r}"
     try:
-        return read_record(place / row["motion"], row.get("units") or None)
+        motion = read_record(place / row["motion"], row.get("units") or None)
+        scene.with_(motion=motion)
     except SceneError as error:
-        raise SettingError(f"{where}, motion = {row['motion']!r}: {error}") from error
+        raise SettingError(f"{where}: {error}") from error
+    if why := unfit(motion):
+        raise SettingError(f"{where}: {why}")
+    return motion

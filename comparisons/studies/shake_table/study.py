@@ -8,12 +8,13 @@ upper end of the interval of the share of tests that it ends differently is belo
 """
 
 from collections.abc import Sequence
+from itertools import product
 from typing import Annotated, Any
 
 import numpy as np
 import typer
 
-from analytic import SettingError
+from analytic import SceneError, SettingError
 from engines import get_engine
 
 from ...measuring.forecasts import FEWEST
@@ -71,19 +72,21 @@ def plan(request: Request, *, data: Data = None) -> Plan:
         return Computed({"quick": request.quick, "campaign": "", "variants": []}, [row])
     with bar("reading the tests") as progress:
         campaign = read_campaign(data, QUICK if request.quick else 1, progress)
-    model = yield Batch(_on_grids(campaign), over_slendernesses, "model over slenderness")
-    known = _outcomes(campaign, model)
+    kinds = _kinds(campaign)
+    model = yield Batch(_on_grids(campaign, kinds), over_slendernesses, "model over slenderness")
+    known = _outcomes(campaign, model, len(kinds))
     places = [one[0].best(np.ones(len(campaign.tests), dtype=bool)) for one in known]
     slendernesses = [float(one[0].slendernesses[place]) for one, place in zip(known, places, strict=True)]
-    names = [_name(kind) for kind in KINDS]
+    names = [_name(kind) for kind in kinds]
     told, parts = zip(*(told_of(campaign, k, one, names) for k, one in enumerate(known)), strict=True)
     rows = [row for part in parts for row in part] + pairs_of(campaign, told)
     at_hand.keep(campaign, [one.forecasts[MODEL] for one in told])
-    settings = _settings(request, campaign, slendernesses) | {"model_runs": len(model) * len(KINDS) * _grid(campaign)}
+    settings = _settings(request, campaign, slendernesses) | {"kinds": names}
+    settings["model_runs"] = len(model) * len(kinds) * _grid(campaign)
     settings["model_seconds"] = float(sum(row.cost["grid_seconds"] for row in model))
     arrays = {
-        f"right/{_name(kind)}": np.array([(one[k].model == one[k].measured[:, None]).sum(axis=0) for one in known])
-        for k, kind in enumerate(KINDS)
+        f"right/{name}": np.array([(one[k].model == one[k].measured[:, None]).sum(axis=0) for one in known])
+        for k, name in enumerate(names)
     }
     own = yield Batch(_at(campaign, slendernesses, "analytic", None, 1), ended_near, "model")
     rows += [run_row(campaign, k, own, slendernesses[k]) for k in range(len(known))]
@@ -118,13 +121,34 @@ def _variants(name: str) -> list[tuple[str, str, int]]:
     return [(name, one, 1 if engine.subject else OTHERS) for one in dict.fromkeys(chosen)]
 
 
-def _on_grids(campaign: Campaign) -> list[Case]:
+def _kinds(campaign: Campaign) -> list[dict[str, float]]:
+    """Those of `KINDS` that the model takes: it knows no given restitution of a block that slides.
+
+    Raises
+    ------
+    SettingError
+        A block cannot be of the slendernesses between which the fitted one is sought.
+    """
+    slides = any(one.scene.friction is not None for one in campaign.specimens)
+    kinds = [dict(kind) for kind in KINDS if not (slides and "restitution" in kind)]
+    for one in campaign.specimens:
+        for slenderness, kind in product(one.span, kinds):
+            try:
+                leaning(one.scene, slenderness, **kind)
+            except SceneError as error:
+                raise SettingError(
+                    f"{one.name}: a slenderness of {slenderness:.4g} rad, which is tried: {error}"
+                ) from error
+    return kinds
+
+
+def _on_grids(campaign: Campaign, kinds: Sequence[dict[str, float]]) -> list[Case]:
     return [
         Case(
             specimen.scene.with_(motion=test.motion),
             settings={"history": False},
             tag={"test": test.name, "specimen": specimen.name, "slendernesses": specimen.slendernesses().tolist()}
-            | {"kinds": [dict(kind) for kind in KINDS]},
+            | {"kinds": list(kinds)},
         )
         for test in campaign.tests
         for specimen in campaign.specimens
@@ -151,7 +175,7 @@ def _failure(row):
     return {"part": "failure", "engine": row.case.solver, "variant": row.case.variant, **row.case.tag, **failure}
 
 
-def _outcomes(campaign: Campaign, rows: Sequence[Row]) -> list[list[Outcomes]]:
+def _outcomes(campaign: Campaign, rows: Sequence[Row], kinds: int) -> list[list[Outcomes]]:
     """By specimen and kind."""
     if failed := next((row for row in rows if row.failed), None):
         raise SettingError(f"test {failed.case.tag['test']}: the model failed ({failed.failure['reason']})")
@@ -160,7 +184,7 @@ def _outcomes(campaign: Campaign, rows: Sequence[Row]) -> list[list[Outcomes]]:
         own = [row.values["outcomes"] for row in rows if row.case.tag["specimen"] == specimen.name]
         overturned = np.array([[[digit == OVERTURNS for digit in text] for text in one] for one in own])
         measured, grid = outcomes_of(campaign.tests, k), specimen.slendernesses()
-        found.append([Outcomes(grid, overturned[:, kind], measured) for kind in range(len(KINDS))])
+        found.append([Outcomes(grid, overturned[:, kind], measured) for kind in range(kinds)])
     return found
 
 
@@ -190,7 +214,6 @@ def _settings(request, campaign, slendernesses):
             }
             for one, slenderness in zip(campaign.specimens, slendernesses, strict=True)
         ],
-        "kinds": [_name(kind) for kind in KINDS],
         "equal": EQUAL,
         "others": OTHERS,
         "variants": [],

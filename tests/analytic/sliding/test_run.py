@@ -1,10 +1,11 @@
 """Answers of a scene with friction, and where the march is asked at all."""
 
 import math
+import re
 
 import numpy as np
 import pytest
-from sliding_scenes import scene_of
+from sliding_scenes import random_slider, scene_of, slider_of
 
 import analytic.sliding.run as sliding
 from analytic import PulseMotion, SceneError, load_scene, overturning_map, simulate, simulate_many
@@ -141,7 +142,8 @@ def test_a_fall_slides_at_any_friction():
 def test_a_release_below_the_slipping_friction_is_refused():
     scene = scene_of(0.15, 0.28, start=RELEASED, duration=2.0)
     limit = slipping_friction(parameters(scene))
-    with pytest.raises(SceneError, match=rf"friction = 0.15: below {limit:.4g}, .*; give {limit:.4g} or more"):
+    words = rf"friction = 0.15: below {limit:.4g}, .*; give 0.2114 or more, or let the block start at rest"
+    with pytest.raises(SceneError, match=words):
         simulate(scene)
     assert simulate_many([scene]).failed.all()
     assert simulate(scene.with_(friction=1.01 * limit), history=False).outcome == "rocks"
@@ -157,7 +159,8 @@ def test_a_friction_above_painleves_bound_is_refused_only_where_it_is_used():
 
 def test_a_given_restitution_that_needs_more_friction_is_refused():
     scene = scene_of(0.5, 0.449, 1.044, motion=pulse("one-sine", 17.39, 10.13), duration=4.0)
-    with pytest.raises(SceneError, match=r"restitution = 0.8: needs, at 0.55\d+ s, .* and a block that sticks"):
+    words = r"restitution = 0.8: needs a block that sticks; at a friction of 0.5 it lands sliding, 0.55\d+ s; leave it"
+    with pytest.raises(SceneError, match=words):
         simulate(scene.with_(block={"restitution": 0.8}))
     # dissipating more needs more friction: .6 of eq. (7) a horizontal impulse above that of eq. (7)
     released = scene_of(0.3, 0.28, start=RELEASED, duration=2.0)
@@ -165,9 +168,67 @@ def test_a_given_restitution_that_needs_more_friction_is_refused():
     low = released.with_(block={"restitution": 0.6 * RockingModel.of(released).restitution})
     needed = slipping_friction(parameters(low))
     assert needed > 0.3
-    with pytest.raises(SceneError, match=rf"needs, at 0.6\d+ s, a friction of {needed:.4g} \(it is 0.3\)"):
+    with pytest.raises(
+        SceneError, match=rf"needs, at the impact at 0.6\d+ s, a friction of {needed:.4g} \(it is 0.3\)"
+    ):
         simulate(low)
     assert simulate(low.with_(friction=1.01 * needed), history=False).outcome == "rocks"
+
+
+def refused_scene(rng, number):
+    """A slider with a restitution, or released by hand, or both; every fourth all but a point mass."""
+    scene = random_slider(rng, number) if number % 2 else slider_of("flight", rng)
+    if number % 3:
+        share = RockingModel.of(scene).restitution * rng.uniform(0.5, 1.05)
+        scene = scene.with_(block={"restitution": float(min(share, 1.0))})
+    if number % 3 != 1:
+        scene = scene.with_(start={"tilt": float(scene.block.slenderness * rng.uniform(-0.9, 0.9))})
+    if number % 4 == 0:
+        inertia = float(rng.uniform(1.01, 1.3) * scene.block.mass * scene.block.radius**2)
+        scene = scene.with_(block={"corner_inertia": inertia}, friction=float(rng.uniform(0.2, 2.0)))
+    return scene.with_(duration=None) if number % 5 == 0 else scene
+
+
+def followed(scene, key, words):
+    """The scene as a remedy says."""
+    if number := re.search(r"give (?:a friction of )?(\S+) or (more|less)$", words):
+        mu = float(number[1])
+        assert mu > scene.friction if number[2] == "more" else mu < scene.friction
+        return scene.with_(friction=mu)
+    if words == "let the block start at rest":
+        return scene.with_(start={"tilt": 0.0})
+    if words == "leave it out" and key == "block.restitution":
+        return scene.with_(block={"restitution": None})
+    assert words in ("leave it out", "leave the friction out")
+    return scene.with_(friction=None)
+
+
+# what fails: whether its number does
+FAILS = {
+    r"needs, at the impact at \S+ s, a friction of (\S+) \(it is (\S+)\)": lambda needed, given: needed > given,
+    r"needs a block that sticks; at a friction of (\S+) it lands sliding, (\S+) s": lambda mu, time: time > 0,
+    r"needs a block that stays on a corner; it lands after a jump, (\S+) s": lambda time: time > 0,
+    r"below (\S+), where an impact of a block released by hand .*": lambda limit, mu: mu < limit,
+    r"above (\S+) \(Painleve\), where a block that slides, as at \S+ s, may .*": lambda bound, mu: mu > bound,
+}
+
+
+def test_a_refusal_names_what_fails_and_a_remedy_that_works():
+    rng, seen = np.random.default_rng(3), []
+    for number in range(300):
+        scene = refused_scene(rng, number)
+        try:
+            simulate(scene, history=False)
+            continue
+        except SceneError as error:
+            said = error
+        ((which, found),) = [(k, re.fullmatch(k, said.problem)) for k in FAILS if re.fullmatch(k, said.problem)]
+        numbers = [float(text) for text in found.groups()]
+        assert FAILS[which](*numbers, *([scene.friction] if said.key == "friction" else [])), said
+        for words in said.remedy.split(", or "):
+            simulate(followed(scene, said.key, words), history=False)  # else it raises
+            seen.append((which, said.key, re.sub(r"\d\S*", "#", words)))
+    assert {which for which, *_ in seen} == set(FAILS) and len(set(seen)) >= 9, set(seen)
 
 
 def test_many_runs_are_the_single_ones():

@@ -30,3 +30,14 @@ def test_without_a_name_it_is_the_scenes_and_the_engines(rocking, tmp_path, monk
 def test_mistakes_are_named(rocking, arguments, message):
     status, _, err = rocking("script", *arguments)
     assert status == 2 and message in err
+
+
+def test_a_friction_that_the_script_does_not_keep_is_named(rocking, tmp_path):
+    scene = tmp_path / "scene.toml"
+    scene.write_text(
+        "friction = 0.6\n[block]\nmass = 300.0\nradius = 1.0\nslenderness = 0.2\nrestitution = 0.8\n"
+        "[start]\ntilt = 0.12\n"
+    )
+    status, out, err = rocking("script", "pybullet", scene, "--output", tmp_path / "own.py")
+    assert status == 0, err
+    assert "The scene's friction, 0.6, is not kept, and the block does not slide: below 4.93 it slips" in out

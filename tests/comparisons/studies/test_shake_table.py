@@ -13,21 +13,7 @@ import numpy as np
 import pytest
 from answered import answered, by_model, by_runs, stored
 from record_files import write
-from table_tests import (
-    MEASURED,
-    RECORDS,
-    RESULTS,
-    SCENE,
-    SHEET,
-    book,
-    fell,
-    labview,
-    lists,
-    own,
-    peak_of,
-    published,
-    pulse,
-)
+from table_tests import MEASURED, RECORDS, RESULTS, SHEET, book, fell, labview, lists, own, peak_of, published, pulse
 
 from analytic import simulate
 from analytic.errors import SettingError
@@ -204,39 +190,6 @@ def test_damaged_motions_are_refused_and_missing_ones_left_out(tmp_path):
     refused(tmp_path, "no test has a motion")
 
 
-# name: (text of tests.csv, words of the message)
-OWN = {
-    "no outcome": ("motion,overturned\n0.csv,maybe\n", ("row 2", "overturned = 'maybe'", "write 1")),
-    "no column": ("motion,fell\n0.csv,1\n", ("row 1", "no column 'overturned'")),
-    "an unknown column": ("motion,overturned,when\n0.csv,1,2\n", ("row 1", "'when' is none of")),
-    "too short a row": ("motion,overturned\n0.csv,1\n1.csv\n", ("row 3", "holds 1 columns")),
-    "no such motion": ("motion,overturned\n9.csv,1\n", ("row 2", "motion = '9.csv'", "cannot be read")),
-    "no motion": ("motion,overturned\n,1\n", ("row 2", "motion = ''", "remove the row")),
-    "a unit that is none": ("motion,overturned,units\n0.csv,1,m\n", ("row 2", "units = 'm'", "m/s2")),
-    "names twice": ("motion,overturned,name\n0.csv,1,a\n1.csv,0,a\n", ("two tests are called 'a'",)),
-    "nothing": ("", ("row 1", "no column 'motion'")),
-    "no test": ("motion,overturned\n", ("no test has a motion",)),
-    "no text": (b"\xff\xfe\x00", ("cannot be read",)),
-}
-
-
-@pytest.mark.parametrize("text, words", OWN.values(), ids=OWN)
-def test_a_damaged_list_of_ones_own_is_refused_by_file_row_and_value(tmp_path, text, words):
-    own(tmp_path, range(2))
-    write(tmp_path, text, "tests.csv")
-    refused(tmp_path, *words)
-
-
-def test_a_scene_that_cannot_be_used_is_refused(tmp_path):
-    own(tmp_path, range(2))
-    write(tmp_path, SCENE + "restitution = 0.9\n", "scene.toml")
-    refused(tmp_path, "block.restitution = 0.9", "leave it out")
-    write(tmp_path, SCENE.replace("mass = 300.0", "mass = -1"), "scene.toml")
-    refused(tmp_path, "scene.toml", "block.mass")
-    (tmp_path / "scene.toml").unlink()
-    refused(tmp_path, "scene.toml", "cannot be read")
-
-
 def test_a_block_of_another_slenderness_keeps_its_height_and_its_inertia_about_its_centre():
     for boulder, (mass, height, _) in zip(granite.specimens(), granite.BOULDERS.values(), strict=True):
         for angle in (0.04, 0.12, 0.24):
@@ -250,7 +203,7 @@ def test_a_block_of_another_slenderness_keeps_its_height_and_its_inertia_about_i
 
 
 def test_the_digits_over_slendernesses_are_those_of_single_runs(folder, small):
-    cases = study._on_grids(read_campaign(folder, every=9))
+    cases = study._on_grids(read_campaign(folder, every=9), study.KINDS)
     for case in cases[:3]:
         found = over_slendernesses(case, None)["outcomes"]
         for kind, text in zip(case.tag["kinds"], found, strict=True):
