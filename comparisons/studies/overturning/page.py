@@ -1,5 +1,6 @@
 """What is shown of the overturning study."""
 
+import math
 import statistics
 from functools import partial
 
@@ -160,11 +161,12 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
 def glance(result: Result) -> Glance:
     """Of the coarse scan, away from the boundaries."""
     tiers = {NAME.of(one): one["tier"] for one in result.settings["variants"]}
+    points = math.prod(len(result.settings[name]) for name in ("grounds", "shapes", "frequencies", "scan"))
     return Glance(
         endings=tuple(
             Endings(
                 "pulses", row["engine"], row["variant"], tiers[NAME.of(row)], row["runs"], row["failed"], row["only_a"],
-                row["only_b"], 0, tuple(row["interval"])
+                row["only_b"], 0, tuple(row["interval"]), left_out=points - row["runs"]
             )
             for row in where(result.rows, part="scan")
         )

@@ -72,6 +72,7 @@ def page(result: Result) -> Page:
                 NAME,
                 Column("rating", lambda row: row["rating"].removeprefix("is ").removeprefix("may be ")),
                 ERROR,
+                STATE,
                 WORST,
                 Column("order in its accuracy parameter [-]", "orders"),
                 FAILED,
@@ -132,7 +133,7 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
     rows, borne = rated(result), where(result.rows, part="bearings", factor="all")
     return (
         Judgement(
-            "restitution at impacts, free rocking: error, rms",
+            "error of restitution at impacts without slip, rms (by tilt rates, free rocking, the worse of two grounds)",
             {(row["engine"], row["variant"]): _free_mark(row) for row in rows},
             RESTITUTION,
         ),

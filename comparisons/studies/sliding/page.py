@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from analytic.response import COMPARED
+from engines.comparison import END
 
 from ...measuring.errors import rms
 from ...measuring.statistics import wilson
@@ -163,16 +164,18 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
 
 
 def glance(result: Result) -> Glance:
-    """Of the runs that differ, those with another outcome. A slip within its tolerance is no other outcome."""
+    """Of the runs that differ, those that end otherwise. A slip within its tolerance is no other end."""
+    outcomes = {row["index"]: row["outcome"] for row in where(result.rows, part="scene")}
     runs = [
         {
             **row,
-            "class": "right" if row["class"] == "differs" and row["outcome"] == row["model_outcome"] else row["class"],
-            "model_falls": row["model_outcome"] == "overturns",
-            "falls": row["outcome"] == "overturns",
+            "class": "right" if row["class"] == "differs" and not END & set(row["quantities"]) else row["class"],
+            "model_falls": outcomes[row["index"]] == "overturns",
+            "falls": None if row["outcome"] == "failed" else row["outcome"] == "overturns",
+            "changed": "outcome" in row.get("quantities", ()),
             "group": row["index"],
         }
-        for row in judged(result)
+        for row in where(result.rows, part="run")
     ]
     return Glance(endings=counted("blocks that may slide", runs))
 
