@@ -136,7 +136,10 @@ def _restitution(setups, judgements):
     """How far the restitution is off, in the first study that tells it."""
     head = next((one.heading for one in judgements if one.key == RESTITUTION), None)
     parts = []
-    for tier, begin in ((TUNED, "tuned engines are off by"), (DEFAULTS, "With defaults they are off by")):
+    for tier, how, begin in (
+        (TUNED, "Tuned", "tuned engines are off by"),
+        (DEFAULTS, "With defaults", "With defaults they are off by"),
+    ):
         marks = {one.engine: one.marks[head] for one in setups if one.in_first_table and one.tier == tier and head}
         known = {engine: mark for engine, mark in marks.items() if mark.value is not None}
         if known:
@@ -144,7 +147,7 @@ def _restitution(setups, judgements):
         deaf = [engine for engine, mark in known.items() if "missed" in mark.words]
         if deaf:
             who = "both" if len(deaf) == len(known) == 2 else listed(deaf)
-            parts.append(f"Impacts are missed by {who}.")
+            parts.append(f"{how}, impacts are missed by {who}.")
     return f"{' '.join(parts)} This is the {head}; restitution lies between 0 and 1." if parts else ""
 
 
@@ -183,4 +186,4 @@ def _left_out(shares):
     for (motions,), some in grouped(_tier(shares, TUNED), lambda one: one.motions).items():
         counts = dict.fromkeys(f"{one.left_out} of {one.runs + one.left_out}" for one in some)
         told.append(f"{' or '.join(counts)} ({motions})")
-    return f"the counts above leave these runs out, of each tuned engine’s {listed(told)}." if told else ""
+    return f"the counts above leave out, of the runs of each tuned engine, {listed(told)}." if told else ""

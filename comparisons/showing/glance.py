@@ -299,9 +299,9 @@ def endings(found: Iterable[Endings]) -> Figure:
         "Lines: 95 % intervals, runs under one motion as one. Missed, added: overturns in the model alone, in the "
         "engine alone. Other: stands, slides or rocks instead. Late: both overturn, at another time. Failed: no "
         "result, or unphysical. Left out, in every row: runs near an outcome boundary of the model, where a change of "
-        "the scene by 10⁻⁴ changes its end (pulses: within 1 % of the boundary, or the block would jump); of them are "
-        "counted those that overturn in engine or model alone, or fail. –: not asked, or not stored. Defaults: fewer "
-        "scenes."
+        "the scene by 10⁻⁴ changes its end (pulses: within 1 % of the boundary); of them are counted those that "
+        "overturn in engine or model alone, or fail. –: not asked, or not stored. Defaults: fewer scenes. Pulses under "
+        "which the block would jump are not counted."
     )
     return broad(_endings(rows, WIDE), [_endings(rows, WIDTH)], caption)
 

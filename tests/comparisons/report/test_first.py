@@ -45,15 +45,15 @@ CURVES = (
 def test_the_lines_say_the_numbers_of_the_studies_and_only_of_engines_in_question():
     says = {"cost": "it costs 2 ms.", "real": "9 of 10.", "near": "There it is seldom right."}
     restitution = (
-        "tuned engines are off by 1.0·10⁻⁵ (exudyn). With defaults they are off by 0.20 (exudyn). Impacts are missed "
-        "by exudyn. This is the restitution; restitution lies between 0 and 1."
+        "tuned engines are off by 1.0·10⁻⁵ (exudyn). With defaults they are off by 0.20 (exudyn). With defaults, "
+        "impacts are missed by exudyn. This is the restitution; restitution lies between 0 and 1."
     )
     outcomes = (
         "under recorded motions, tuned engines change the outcome or fail in 1 of 170 (exudyn); with defaults, in 10 "
         "of 50 (exudyn). Engine and model both overturn, but at another time, in 2 (exudyn) more; with defaults, in 6 "
         "(exudyn) more. Under all other motions, tuned engines change the outcome or fail in 7 of 80 (7 under a table)."
     )
-    near = "the counts above leave these runs out, of each tuned engine’s 30 of 200 (recorded motions) and 20 of 100 "
+    near = "the counts above leave out, of the runs of each tuned engine, 30 of 200 (recorded motions) and 20 of 100 "
     assert lines(SETUPS, JUDGED, shown([*SHARES, TABLE], SETUPS), says) == [
         ("Restitution", restitution),
         ("Outcomes", outcomes),
