@@ -76,7 +76,7 @@ def advice(found: Glance, peaks: Sequence[Peaks]) -> list[Table]:
     names, scenes = listed(found.asked), list(dict.fromkeys(scene for one in kept for scene in one.elsewhere))
     first = Table(
         f"What to use of {names}, tuned. Judged in one scene ({found.scene}): the cheapest level that, as all finer "
-        "ones, keeps peak tilt over slenderness, and the overturning boundary of two pulses, this accurate. Costs "
+        "ones, keeps peak tilt over slenderness, and the overturning boundary of pulses, this accurate. Costs "
         f"within a factor of {number(found.alike, 2)} are the same; then each engine is named",
         ("accuracy", "engine", "level", "CPU time per simulated second", "command"),
         [
@@ -155,29 +155,38 @@ def _outcomes(shares):
     """How many runs end otherwise under recorded motions, or under the first others that were run, and under all of the
     others together."""
     motions = next((one.motions for one in shares if "record" in one.motions), shares[0].motions if shares else "")
-    ends, late, others = [], [], []
-    for tier, begin in ((TUNED, "tuned engines change the outcome or fail in"), (DEFAULTS, "with defaults, in")):
-        some = [one for one in _tier(shares, tier) if one.motions == motions]
-        rest = [one for one in _tier(shares, tier) if one.motions != motions]
-        if some:
-            ends.append(f"{begin} {_by_engine({one.engine: f'{one.changed} of {one.runs}' for one in some})}")
-        if any(one.late for one in some):
-            falls = "" if late else "engine and model both overturn, but at another time, in "
-            where = "with defaults, in " * bool(late)
-            late.append(f"{falls}{where}{_by_engine({one.engine: str(one.late) for one in some})} more")
-        if rest:
-            changed, runs = _changed(rest)
-            others.append(f"{begin} {changed} of {runs}{_spread(rest) if tier == TUNED else ''}")
-    told = [f"under {motions}, {'; '.join(ends)}."] if ends else []
-    told += [f"{'; '.join(late).capitalize()}."] if late else []
-    return " ".join([*told, f"Under all other motions, {'; '.join(others)}."] if others else told)
+    here = [one for one in shares if one.motions == motions]
+    found = (
+        (f"under {motions} the outcome is another or the run fails", _ends, here),
+        ("Engine and model both overturn, but at another time", _late, here if any(one.late for one in here) else []),
+        (
+            "Under all other motions the outcome is another or the run fails",
+            _together,
+            [one for one in shares if one.motions != motions],
+        ),
+    )
+    told = []
+    for words, count, chosen in found:
+        tiers = ((how, _tier(chosen, tier)) for tier, how in ((TUNED, "tuned"), (DEFAULTS, "with defaults")))
+        if parts := [f"{how}, in {count(some)}" for how, some in tiers if some]:
+            told.append(f"{words}: {'; '.join(parts)}.")
+    return " ".join(told)
 
 
-def _spread(shares):
-    """Under which motions outcomes are changed."""
-    found = {motions: _changed(some)[0] for (motions,), some in grouped(shares, lambda one: one.motions).items()}
-    told = [f"{changed} under {motions}" for motions, changed in found.items() if changed]
-    return f" ({listed(told)})" if told else ""
+def _ends(shares):
+    return _by_engine({one.engine: f"{one.changed} of {one.runs}" for one in shares})
+
+
+def _late(shares):
+    return f"{_by_engine({one.engine: one.late or 0 for one in shares})} more"
+
+
+def _together(shares):
+    """Of all of them, and under which motions those of tuned engines are."""
+    changed, runs = _changed(shares)
+    by_motions = {motions: _changed(some)[0] for (motions,), some in grouped(shares, lambda one: one.motions).items()}
+    told = [f"{count} under {motions}" for motions, count in by_motions.items() if count and shares[0].kind == TUNED]
+    return f"{changed} of {runs}{f' ({listed(told)})' if told else ''}"
 
 
 def _left_out(shares):

@@ -312,7 +312,7 @@ def _endings(rows: Sequence[Endings], width: int) -> Chart:
         lines += [motions, *members]
     shown = COLUMNS if width == WIDE else COLUMNS[:1]
     chart = Chart(
-        Axis("", 0, 1, ticks=((0, "0"), (0.5, "50 %"), (1, "100 %"))),
+        Axis("", 0, 1, ticks=((0, "0"), (0.5, "50"), (1, "100 %"))),
         Axis("", len(lines) - 0.4, -0.6, ticks=()),
         f"Share of runs whose outcome differs: {'; '.join(map(_told, rows))}.",
         height=52 + LINE * len(lines),

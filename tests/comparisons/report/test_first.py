@@ -49,9 +49,10 @@ def test_the_lines_say_the_numbers_of_the_studies_and_only_of_engines_in_questio
         "impacts are missed by exudyn. This is the restitution; restitution lies between 0 and 1."
     )
     outcomes = (
-        "under recorded motions, tuned engines change the outcome or fail in 1 of 170 (exudyn); with defaults, in 10 "
-        "of 50 (exudyn). Engine and model both overturn, but at another time, in 2 (exudyn) more; with defaults, in 6 "
-        "(exudyn) more. Under all other motions, tuned engines change the outcome or fail in 7 of 80 (7 under a table)."
+        "under recorded motions the outcome is another or the run fails: tuned, in 1 of 170 (exudyn); with defaults, "
+        "in 10 of 50 (exudyn). Engine and model both overturn, but at another time: tuned, in 2 (exudyn) more; with "
+        "defaults, in 6 (exudyn) more. Under all other motions the outcome is another or the run fails: tuned, in 7 of "
+        "80 (7 under a table)."
     )
     near = "the counts above leave out, of the runs of each tuned engine, 30 of 200 (recorded motions) and 20 of 100 "
     assert lines(SETUPS, JUDGED, shown([*SHARES, TABLE], SETUPS), says) == [
