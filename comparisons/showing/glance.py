@@ -317,7 +317,7 @@ def _endings(rows: Sequence[Endings], width: int) -> Chart:
         f"Share of runs whose outcome differs: {'; '.join(map(_told, rows))}.",
         height=52 + LINE * len(lines),
         width=width,
-        left=12 + round(LETTER * 0.53 * max(len(f"{one.engine}, {one.kind}") for one in rows)),
+        left=12 + round(LETTER * 0.57 * max(len(f"{one.engine}, {one.kind}") for one in rows)),
         right=shown[-1][0] + 12,
         head=12,
     )
