@@ -206,7 +206,12 @@ def own_restitution(block: Result, outside: str = "") -> Judgement:
         for row in block.rows
         if row["engine"] != "analytic"
     }
-    return Judgement("restitution of this block, free: error, rms", marks, RESTITUTION)
+    return Judgement(
+        "error of restitution by states (tilt rates before and after impacts of this block without slip), rms, free "
+        "rocking",
+        marks,
+        RESTITUTION,
+    )
 
 
 def not_to_do(setups: Sequence[Setup]) -> list[str]:

@@ -45,12 +45,15 @@ def first_screen(stored: Sequence[Stored]) -> dict[str, Any]:
 
 def headlines(first: Mapping[str, Any]) -> str:
     """The first screen as Markdown: its lines, its charts, and the recommendation."""
-    advice = first["advice"]
-    rows = [advice.columns, ["---"] * len(advice.columns), *advice.rows] if advice else []
     charts = " ".join(f"![{ALT[name]}](comparisons/report/gallery/{name}.svg)" for name in ALT if first[name])
-    lines = [" ".join(f"**{about}:** {words}" for about, words in line) for line in first["lines"]]
-    told = [line for words in lines for line in (*wrap(words, 120), "")]
-    return "\n".join((*told, charts, "", *(f"| {' | '.join(row)} |" for row in rows)))
+    told = [line for about, words in first["lines"] for line in (*wrap(f"**{about}:** {words}", 120), "")]
+    return "\n".join((*told, charts, *(line for one in first["advice"] for line in _markdown(one))))
+
+
+def _markdown(one):
+    """A table with its caption above."""
+    rows = [one.columns, ["---"] * len(one.columns), *one.rows]
+    return ["", *wrap(f"{one.caption}:", 120), "", *(f"| {' | '.join(row)} |" for row in rows)]
 
 
 def origins(results: Mapping[str, Result]) -> str:

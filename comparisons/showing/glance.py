@@ -12,15 +12,18 @@ from markupsafe import Markup
 
 from ..measuring.statistics import equality
 from .charts import LETTER, WIDTH, Axis, Chart, broad
-from .parts import Figure, Table, grouped, percent, short
+from .parts import Figure, grouped, percent, setting_of, short
 
 
 @dataclass(frozen=True)
 class Endings:
     """How many runs of a variant end otherwise than the model's, under one kind of motion.
 
-    kind: of the variant. runs: those judged; of these failed; missed: overturn in the model alone; added: in the
-    engine alone; other: end, or fall, otherwise in another way. interval: 95 % of the share of all four.
+    kind: of the variant. runs: those judged, away from the model's outcome boundaries; of these failed; missed:
+    overturn in the model alone; added: in the engine alone; other: neither overturns, and the outcome is another; late:
+    both overturn, at another time, None: not asked; untold: another outcome or failed, which of them is not known.
+    interval: 95 % of the share of all six. left_out: further runs, near a boundary; left_differing: those of them that
+    overturn in engine or model alone, or failed, None: not known.
     """
 
     motions: str
@@ -33,10 +36,19 @@ class Endings:
     added: int
     other: int
     interval: tuple[float, float]
+    late: int | None = None
+    untold: int = 0
+    left_out: int = 0
+    left_differing: int | None = None
+
+    @property
+    def changed(self) -> int:
+        """Runs with another outcome, or none."""
+        return self.failed + self.missed + self.added + self.other + self.untold
 
     @property
     def differing(self) -> int:
-        return self.failed + self.missed + self.added + self.other
+        return self.changed + (self.late or 0)
 
 
 @dataclass(frozen=True)
@@ -55,48 +67,116 @@ class Curve:
 
 
 @dataclass(frozen=True)
+class Advised:
+    """A level that is recommended for an accuracy [-], or that none keeps it: engine "". parameter, level: what is set,
+    and its value; cost: CPU time [s/s]; command: which sets it.
+
+    elsewhere: {what was measured in another scene: its error [-], None where the run has none}.
+    """
+
+    accuracy: float
+    engine: str = ""
+    variant: str = ""
+    parameter: str = ""
+    level: float = math.nan
+    cost: float = math.nan
+    command: str = ""
+    elsewhere: Mapping[str, float | None] = field(default_factory=dict)
+
+    @property
+    def setting(self) -> str:
+        return setting_of(vars(self))
+
+
+@dataclass(frozen=True)
+class Peaks:
+    """How far the peak tilt of a variant's runs is off at one level, over slenderness, of runs that have a peak."""
+
+    motions: str
+    engine: str
+    variant: str
+    parameter: str
+    level: float
+    errors: tuple[float, ...]
+
+    @property
+    def setting(self) -> str:
+        return setting_of(vars(self))
+
+    def within(self, error: float) -> str:
+        kept = [one <= error for one in self.errors]
+        return f"{sum(kept)} of {len(kept)} ({percent(sum(kept) / len(kept))})" if kept else "none has a peak"
+
+
+@dataclass(frozen=True)
 class Glance:
     """What a study gives to the report's first screen.
 
     says: {place in the answer: a sentence}. endings: of variants. curves: of solvers, in the scene that is called
-    `scene`. advice: the recommendation by accuracy.
+    `scene`. advice: the recommendation by accuracy, of the engines `asked`, judged in that scene; alike: the factor
+    below which costs are the same. peaks: by which a recommendation is seen elsewhere.
     """
 
     says: Mapping[str, str] = field(default_factory=dict)
     endings: tuple[Endings, ...] = ()
     curves: tuple[Curve, ...] = ()
     scene: str = ""
-    advice: Table | None = None
+    advice: tuple[Advised, ...] = ()
+    asked: tuple[str, ...] = ()
+    alike: float = 1.0
+    peaks: tuple[Peaks, ...] = ()
 
 
 WIDE = 590
 WORST = 1.0  # of errors; what lies beyond stands at the frame
 FINEST = -6  # power of ten at which the errors end where no engine has one
-LINE = 14  # height of a row of the second chart
+LINE = 15  # height of a row of the second chart
 COLUMNS: tuple[tuple[int, str, Callable[[Endings], str]], ...] = (
-    (76, "differ", lambda one: f"{one.differing} of {one.runs}"),
-    (128, "missed", lambda one: str(one.missed)),
-    (174, "added", lambda one: str(one.added)),
-    (215, "other", lambda one: str(one.other)),
-    (260, "failed", lambda one: str(one.failed)),
+    (80, "differ", lambda one: f"{one.differing} of {one.runs}"),
+    (130, "missed", lambda one: _way(one, "missed")),
+    (176, "added", lambda one: _way(one, "added")),
+    (216, "other", lambda one: _way(one, "other")),
+    (248, "late", lambda one: _way(one, "late")),
+    (292, "failed", lambda one: _way(one, "failed")),
+    (350, "left out", lambda one: _left_out(one)),
 )  # beside the bars: where a column ends, its head, its words
-WAYS = {"missed": "overturning missed", "added": "overturning added", "other": "other", "failed": "failed"}
+WAYS = {
+    "missed": "overturning missed",
+    "added": "overturning added",
+    "other": "another outcome",
+    "late": "falls at another time",
+    "failed": "failed",
+    "untold": "another outcome or failed",
+}
+
+
+def _way(one, way):
+    """How many end in that way, where that is known."""
+    count = getattr(one, way)
+    return "–" if count is None or (one.untold and way != "late") else str(count)
+
+
+def _left_out(one):
+    return f"{'–' if one.left_differing is None else one.left_differing} of {one.left_out}" if one.left_out else "0"
 
 
 def counted(motions: str, rows: Iterable[Mapping[str, Any]]) -> tuple[Endings, ...]:
-    """The `Endings` of every variant from its judged runs: rows of a study, each with engine, variant and its kind, and
-    its class "right", "differs" or "failed"; falls and model_falls, whether the block overturns; group: runs of one
-    count as one in the interval.
+    """The `Endings` of every variant from its runs: rows of a study, each with engine, variant and its kind, and its
+    class; falls and model_falls, whether the block overturns, falls None where the run failed; changed: whether the
+    outcome is another; group: runs of one count as one in the interval.
     """
     found = []
-    for (engine, variant, kind), runs in grouped(rows, "engine", "variant", "tier").items():
+    for (engine, variant, kind), every in grouped(rows, "engine", "variant", "tier").items():
+        left, runs = ([row for row in every if (row["class"] == "left out") == out] for out in (True, False))
         wrong = [row for row in runs if row["class"] == "differs"]
         ways = [(row["model_falls"], row["falls"]) for row in wrong]
         missed, added = ways.count((True, False)), ways.count((False, True))
         failed = sum(row["class"] == "failed" for row in runs)
+        late = sum(not row["changed"] for row in wrong)
         _, interval = equality([row["class"] != "right" for row in runs], [row["group"] for row in runs])
-        counts = len(runs), failed, missed, added, len(wrong) - missed - added
-        found.append(Endings(motions, engine, variant, kind, *counts, interval))
+        counts = len(runs), failed, missed, added, len(wrong) - missed - added - late
+        near = sum(row["falls"] != row["model_falls"] for row in left)
+        found.append(Endings(motions, engine, variant, kind, *counts, interval, late, 0, len(left), near))
     return tuple(found)
 
 
@@ -119,8 +199,8 @@ class Box(NamedTuple):
 def costs(curves: Sequence[Curve]) -> Figure:
     """Error over cost of every solver, its levels joined, its name beside it."""
     caption = (
-        "Each mark is one step size, stiffness or tolerance. Open marks: defaults; crosses: missed impacts; "
-        "marks on the frame lie beyond it. Lower left is better."
+        "Each mark is one step size, stiffness or tolerance. Crosses: levels at which impacts were missed. Open marks: "
+        "defaults that missed none. Marks on the edge lie outside the plot. Lower left is better."
     )
     return broad(_costs(curves, WIDE), [_costs(curves, WIDTH)], caption)
 
@@ -137,23 +217,27 @@ def _costs(curves: Sequence[Curve], width: int) -> Chart:
     y = Axis("error of peak tilt / slenderness γ", 10.0**finest, WORST * 1.0001, "log", shares)
     says = f"Error of peak tilt over CPU time of {', '.join(one.who for one in shown)}."
     chart = Chart(x, y, says, height=400 if width == WIDE else 420, width=width, left=72, right=16)
-    places = {}
-    for one in sorted(shown, key=lambda one: one.subject):
-        cpu, errors, sound, told = zip(*one.points, strict=True)
-        errors = tuple(min(max(error, 10.0**finest), WORST) for error in errors)
+    places, ordered = {}, sorted(shown, key=lambda one: one.subject)
+    drawn = [
+        [(cpu, min(max(error, 10.0**finest), WORST), sound, says) for cpu, error, sound, says in one.points]
+        for one in ordered
+    ]
+    for one, points in zip(ordered, drawn, strict=True):
+        cpu, errors, *_ = zip(*points, strict=True)
         chart.line(cpu, errors, one.who, thin=not one.subject)
-        for whole in (True, False):
-            some = [k for k in range(len(cpu)) if sound[k] == whole]
-            chart.dots(
-                [cpu[k] for k in some],
-                [errors[k] for k in some],
-                one.who,
-                filled=one.kind != "defaults",
-                small=not one.subject and one.kind != "model",
-                says=[told[k] for k in some],
-                mark=None if whole else "x",
-            )
         places[one.who] = chart.at(cpu, errors)
+    for missed in (False, True):  # crosses last: no mark hides that impacts were missed
+        for one, points in zip(ordered, drawn, strict=True):
+            some = [point for point in points if point[2] != missed]
+            chart.dots(
+                [point[0] for point in some],
+                [point[1] for point in some],
+                one.who,
+                filled=missed or one.kind != "defaults",  # a cross has no inside to leave open
+                small=not one.subject and one.kind != "model",
+                says=[point[3] for point in some],
+                mark="x" if missed else None,
+            )
     named = [one for one in shown if width == WIDE or one.subject or one.kind == "model"]  # the others: by the pointer
     _name(chart, sorted(named, key=lambda one: not one.subject), places)
     return chart
@@ -212,8 +296,12 @@ def endings(found: Iterable[Endings]) -> Figure:
     """Shares of runs that end otherwise than the model's, motion by motion."""
     rows = list(found)
     caption = (
-        "Lines: 95 % intervals, runs under one motion as one. Other: overturns in another swing, or stands, slides or "
-        "rocks instead. Failed: no result, or unphysical. Defaults: fewer scenes."
+        "Lines: 95 % intervals, runs under one motion as one. Missed, added: overturns in the model alone, in the "
+        "engine alone. Other: stands, slides or rocks instead. Late: both overturn, at another time. Failed: no "
+        "result, or unphysical. Left out, in every row: runs near an outcome boundary of the model, where a change of "
+        "the scene by 10⁻⁴ changes its end (pulses: within 1 % of the boundary); of them are counted those that "
+        "overturn in engine or model alone, or fail. –: not asked, or not stored. Defaults: fewer scenes. Pulses under "
+        "which the block would jump are not counted."
     )
     return broad(_endings(rows, WIDE), [_endings(rows, WIDTH)], caption)
 
@@ -224,12 +312,12 @@ def _endings(rows: Sequence[Endings], width: int) -> Chart:
         lines += [motions, *members]
     shown = COLUMNS if width == WIDE else COLUMNS[:1]
     chart = Chart(
-        Axis("", 0, 1, ticks=((0, "0"), (0.25, "25 %"), (0.5, "50 %"), (0.75, "75 %"), (1, "100 %"))),
+        Axis("", 0, 1, ticks=((0, "0"), (0.5, "50"), (1, "100 %"))),
         Axis("", len(lines) - 0.4, -0.6, ticks=()),
         f"Share of runs whose outcome differs: {'; '.join(map(_told, rows))}.",
         height=52 + LINE * len(lines),
         width=width,
-        left=12 + round(LETTER * 0.53 * max(len(f"{one.engine}, {one.kind}") for one in rows)),
+        left=12 + round(LETTER * 0.57 * max(len(f"{one.engine}, {one.kind}") for one in rows)),
         right=shown[-1][0] + 12,
         head=12,
     )
@@ -253,8 +341,9 @@ def _endings(rows: Sequence[Endings], width: int) -> Chart:
 
 
 def _told(one: Endings) -> str:
-    share, ways = percent(one.differing / one.runs), (f"{getattr(one, way)} {words}" for way, words in WAYS.items())
-    return f"{one.motions}, {one.engine}, {one.kind}: {share} of {one.runs}; {', '.join(ways)}"
+    share = percent(one.differing / one.runs)
+    ways = [f"{count} {words}" for way, words in WAYS.items() if (count := getattr(one, way))]
+    return f"{one.motions}, {one.engine}, {one.kind}: {'; '.join((f'{share} of {one.runs}', *ways))}"
 
 
 def swatches(found: Iterable[Endings]) -> list[tuple[Markup, str]]:

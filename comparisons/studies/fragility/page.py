@@ -181,10 +181,10 @@ def glance(result: Result) -> Glance:
             "tier": tiers[NAME.of(row)],
             "model_falls": row["model_overturns"],
             "falls": row["overturns"],
+            "changed": "outcome" in (row["quantities"] or ()),
             "group": row["seed"],
         }
         for row in where(result.rows, part="run")
-        if row["class"] != "left out"
     ]
     return Glance(endings=counted("synthetic earthquakes", runs))
 

@@ -1,5 +1,6 @@
 """What is shown of the overturning study."""
 
+import itertools
 import math
 import statistics
 from functools import partial
@@ -178,11 +179,12 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
 def glance(result: Result) -> Glance:
     """Of the coarse scan, away from the boundaries."""
     tiers = {NAME.of(one): one["tier"] for one in result.settings["variants"]}
+    near = _near_boundaries(result)
     return Glance(
         endings=tuple(
             Endings(
                 "pulses", row["engine"], row["variant"], tiers[NAME.of(row)], row["runs"], row["failed"], row["only_a"],
-                row["only_b"], 0, tuple(row["interval"])
+                row["only_b"], 0, tuple(row["interval"]), left_out=near
             )
             for row in where(result.rows, part="scan")
         )
@@ -196,6 +198,17 @@ def _scanned(settings):
 
 def _share(row):
     return (row["only_a"] + row["only_b"] + row["failed"]) / row["runs"]
+
+
+def _near_boundaries(result):
+    """How many points of the scan are left out as near a boundary, not counting others where the block would jump."""
+    settings = result.settings
+    edges = grouped(where(result.rows, part="edge"), "ground", "shape", "frequency")
+    places = itertools.product(settings["grounds"], settings["shapes"], settings["frequencies"])
+    return sum(
+        any(abs(amplitude / edge["amplitude"] - 1) <= settings["band"] for edge in edges.get(place, ()))
+        for place, amplitude in itertools.product(places, settings["scan"])
+    )
 
 
 def _rated(result):

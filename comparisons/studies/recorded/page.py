@@ -1,5 +1,6 @@
 """What is shown of recorded motions: how many runs end otherwise, in which way, and every one of them."""
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -11,7 +12,7 @@ from engines.comparison import FALL
 from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure, key_of
 from ...showing.figures import as_it_comes, kind, leading, mains, subject
-from ...showing.glance import Glance, counted
+from ...showing.glance import Glance, Peaks, counted
 from ...showing.parts import (
     NAME,
     Column,
@@ -142,17 +143,33 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
 
 
 def glance(result: Result) -> Glance:
+    """All runs, and how far their peak tilt is off at the one level that was run."""
     runs = [
         {
             **row,
             "model_falls": row["model_outcome"] == "overturns",
-            "falls": row["outcome"] == "overturns",
+            "falls": None if row["outcome"] == "failed" else row["outcome"] == "overturns",
+            "changed": "outcome" in row.get("quantities", ()),
             "group": row["record"],
         }
         for row in where(result.rows, part="run")
-        if row["class"] != "left out"
     ]
-    return Glance(endings=counted("recorded earthquakes", runs))
+    return Glance(endings=counted("recorded earthquakes", runs), peaks=tuple(_peaks(result, runs)))
+
+
+def _peaks(result, runs):
+    """Of tuned variants. A relative error times the largest tilt, at most the slenderness, is at least the error over
+    slenderness; a failed run keeps no error."""
+    for one in where(result.settings["variants"], tier="tuned"):
+        mine = where(runs, engine=one["engine"], variant=one["variant"], **{"class": {"right", "differs", "failed"}})
+        errors = [
+            math.inf if row["falls"] is None else abs(row["own_tilt_error"]) * min(row["model_tilt"], 1.0)
+            for row in mine
+            if row["falls"] is None or row["own_tilt_error"] is not None
+        ]
+        yield Peaks(
+            "recorded earthquakes", one["engine"], one["variant"], one["parameter"], one["default"], tuple(errors)
+        )
 
 
 def summary(rows: Sequence[dict[str, Any]]) -> Iterator[dict[str, Any]]:

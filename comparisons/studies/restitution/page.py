@@ -141,7 +141,8 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
     rows, borne = rated(result), where(result.rows, part="bearings", factor="all")
     return (
         Judgement(
-            "restitution by states, free rocking without slip: error, rms",
+            "error of restitution by states (tilt rates before and after impacts without slip), rms, free rocking, the "
+            "worse of two grounds",
             {(row["engine"], row["variant"]): _free_mark(row) for row in rows},
             RESTITUTION,
         ),

@@ -18,7 +18,19 @@ from .drawn import agreement, plane, reliabilities
 from .judging import AS_IT_IS, AUTHORS, BEYOND, BY_RECORD, CURVE, FREQUENT, IN_SAMPLE, MODEL, ONE, THRESHOLD
 from .measures import TABLE
 from .runs import ALL, ANSWERS, counted
-from .words import apart, at_a_glance, bounds, how, more_right, name_of, not_shown, sentence, title
+from .words import (
+    apart,
+    at_a_glance,
+    bounds,
+    how,
+    more_right,
+    name_of,
+    near_boundaries,
+    not_shown,
+    sentence,
+    title,
+    together,
+)
 
 APART = 0.15  # between what was observed and what was predicted, of cells that are listed
 FORECAST, CHANGE = Column("predicted by", "forecast"), Column("change of the model", "change")
@@ -113,26 +125,37 @@ def _pairs(result):
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
     """Whether an engine ends as the model does under a table's motions, by (engine, variant)."""
-    rows = where(result.rows, part="engine")
-    alone = len({row["specimen"] for row in rows}) == 1
-    marks = {
-        (row["engine"], row["variant"]): equal_mark(tally_of(row)) for row in rows if row["specimen"] == ALL or alone
-    }
-    return (Judgement("outcomes that differ under shake-table motions", marks),) if marks else ()
+    marks = {(row["engine"], row["variant"]): equal_mark(tally_of(row)) for row in together(result)}
+    heading = "outcomes that differ under shake-table motions, near outcome boundaries too"
+    return (Judgement(heading, marks),) if marks else ()
 
 
 def glance(result: Result) -> Glance:
-    rows = where(result.rows, part="engine")
-    alone = len({row["specimen"] for row in rows}) == 1
-    endings = tuple(
-        Endings(
-            "shake-table motions", row["engine"], row["variant"], row["tier"], row["size"], row["failed"],
-            row["only_a"], row["only_b"], 0, tuple(row["interval"])
-        )
-        for row in rows
-        if row["specimen"] == ALL or alone
-    )  # fmt: skip
-    return Glance(says={"real": words} if (words := at_a_glance(result)) else {}, endings=endings)
+    endings = tuple(_endings(row, result.settings["records"]) for row in together(result))
+    told = {"real": at_a_glance(result), "near": near_boundaries(result)}
+    return Glance(says={key: words for key, words in told.items() if words}, endings=endings)
+
+
+def _endings(row, records):
+    """Away from the model's outcome boundaries. Where runs near one differ too, it is not stored which way the others
+    do; each record is taken to have runs away from them."""
+    runs, differing = row["size"] - row["near"], apart(row) - row["on_edge"]
+    hidden, groups = row["on_edge"] > 0, min(records, runs)
+    return Endings(
+        "shake-table motions",
+        row["engine"],
+        row["variant"],
+        row["tier"],
+        runs,
+        failed=0 if hidden else row["failed"],
+        missed=0 if hidden else row["only_a"],
+        added=0 if hidden else row["only_b"],
+        other=0,
+        interval=wilson(differing / runs * groups, groups) if runs else (0.0, 1.0),
+        untold=differing if hidden else 0,
+        left_out=row["near"],
+        left_differing=row["on_edge"],
+    )
 
 
 def tally_of(row: dict[str, Any]) -> dict[str, Any]:

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from ...running.provenance import Result
-from ...showing.parts import number, percent, short, where
+from ...showing.parts import grouped, number, percent, short, where
 from ...showing.wording import listed
-from .judging import AS_IT_IS, BY_RECORD, CURVE, EACH, FREQUENT, MODEL, THRESHOLD
+from .judging import AS_IT_IS, BY_RECORD, CURVE, EACH, FREQUENT, IN_SAMPLE, MODEL, ONE, THRESHOLD
 from .measures import CORNER
 from .runs import ALL
 
@@ -26,8 +26,8 @@ def sentence(result: Result, engines: Sequence[dict[str, Any]]) -> str:
     wrong = listed([str(row["size"] - row["right"]) for row in scores])
     names = listed([row["specimen"] for row in scores])
     words = [f"The model is wrong in {wrong} of {len(result.settings['tests'])} tests ({names})."]
-    together = where(engines, specimen=ALL) or engines
-    if tuned := where(together, tier="tuned"):
+    every = where(engines, specimen=ALL) or engines
+    if tuned := where(every, tier="tuned"):
         said = [f"{apart(row)} of {row['size']} ({row['engine']})" for row in tuned]
         fits = [one for row in where(result.rows, part="fit", change=AS_IT_IS) for one in row["neighbours"]]
         first, second, *_ = result.settings["specimens"][0]["grid"]
@@ -36,7 +36,7 @@ def sentence(result: Result, engines: Sequence[dict[str, Any]]) -> str:
             f"{number(math.degrees(second - first), 1)} deg smaller or larger changes {min(fits)} to {max(fits)} of "
             f"{len(result.settings['tests'])} outcomes of the model itself."
         )
-    if unsafe := [row for row in where(together, tier="defaults") if _unsafe(row)]:
+    if unsafe := [row for row in where(every, tier="defaults") if _unsafe(row)]:
         chances = listed([f"{number(row['p_records'], 2)} in {row['engine']}" for row in unsafe])
         words.append(
             "With defaults, engines err on the unsafe side: they miss more overturnings than they add (p by record: "
@@ -46,22 +46,58 @@ def sentence(result: Result, engines: Sequence[dict[str, Any]]) -> str:
 
 
 def at_a_glance(result: Result) -> str:
-    """How often the model is right about real blocks, beside a guess and tuned engines; "" where it was not judged."""
-    count = len(result.settings["tests"])
-    scores = where(result.rows, part="score", judged=BY_RECORD)
-    right = {name: [row["right"] for row in where(scores, forecast=name)] for name in (MODEL, FREQUENT)}
-    if not right[MODEL]:
+    """How often the model is right about real blocks, beside what is simpler and, fitted alike, beside engines; ""
+    where it was not judged."""
+    specimens = [one["name"] for one in result.settings["specimens"]]
+    held = where(result.rows, part="score", judged=BY_RECORD)
+    if not (model := where(held, forecast=MODEL)):
         return ""
-    shares = listed([percent(one / count) for one in right[MODEL]])
-    guess = listed([percent(one / count) for one in right[FREQUENT]])
-    own = [row["right"] for row in where(result.rows, part="engine", tier="tuned") if row["right"] is not None]
-    engines = [percent(one / count) for one in (min(own), max(own))] if own else []
-    tuned = f", tuned engines {' to '.join(dict.fromkeys(engines))}" if engines else ""
-    always = f" Always guessing the more frequent outcome is right in {guess}." if guess else ""
-    names = listed([one["name"] for one in result.settings["specimens"]])
+    rivals = {CURVE: "The curve is right", THRESHOLD: "one threshold of PGV", FREQUENT: FREQUENT}
+    told = [f"{words} in {_right(where(held, forecast=name))}" for name, words in rivals.items()]
+    alike = where(result.rows, part="score", judged=IN_SAMPLE, forecast=ONE)
+    engines = grouped(where(result.rows, part="engine", specimen=set(specimens)), "engine", "variant").values()
+    fitted = [f"{_right(some, False)} ({name_of(some[0])})" for some in engines]
+    words = f"on a shake table the model is right in {_right(model)} of {model[0]['size']} tests ({listed(specimens)})."
+    if pairs := where(result.rows, part="paired", forecast=MODEL, beside=CURVE):
+        words += f" {_beside((where(pairs, specimen=ALL) or pairs)[-1], sum(row['size'] for row in model))}"
     return (
-        f"on a shake table, the model predicts {shares} of {count} outcomes ({names}){tuned}.{always} Restitution was "
-        "not measured."
+        f"{words} {listed(told)}. All of these are held out by record. Engines go by another rule, one slenderness "
+        f"fitted to all tests. By this rule {listed([f'{_right(alike, False)} (the model)', *fitted])} are right. "
+        "Restitution was not measured."
+    )
+
+
+def _right(rows, shares=True):
+    """Right answers of each specimen, with their shares; "–" where they are not told."""
+    right = listed(["–" if row["right"] is None else str(row["right"]) for row in rows])
+    return f"{right} ({listed([percent(row['right'] / row['size']) for row in rows])})" if shares else right
+
+
+def _beside(pair, size):
+    """Whether the model is shown to be better than the curve."""
+    low, high = pair["more_interval"]
+    words = "better" if low > 0 else "worse" if high < 0 else "not shown to be better"
+    more = f"{pair['more_right']} more of {size} (95 % interval {low:.0f} to {high:.0f})".replace("-", "−")
+    return f"It is {words} than a curve in PGA and PGV: it is right in {more}."
+
+
+def together(result: Result) -> list[dict[str, Any]]:
+    """The rows of engines, of all specimens together."""
+    rows = where(result.rows, part="engine")
+    return where(rows, specimen=ALL) or rows
+
+
+def near_boundaries(result: Result) -> str:
+    """How many outcomes tuned engines change in all runs, and how many of these are near an outcome boundary."""
+    rows = where(together(result), tier="tuned")
+    missed, added, failed, size, near, there = (
+        sum(row[key] for row in rows) for key in ("only_a", "only_b", "failed", "size", "near", "on_edge")
+    )
+    if not rows:
+        return ""
+    return (
+        f"On the shake table, with these runs, tuned engines miss {missed} overturnings, add {added} and fail {failed} "
+        f"times in {size} runs. Of these {missed + added + failed}, {there} are in the {near} runs near a boundary."
     )
 
 

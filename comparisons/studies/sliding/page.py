@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from analytic.response import COMPARED
-from engines.comparison import PEAK
+from engines.comparison import END, PEAK
 from engines.comparison import RESTITUTION as RESTITUTION_LIMIT
 
 from ...measuring.errors import rms
@@ -109,7 +109,7 @@ def _reconciled(rows):
         f"“Right” asks for everything: outcome, time of a fall, peaks and slip within {percent(PEAK, 1)}, restitution "
         f"within {RESTITUTION_LIMIT:g} and no impact missed or added. {how} are right in "
         f"{each(lambda row: '{right} of {judged}'.format(**row))} runs. The outcome alone, which the chart on the "
-        "first page counts, is another one or none in "
+        "first page counts apart from the time of a fall, is another one or none in "
         f"{each(lambda row: row[TURNED] + row[INSTEAD] + row['failed'])} of these. In the "
         "other runs that are not right, a fall comes at another time, or a peak, a slip or an impact is off."
     )
@@ -200,16 +200,18 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
 
 
 def glance(result: Result) -> Glance:
-    """Of the runs that differ, those with another outcome. A slip within its tolerance is no other outcome."""
+    """Of the runs that differ, those that end otherwise. A slip within its tolerance is no other end."""
+    outcomes = {row["index"]: row["outcome"] for row in where(result.rows, part="scene")}
     runs = [
         {
             **row,
-            "class": "right" if row["class"] == "differs" and row["outcome"] == row["model_outcome"] else row["class"],
-            "model_falls": row["model_outcome"] == "overturns",
-            "falls": row["outcome"] == "overturns",
+            "class": "right" if row["class"] == "differs" and not END & set(row["quantities"]) else row["class"],
+            "model_falls": outcomes[row["index"]] == "overturns",
+            "falls": None if row["outcome"] == "failed" else row["outcome"] == "overturns",
+            "changed": "outcome" in row.get("quantities", ()),
             "group": row["index"],
         }
-        for row in judged(result)
+        for row in where(result.rows, part="run")
     ]
     return Glance(endings=counted("blocks that may slide", runs))
 

@@ -2,8 +2,7 @@
 report's first screen says of it.
 """
 
-import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -13,11 +12,10 @@ from engines import ENGINES
 from ...measuring.scripts import NAME as SCRIPT
 from ...running.provenance import Result
 from ...showing.figures import mains
-from ...showing.glance import Curve, Glance
+from ...showing.glance import Advised, Curve, Glance
 from ...showing.parts import (
     COST,
     NAME,
-    UNITS,
     Column,
     Judgement,
     Mark,
@@ -37,9 +35,8 @@ from .cases import NEEDED, PLAIN
 
 FINE, FINE_LEVELS, FINEST = "horizon_tilt", (1e-6, 1e-9, 1e-12), 1e-16  # of integrators alone; the last is drawn
 KERNEL = "analytic, kernel"
-# What is shown of a scene: the errors of one line that it has, of the first line of which it has any. All are numbers
-# without a unit.
-SHOWN = (("boundary_shift",), ("restitution", "peak_tilt"), ("peak_displacement",), (FINE,))
+# What is shown of a scene: the errors that it has of the first line whose first it has. All are numbers without a unit.
+SHOWN = (("boundary_shift", "peak_tilt"), ("restitution", "peak_tilt"), ("peak_displacement",), (FINE,))
 MEASURES = {
     "restitution": "error of restitution, rms [-]",
     "peak_tilt": "error of peak tilt over slenderness [-]",
@@ -49,10 +46,11 @@ MEASURES = {
 }
 WANTED = (1e-2, 1e-3, 1e-4)  # errors at which costs are compared
 ASKED = 1e-3
-JUDGED = ("peak_tilt", "boundary_shift")  # errors by which a level is recommended
+PEAK, BOUNDARY = "peak_tilt", "boundary_shift"
 CPU = Column("CPU time of a run [s]", "cpu_seconds")
 TIMES = "cpu_seconds", "cpu_per_second", "cpu_per_step"
 NOISE = 95  # percentile of the levels
+NOT_REACHED = Mark("not reached", "none")
 SHORT = {KERNEL: "analytic model", "time-stepping": "our time stepping"}
 
 
@@ -87,7 +85,8 @@ def _least(row):
 
 def measures_of(scene: dict[str, Any]) -> list[str]:
     """The errors shown of a scene."""
-    return next(found for line in SHOWN if (found := [measure for measure in line if measure in scene["measures"]]))
+    line = next(line for line in SHOWN if line[0] in scene["measures"])
+    return [measure for measure in line if measure in scene["measures"]]
 
 
 def as_needed(result: Result) -> list[dict[str, Any]]:
@@ -105,36 +104,23 @@ def _within(row, error):
     return row["error"] is not None and row["error"] <= error
 
 
-def cost_at(rows: Sequence[dict[str, Any]], error: float) -> float | None:
-    """CPU time [s/s] at which a solver has an error, between its levels (logarithmic): `rows`, from coarse to fine.
-
-    Between the coarsest level from which on all keep the error and the one before it, if that has an error; that of the
-    coarsest level itself where it is the first. None: not reached.
-    """
-    first = len(rows) - len(kept_from(rows, lambda row: _within(row, error)))
-    if first == len(rows):
-        return None
-    fine = rows[first]
-    if not first or rows[first - 1]["error"] is None:
-        return fine["cpu_per_second"]
-    coarse, least = rows[first - 1], 1e-17
-    logs = [math.log(max(one, least)) for one in (coarse["error"], fine["error"], error)]
-    share = (logs[0] - logs[2]) / (logs[0] - logs[1])
-    return coarse["cpu_per_second"] ** (1 - share) * fine["cpu_per_second"] ** share
-
-
-def equal_costs(result: Result) -> dict[str, dict[tuple[str, str], dict[float, float | None]]]:
-    """{solver: {(scene, measure): {error: `cost_at` it}}} for the errors `WANTED`, of all scenes but the problems."""
-    found: dict[str, dict[tuple[str, str], dict[float, float | None]]] = {}
-    for (name, scene, measure), rows in grouped(as_needed(result), "name", "scene", "measure").items():
+def level_costs(result: Result) -> dict[str, dict[tuple[str, str], dict[float, float]]]:
+    """{solver: {(scene, measure): {error: CPU time [s/s] of the cheapest level that, as all finer ones, keeps it}}} for
+    the errors `WANTED` that are reached, of all scenes but the problems."""
+    found: dict[str, dict[tuple[str, str], dict[float, float]]] = {}
+    for (scene, measure), rows in grouped(as_needed(result), "scene", "measure").items():
         if measure != FINE:
-            found.setdefault(name, {})[scene, measure] = {error: cost_at(rows, error) for error in WANTED}
+            for row in rows:
+                found.setdefault(row["name"], {}).setdefault((scene, measure), {})
+            for error in WANTED:
+                for name, row in passing(rows, error).items():
+                    found[name][scene, measure][error] = row["cpu_per_second"]
     return found
 
 
 def equal_cost_tables(result: Result) -> list[Table | None]:
     """A table for each error: what it costs every solver in every scene."""
-    costs, scenes = equal_costs(result), result.settings["scenes"]
+    costs, scenes = level_costs(result), result.settings["scenes"]
     places = list(dict.fromkeys(place for some in costs.values() for place in some))
 
     def cell(place, error):
@@ -143,7 +129,7 @@ def equal_cost_tables(result: Result) -> list[Table | None]:
         def text(row):
             if place not in row["costs"]:
                 return "–"
-            if (cost := row["costs"][place][error]) is None:
+            if (cost := row["costs"][place].get(error)) is None:
                 return "not reached"
             over = f" ({number(cost / model, 2)} ×)" if model and row["name"] != KERNEL else ""
             return f"{number(1e3 * cost, 2)}{over}"
@@ -152,8 +138,8 @@ def equal_cost_tables(result: Result) -> list[Table | None]:
 
     return [
         table(
-            f"CPU time per simulated second [ms] (over the model’s) at an error of {percent(error, 1)}, "
-            "between levels; “not reached” at any level",
+            "CPU time per simulated second [ms] (over the model’s) of the cheapest level that, as all finer ones, "
+            f"keeps an error of {percent(error, 1)}",
             [{"name": name, "costs": some} for name, some in costs.items()],
             Column("solver", "name"),
             *(cell(place, error) for place in places),
@@ -162,24 +148,13 @@ def equal_cost_tables(result: Result) -> list[Table | None]:
     ]
 
 
-def plain_costs(result: Result) -> dict[str, float | None]:
-    """{solver: CPU time [s/s] at the error `ASKED` of the peak tilt in `PLAIN`}; None: not reached."""
-    found = equal_costs(result)
-    return {name: some[PLAIN, "peak_tilt"][ASKED] for name, some in found.items() if (PLAIN, "peak_tilt") in some}
-
-
 def judgements(result: Result) -> tuple[Judgement, ...]:
     """CPU time over the analytic model's at an equal error, by (engine, variant); none without that scene."""
-    pairs = {NAME.of(one): (one["engine"], one["variant"]) for one in result.settings["variants"]}
-    costs = plain_costs(result)
-    model = costs.get(KERNEL)
-    marks = {
-        pairs[name]: Mark("not reached", "none")
-        if cost is None
-        else Mark(f"{number(cost / model, 2)} ×", "none", value=cost / model)
-        for name, cost in costs.items()
-        if name in pairs and model
-    }
+    kept, marks = keeping(result, ASKED), {}
+    for name, *pair in grouped(_plain(result), "name", "engine", "variant") if KERNEL in kept else ():
+        ratio = name in kept and kept[name]["cpu_per_second"] / kept[KERNEL]["cpu_per_second"]
+        if name in {NAME.of(one) for one in result.settings["variants"]}:
+            marks[tuple(pair)] = Mark(f"{number(ratio, 2)} ×", "none", value=ratio) if ratio else NOT_REACHED
     heading = f"CPU time over the analytic model's at {percent(ASKED, 1)} of peak tilt, isolated rocking"
     return (Judgement(heading, marks, COST),) if marks else ()
 
@@ -190,15 +165,22 @@ def level_words(row: Row) -> str:
 
 def glance(result: Result) -> Glance | None:
     """The curves of the first screen's chart of costs, and the recommendation by accuracy; None without the scene."""
-    rows = where(as_needed(result), scene=PLAIN, measure="peak_tilt")
+    rows = _plain(result)
     if not rows:
         return None
     return Glance(
         says={"cost": words} if (words := at_a_glance(result)) else {},
         curves=tuple(_curves(result, rows)),
-        scene="an isolated block in an earthquake",
-        advice=advice(result),
+        scene=result.settings["scenes"][PLAIN]["title"],
+        advice=tuple(one for error in WANTED for one in advice(result, error)),
+        asked=tuple(name for name, engine in ENGINES.items() if engine.subject),
+        alike=noise(result),
     )
+
+
+def _plain(result):
+    """Rows of the scene in which engines are compared, with the error of their peak tilt."""
+    return where(as_needed(result), scene=PLAIN, measure=PEAK)
 
 
 def _curves(result, rows):
@@ -226,57 +208,42 @@ def _says(row):
     return f"{row['name']}, {level_words(row)}: {error} in {cost} ms{lost}"
 
 
-def advised(result: Result, error: float) -> dict[str, Row]:
-    """{variant: the row in `PLAIN` of the cheapest level that keeps an error}, cheapest first: tuned variants, whose
-    engine computes the impact; the error is that of the peak tilt there and of the overturning boundaries."""
-    kinds = {NAME.of(one): one for one in result.settings["variants"]}
-    able = {name for name, one in kinds.items() if one["tier"] == "tuned" and not one["applies_impact"]}
-    rows = [row for row in as_needed(result) if row["name"] in able and row["measure"] in JUDGED]
-    found = {}
-    for (name,), some in grouped(rows, "name").items():
+def keeping(result: Result, error: float) -> dict[str, Row]:
+    """{solver: the row in `PLAIN` of its cheapest level that, as all finer ones, keeps an error}, cheapest first; the
+    error is that of the peak tilt there and of the overturning boundaries."""
+    found, rows = {}, as_needed(result)
+    judged = [*where(rows, scene=PLAIN, measure=PEAK), *where(rows, measure=BOUNDARY)]
+    for (name,), some in grouped(judged, "name").items():
         by_scene = grouped(some, "scene")
-        plain = by_scene.get((PLAIN,), ())
         kept = [{row["level"] for row in kept_from(one, lambda row: _within(row, error))} for one in by_scene.values()]
-        levels = [row for row in plain if all(row["level"] in levels for levels in kept)]
+        levels = [row for row in by_scene.get((PLAIN,), ()) if all(row["level"] in levels for levels in kept)]
         if levels:
             found[name] = min(levels, key=lambda row: row["cpu_per_second"])
     return dict(sorted(found.items(), key=lambda item: item[1]["cpu_per_second"]))
 
 
-def advice(result: Result) -> Table | None:
-    """The recommendation: for each accuracy the cheapest of the engines in question, and of the others if cheaper."""
-    rows, spread = [], noise(result)
-    for error in WANTED:
-        found = advised(result, error)
-        subjects = {name: row for name, row in found.items() if ENGINES[row["engine"]].subject}
-        for name, row in list(subjects.items())[:1] or [("", None)]:
-            rows.append([f"{percent(error, 1)}", *_advised(name, row, found, spread)])
-    names = listed([name for name, engine in ENGINES.items() if engine.subject])
-    heads = (
-        "accuracy",
-        "tuned variant",
-        "level",
-        "CPU time per simulated second",
-        "cheaper engine",
-        "script (its cost: chart)",
-    )
-    caption = (
-        f"What to use of {names}: the cheapest level that, as all finer ones, keeps peak tilt and overturning boundary "
-        "this accurate"
-    )
-    return Table(caption, heads, rows)
+def advice(result: Result, error: float) -> list[Advised]:
+    """What keeps an error: of tuned variants of the engines in question, whose engine computes the impact, the cheapest
+    level of the cheapest, and that of every other that costs the same within the `noise`."""
+    able = {
+        NAME.of(one)
+        for one in where(result.settings["variants"], tier="tuned", applies_impact=False)
+        if ENGINES[one["engine"]].subject
+    }
+    kept = [row for name, row in keeping(result, error).items() if name in able]
+    most = noise(result) * kept[0]["cpu_per_second"] if kept else 0.0
+    return [_advised(result, error, row) for row in kept if row["cpu_per_second"] <= most] or [Advised(error)]
 
 
-def _advised(name, row, found, spread):
-    if row is None:
-        return ["not reached", "–", "–", "–", "–"]
-    cheaper = next(iter(found.items()))
-    alike = row["cpu_per_second"] <= spread * cheaper[1]["cpu_per_second"]
-    other = "none" if alike else f"{cheaper[0]}, {number(1e3 * cheaper[1]['cpu_per_second'], 2)} ms"
-    script = f"rocking script {row['engine']} SCENE" if ENGINES[row["engine"]].script else "–"
-    unit = UNITS.get(row["parameter"], "")
-    level = f"{row['parameter'].replace('_', ' ')} {number(row['level'], 2)} {unit}".strip()
-    return [name, level, f"{number(1e3 * row['cpu_per_second'], 2)} ms", other, script]
+def _advised(result, error, row):
+    main = mains(result.settings["variants"])[row["engine"]] == row["variant"]
+    variant = "" if main else f" --variant {row['variant']}"
+    level = f"{row['level']:.3g}".replace("e+", "e")
+    same = {key: row[key] for key in ("engine", "variant", "parameter", "level")}
+    peaks = where(as_needed(result), **same, measure=PEAK)
+    elsewhere = {other["title"]: other["error"] for other in peaks if other["scene"] != PLAIN}
+    command = f"rocking run SCENE --engine {row['engine']}{variant} --set {row['parameter']}={level}"
+    return Advised(error, **same, cost=row["cpu_per_second"], command=command, elsewhere=elsewhere)
 
 
 def times(result: Result) -> str:
@@ -287,26 +254,37 @@ def times(result: Result) -> str:
 
 
 def at_a_glance(result: Result) -> str:
-    """The same in a sentence with the times themselves."""
+    """The same in sentences with the times themselves, and what a script costs; "" where none reaches it."""
     found = _asked(result)
+    if not found:
+        return ""
     own = listed([f"{number(1e3 * cost, 2)} ms ({engine})" for engine, cost, _ in found])
     over = listed([number(cost / model, 2) for _, cost, model in found])
-    return (
-        f"tuned, a peak tilt within {percent(ASKED, 1)} of the slenderness takes {own} of CPU time per simulated "
-        f"second (between levels), {over} times the analytic model’s {number(1e3 * found[0][2], 2)} ms."
-        if found
-        else ""
+    alike = max(cost for _, cost, _ in found) <= noise(result) * min(cost for _, cost, _ in found)
+    words = (
+        f"a peak tilt within {percent(ASKED, 1)} of the slenderness takes tuned engines {own} of CPU time per "
+        f"simulated second. The analytic model takes {number(1e3 * found[0][2], 2)} ms: tuned engines take {over} "
+        "times as long."
     )
+    if alike and len(found) > 1:
+        words += f" Costs within a factor of {number(noise(result), 2)} are not distinguished, so these are the same."
+    scripts = [
+        f"{number(1e3 * row['cpu_per_second'], 2)} ms with an error of {percent(row['error'])} ({row['engine']})"
+        for row in _plain(result)
+        if row["variant"] == SCRIPT and row["error"] is not None
+    ]
+    return f"{words} A script written by rocking script has one level: {listed(scripts)}." if scripts else words
 
 
 def _asked(result):
     """(engine, CPU time, the model's) of the engines in question, tuned, that reach the error `ASKED`."""
-    costs, main, found = plain_costs(result), mains(result.settings["variants"]), []
-    for one in result.settings["variants"]:
-        subject = ENGINES[one["engine"]].subject and main[one["engine"]] == one["variant"]
-        if subject and one["tier"] == "tuned" and (cost := costs.get(NAME.of(one))) and costs.get(KERNEL):
-            found.append((one["engine"], cost, costs[KERNEL]))
-    return found
+    kept, main = keeping(result, ASKED), mains(result.settings["variants"])
+    model = kept.get(KERNEL)
+    return [
+        (one["engine"], kept[NAME.of(one)]["cpu_per_second"], model["cpu_per_second"])
+        for one in where(result.settings["variants"], tier="tuned")
+        if model and ENGINES[one["engine"]].subject and main[one["engine"]] == one["variant"] and NAME.of(one) in kept
+    ]
 
 
 def noise(result: Result) -> float:

@@ -59,8 +59,8 @@ def page(result: Result) -> Page:
         _title(result),
         (
             "Every solver is run at several levels of its accuracy parameter. Error and CPU time come from the same "
-            "runs. Costs are compared at equal error, interpolated between levels, and only where all finer levels "
-            f"keep that error too. Costs within a factor of {number(noise(result), 2)} are not distinguished.",
+            "runs. The cost of an error is that of the cheapest level that keeps it, if all finer levels keep it too. "
+            f"Costs within a factor of {number(noise(result), 2)} are not distinguished.",
         ),
         first=(_figure([row for key in first for row in errors[key]], CPU, MAIN_CAPTION, rows, _leads(result)), asked),
         more=(

@@ -1,0 +1,151 @@
+"""What each study gives to the report's first screen, counted by hand from small made-up rows."""
+
+import math
+
+import pytest
+
+from comparisons.measuring.statistics import wilson
+from comparisons.running.provenance import Result
+from comparisons.studies import get_study
+from comparisons.studies.shake_table.judging import BY_RECORD, CURVE, FREQUENT, IN_SAMPLE, MODEL, ONE, THRESHOLD
+from comparisons.studies.shake_table.runs import ALL
+
+ENGINE = {"part": "run", "engine": "e", "variant": "v", "tier": "tuned"}
+VARIANT = {"engine": "e", "variant": "v", "tier": "tuned", "parameter": "step", "default": 1e-3}
+
+
+def glance(study, rows, **settings):
+    return get_study(study).glance(Result(study, {"variants": [VARIANT], **settings}, rows, {}))
+
+
+def ends(study, rows, **settings):
+    """(all judged, missed, added, other, late, failed), (differing among those left out, left out) of one variant."""
+    (one,) = glance(study, rows, **settings).endings
+    counts = one.runs, one.missed, one.added, one.other, one.late, one.failed
+    return counts, (one.left_differing, one.left_out)
+
+
+def run(kind, model, own, *quantities, **more):
+    return {**ENGINE, "class": kind, "model_outcome": model, "outcome": own, "quantities": list(quantities), **more}
+
+
+RUNS = (
+    run("right", "rocks", "rocks"),
+    run("differs", "overturns", "overturns", "fall_time"),
+    run("differs", "overturns", "rocks", "outcome"),
+    run("differs", "rocks", "overturns", "outcome"),
+    run("differs", "rocks", "stands", "outcome"),
+    run("failed", "rocks", "failed"),
+    run("left out", "overturns", "overturns"),
+    run("left out", "rocks", "overturns"),
+    run("left out", "rocks", "failed"),
+)
+COUNTED = (6, 1, 1, 1, 1, 1), (2, 3)
+
+
+def test_recorded_motions_keep_a_fall_at_another_time_apart_from_another_outcome():
+    rows = [{**one, "record": str(k), "model_tilt": 0.5, "own_tilt_error": None} for k, one in enumerate(RUNS)]
+    assert ends("recorded", rows) == COUNTED
+
+
+def test_peaks_under_records_are_over_slenderness_of_judged_runs_and_a_failed_one_keeps_none():
+    """A tilt of half the slenderness that is 1 % off is .5 % of it off; of one that falls as much as its error says."""
+    rows = [
+        run("right", "rocks", "rocks", record="1", model_tilt=0.5, own_tilt_error=-0.01),
+        run("right", "overturns", "overturns", record="2", model_tilt=9.0, own_tilt_error=0.002),
+        run("right", "stands", "stands", record="3", model_tilt=0.0, own_tilt_error=None),
+        run("failed", "rocks", "failed", record="4", model_tilt=0.5),
+        run("left out", "rocks", "rocks", record="5", model_tilt=0.5, own_tilt_error=0.3),
+    ]
+    (peaks,) = glance("recorded", rows).peaks
+    assert peaks.errors == (0.005, 0.002, math.inf) and (peaks.setting, peaks.engine) == ("step = 0.001 s", "e")
+    assert [peaks.within(error) for error in (1e-3, 2e-3, 1e-2)] == ["0 of 3 (0 %)", "1 of 3 (33 %)", "2 of 3 (67 %)"]
+
+
+def test_synthetic_motions_count_alike():
+    falls = {"overturns": True, "failed": None}
+    rows = [
+        {key: value for key, value in one.items() if "outcome" not in key}
+        | {"seed": k, "model_overturns": one["model_outcome"] == "overturns"}
+        | {"overturns": falls.get(one["outcome"], False), "quantities": one["quantities"] or None}
+        for k, one in enumerate(RUNS)
+    ]
+    assert ends("fragility", rows) == COUNTED
+
+
+def test_sliding_blocks_count_alike_and_a_slip_that_differs_is_the_same_end():
+    rows = [{**one, "index": k} for k, one in enumerate((*RUNS, run("differs", "slides", "slides", "peak_slip")))]
+    scenes = [{"part": "scene", "index": row["index"], "outcome": row["model_outcome"]} for row in rows]
+    (first, *counts), left_out = ends("sliding", [*scenes, *rows])
+    assert (first, left_out) == (7, COUNTED[1]) and tuple(counts) == COUNTED[0][1:]
+
+
+def test_pulses_leave_out_what_is_within_the_band_of_a_boundary():
+    """Of four points one is .5 % off a boundary; the other that was not judged would jump."""
+    scan = {key: value for key, value in ENGINE.items() if key != "tier"} | {"part": "scan", "level": 1e-3}
+    scan |= {"runs": 2, "failed": 1, "only_a": 1, "only_b": 0, "interval": [0.0, 0.9]}
+    edge = {"part": "edge", "ground": "a", "shape": "sine", "frequency": 2.0, "amplitude": 3.0}
+    settings = {"grounds": {"a": {}}, "shapes": ["sine"], "frequencies": [2.0], "scan": [1.0, 2.0, 3.015, 4.0]}
+    assert ends("overturning", [scan, edge], **settings, band=0.01) == ((2, 1, 0, 0, None, 1), (None, 1))
+
+
+def table_row(**more):
+    """An engine's row of a shake table: of 100 tests it differs in 6 and fails in 2; 5 of these are among 20 near."""
+    row = {**ENGINE, "part": "engine", "specimen": ALL, "size": 100, "failed": 2, "only_a": 4, "only_b": 2, "near": 20}
+    return row | {"on_edge": 5, "right": None, "equal": "no", "interval": [0.0, 0.5], "records_a": 1} | more
+
+
+def shaken(*engines, more=(3, -1.0, 7.0)):
+    """A result of two blocks in 50 tests each, all of which the rivals predict less well."""
+    rights = {MODEL: (46, 45), CURVE: (44, 44), THRESHOLD: (43, 42), FREQUENT: (30, 35)}
+    scores = [
+        {"part": "score", "forecast": name, "judged": BY_RECORD, "specimen": specimen, "right": right, "size": 50}
+        for name, both in rights.items()
+        for specimen, right in zip(("one", "two"), both, strict=True)
+    ]
+    alike = [row | {"forecast": ONE, "judged": IN_SAMPLE, "right": row["right"] - 1} for row in scores[:2]]
+    pair = {"part": "paired", "forecast": MODEL, "beside": CURVE, "specimen": ALL}
+    pair |= {"more_right": more[0], "more_interval": list(more[1:])}
+    settings = {"records": 10, "tests": ["t"] * 50, "specimens": [{"name": "one"}, {"name": "two"}]}
+    return glance("shake-table", [*scores, *alike, pair, *engines], **settings)
+
+
+def test_a_shake_table_is_counted_away_from_boundaries_too_but_not_by_way():
+    (one,) = shaken(table_row()).endings
+    assert (one.runs, one.differing, one.untold, one.late) == (80, 3, 3, None)
+    assert (one.left_differing, one.left_out) == (5, 20) and one.interval == pytest.approx(wilson(3 / 80 * 10, 10))
+    (one,) = shaken(table_row(on_edge=0)).endings  # none near one: all ways are known
+    assert (one.missed, one.added, one.failed, one.untold, one.left_differing) == (4, 2, 2, 0, 0)
+
+
+def test_what_tuned_engines_change_in_all_tests_is_said_with_where_it_lies():
+    plain = table_row(variant="w", tier="defaults", only_a=50)
+    assert shaken(table_row(), table_row(engine="f", failed=0, on_edge=1), plain).says["near"] == (
+        "On the shake table, with these runs, tuned engines miss 8 overturnings, add 4 and fail 2 times in 200 runs. "
+        "Of these 14, 6 are in the 40 runs near a boundary."
+    )
+    assert "near" not in shaken(plain).says
+
+
+def test_real_blocks_name_the_strongest_rivals_and_engines_stand_beside_the_model_fitted_alike():
+    engines = [table_row(specimen=name, right=right) for name, right in (("one", 44), ("two", None))]
+    assert shaken(*engines, table_row()).says["real"] == (
+        "on a shake table the model is right in 46 and 45 (92 % and 90 %) of 50 tests (one and two). It is not shown "
+        "to be better than a curve in PGA and PGV: it is right in 3 more of 100 (95 % interval −1 to 7). The curve is "
+        "right in 44 and 44 (88 % and 88 %), one threshold of PGV in 43 and 42 (86 % and 84 %) and the more frequent "
+        "outcome in 30 and 35 (60 % and 70 %). All of these are held out by record. Engines go by another rule, one "
+        "slenderness fitted to all tests. By this rule 45 and 44 (the model) and 44 and – (e, tuned) are right. "
+        "Restitution was not measured."
+    )
+
+
+@pytest.mark.parametrize(
+    "more, words",
+    [
+        ((3, 0.0, 7.0), "not shown to be better than"),
+        ((8, 1.0, 15.0), "better than"),
+        ((-8, -15.0, -1.0), "worse than"),
+    ],
+)
+def test_the_model_is_better_than_the_curve_only_where_the_interval_says_so(more, words):
+    assert f"It is {words} a curve in PGA and PGV" in shaken(more=more).says["real"]
