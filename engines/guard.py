@@ -25,6 +25,7 @@ LONGEST = 1e6  # s; longer limits overflow the system's timers
 GRACE_SECONDS = 0.3  # after the time limit, for the process to write its traceback
 EVIDENCE_CHARACTERS = 4000
 OUT_OF_TIME = "the run did not end in time"
+RAISED = "the run raised an error"
 MISTAKES = (SettingError, SceneError, EngineNotInstalled)  # errors of the caller, not of the engine
 STOPPING = {signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
 PR_SET_PDEATHSIG = 1
@@ -139,7 +140,7 @@ def _work(
         answer = ForkingPickler.dumps(("mistake", error))
     except BaseException as error:  # any error of an engine is a failed run with its message
         message = f"{raised(error)}\n{traceback.format_exc()}"[:EVIDENCE_CHARACTERS]
-        answer = ForkingPickler.dumps(("failure", ("the run raised an error", message)))
+        answer = ForkingPickler.dumps(("failure", (RAISED, message)))
     sys.stdout.flush(), sys.stderr.flush()
     writer.send_bytes(answer)
     os._exit(0)  # without exit handlers, in which an engine could fail

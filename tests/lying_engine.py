@@ -24,6 +24,7 @@ class Settings:
     step: float = 1e-3
 
 
+SHARE = 0.01  # by which a lie's history is off
 VARIANTS = {
     "lies": Variant(Settings(), kind="tuned", levels=(1e-2, 1e-3), takes_restitution=True, computes="all", imposes="-")
 }
@@ -39,9 +40,28 @@ def _outcome(scene, run):
     return replace(run, outcome="overturns", overturning_time=run.end.time, fall_time=0.8 * run.end.time)
 
 
+def _history(run, **factors):
+    """The run with columns of its history times factors, where it has a history and these columns."""
+    known = run.history and {name: getattr(run.history, name) for name in factors}
+    if not known or any(column is None for column in known.values()):
+        return run
+    return replace(run, history=replace(run.history, **{name: factors[name] * known[name] for name in factors}))
+
+
+def _tilt(scene, run):
+    lie = replace(run, peak_tilt=1.5 * run.peak_tilt + 0.02 * scene.block.slenderness)
+    return _history(lie, tilt=1 + SHARE)
+
+
+def _stroke(scene, run):
+    lie = replace(run, peak_base_displacement=1.5 * run.peak_base_displacement + 0.01)
+    return _history(lie, base_displacement=1 + SHARE)
+
+
 def _slip(scene, run):
     slid = run.sliding or Sliding(0.0, 0.0, 0.0, 0.0, ())
-    return replace(run, sliding=replace(slid, peak=1.5 * slid.peak + 0.01 * scene.block.radius))
+    lie = replace(run, sliding=replace(slid, peak=1.5 * slid.peak + 0.01 * scene.block.radius))
+    return _history(lie, slip=1 + SHARE)
 
 
 def _later(name):
@@ -93,8 +113,8 @@ def _hangs(scene, run):
 # {engine: what it does to the model's response}; every quantity of a difference is wrong in one of them
 LIES = {
     "outcome": _outcome,
-    "tilt": lambda scene, run: replace(run, peak_tilt=1.5 * run.peak_tilt + 0.02 * scene.block.slenderness),
-    "stroke": lambda scene, run: replace(run, peak_base_displacement=1.5 * run.peak_base_displacement + 0.01),
+    "tilt": _tilt,
+    "stroke": _stroke,
     "slip": _slip,
     "fall": _later("fall_time"),
     "lying": _later("overturning_time"),

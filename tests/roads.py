@@ -48,7 +48,7 @@ KINDS = {
     "overturns on bearings": (scene(LINEAR, pulse(8.0)), "overturns"),
     "slides": (scene(motion=pulse(3.0), friction=0.15), "slides"),
     "slides on bearings": (scene(LINEAR, pulse(3.0), friction=0.1), "slides"),
-    "slide-rocks": (scene(motion=pulse(6.0, 12.0), gamma=0.3, friction=0.4), "rocks"),
+    "slide-rocks": (scene(motion=pulse(9.0, 14.0), gamma=0.3, friction=0.33), "rocks"),
     "flies": (scene(motion=pulse(4.0, 12.0, vertical=4.0), friction=0.6), "rocks"),
     "falls and slides": (scene(motion=pulse(9.0, 4.0), friction=0.5), "overturns"),
     "slips off": (scene(motion=pulse(5.0, 2.5), friction=0.1), "slides"),
@@ -67,7 +67,7 @@ KINDS = {
     "loud": (scene(motion=pulse(80.0, 12.0)), "overturns"),
     "outside the range": (scene(gamma=0.04, motion=pulse(0.45, 9.0)), "rocks"),
     "undecided": (scene(motion=pulse(4.0), more="[run]\nduration = 0.7\n"), "rocks"),
-    "a copy is refused": (scene(friction=0.19, more=start(0.26)), "overturns"),
+    "a copy is refused": (scene(friction=0.15, more=start(0.26)), "overturns"),
     "free-standing it is refused": (scene(LINEAR, friction=0.2, more=start(0.2)), "rocks"),
 }
 # {kind: (field, part of the problem)}: the model refuses the scene itself

@@ -4,6 +4,13 @@ import ast
 from graphlib import TopologicalSorter
 from pathlib import Path
 
+from analytic.margins import LIMIT_STATES
+from analytic.response import DIFFERENCES, KINDS, OUTCOMES
+from comparisons.report.statue import WORDS, WORST
+from comparisons.showing.margins import COLOURS, DOUBTS, _names
+from comparisons.showing.wording import OUTCOMES as TOLD
+from engines.comparison import END
+
 PROJECT = Path(__file__).parents[1]
 FLOORS = ("analytic", "engines", "comparisons")
 FILES = {
@@ -12,6 +19,8 @@ FILES = {
     for file in (PROJECT / floor).rglob("*.py")
 }
 TREES = {name: ast.parse(file.read_text(encoding="utf-8")) for name, file in FILES.items()}
+PEAKS = ("peak_tilt", "peak_base_displacement", "peak_slip")
+IMPACTS = ("restitution", "impact_loss", "missing_impacts", "extra_impacts")
 MOST = 8  # parameters of a compiled function
 
 
@@ -42,6 +51,55 @@ def test_no_floor_imports_one_above_it():
 def test_no_modules_import_each_other_in_a_circle():
     """`graphlib.CycleError` names the modules of a circle."""
     assert len(list(TopologicalSorter(GRAPH).static_order())) == len(FILES) > 200
+
+
+# Where any exception may be caught: an engine's or another package's code is called or imported, the process ends, or
+# the error is raised again. None stands between a command and the model.
+BROAD = {
+    "engines.contract": 2,  # another package's adapter is imported, its versions asked for
+    "engines.plugins": 1,  # another package is imported
+    "engines.guard": 1,  # an engine runs
+    "engines.simulating": 1,  # raised again, with a note
+    "comparisons.running.executors": 1,  # a solver and a measure run
+    "comparisons.running.cluster": 1,  # Dask, as it ends
+    "comparisons.running.sweep": 1,  # raised again
+    "comparisons.report.answer": 1,  # the page of a result of another version, or of another package's study
+    "comparisons.report.detail": 1,  # likewise; raised again where the code is that of the result
+    "comparisons.studies": 1,  # another package is imported
+    "comparisons.studies.shake_table.granite": 1,  # openpyxl
+    "comparisons.cli.interrupts": 3,  # the process ends
+    "comparisons.cli": 1,  # raised again, unless it is a message for the user
+}
+
+
+def test_any_exception_is_caught_only_where_foreign_code_runs_or_it_is_raised_again():
+    found = {}
+    for name, tree in TREES.items():
+        for node in ast.walk(tree):
+            caught = [node.type] if isinstance(node, ast.ExceptHandler) else []
+            if isinstance(node, ast.Call) and getattr(node.func, "attr", "") == "suppress":
+                caught = node.args
+            if any(one is None or getattr(one, "id", "") in ("Exception", "BaseException") for one in caught):
+                found[name] = found.get(name, 0) + 1
+    assert found == BROAD
+
+
+def test_sets_of_words_that_are_written_as_json_stand_in_one_place():
+    """A schema takes its words from the list that the code goes by; `peak_slip` stood in one of two lists."""
+    for name, tree in TREES.items():
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Subscript) and getattr(node.value, "id", "") == "Literal":
+                words = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
+                several = sum(isinstance(one, ast.Constant) for one in words) > 1
+                assert not (several and ".schemas" in name), f"{name}, line {node.lineno}"
+
+
+def test_what_is_keyed_by_a_set_of_words_has_all_of_them():
+    outcomes, upright = set(OUTCOMES), set(OUTCOMES) - {"failed"}
+    assert set(COLOURS) == set(WORST) == set(WORDS) == outcomes and set(TOLD) == upright
+    assert {kind for kind, _ in DOUBTS} == set(KINDS) and all((kind, None) in DOUBTS for kind in KINDS)
+    assert set(_names(0.5)) == set(LIMIT_STATES)
+    assert {*END, *PEAKS, *IMPACTS} == set(DIFFERENCES)
 
 
 def test_no_compiled_function_takes_more_parameters_than_one_can_keep_in_order():

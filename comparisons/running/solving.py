@@ -127,7 +127,7 @@ def simulate(
         The engine cannot be imported here; says how to install it.
     """
     from analytic.response import about_record
-    from engines.guard import OUT_OF_TIME, run_apart
+    from engines.guard import OUT_OF_TIME, RAISED, run_apart
 
     settings = settings or {}
     check_solver(solver)
@@ -143,6 +143,8 @@ def simulate(
         time_limit=time_limit,
         meanwhile=spinner(words) if words else None,
     )
+    if failure and failure.reason == RAISED and solver == ANALYTIC:
+        raise RuntimeError(f"the analytic model raised {failure.message}")  # a mistake of this project, not a result
     if failure:
         from engines.observe import failed_response
 

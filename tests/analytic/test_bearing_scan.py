@@ -5,7 +5,16 @@ import math
 import numpy as np
 import pytest
 
-from analytic import PulseMotion, SceneError, SettingError, load_scene, simulate, simulate_many, synthetic_motion
+from analytic import (
+    PulseMotion,
+    SceneError,
+    SettingError,
+    bearing_scan,
+    load_scene,
+    simulate,
+    simulate_many,
+    synthetic_motion,
+)
 from analytic.bearing_scan import DAMPING_STEP, PERIOD_STEP, first_stroke, scan_bearings
 from analytic.design import design_bearings, properties
 from comparisons.running.provenance import commit_seed
@@ -159,3 +168,15 @@ def test_the_first_stroke_is_that_of_bearings_on_which_it_does_not_slide():
     motions = [PulseMotion("one-sine", 6.0, 6.0)]
     held, rubs = (first_stroke(SCENE.with_(friction=friction), motions) for friction in (None, 0.22))
     assert held < rubs == first_stroke(SCENE.with_(block={"slenderness": math.atan(0.22)}), motions)
+
+
+@pytest.mark.parametrize("amplitude, holds", [(0.1, True), (80.0, False)])
+def test_where_all_hold_or_none_the_second_scan_has_no_runs(monkeypatch, amplitude, holds):
+    monkeypatch.setattr(bearing_scan, "PERIOD_STEP", 0.2)
+    monkeypatch.setattr(bearing_scan, "DAMPING_STEP", 0.02)
+    motion = PulseMotion("one-sine", amplitude, 2.0)
+    scan = scan_bearings(SCENE, [motion], 0.2)
+    assert ((scan.demand <= 1) == holds).all() and (scan.least_stroke is not None) == holds
+    period, damping = scan.nearest
+    found = simulate(SCENE.with_(bearings=scan.bearings(period, damping), motion=motion, duration=None), history=False)
+    assert (found.outcome == "stands") == holds

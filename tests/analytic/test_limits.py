@@ -26,6 +26,32 @@ def test_a_base_beyond_its_bearings_limit_is_said(solver):
     assert any(warning.text.startswith(words) for warning in response.warnings)
 
 
+SLIDER = Scene(
+    block=Block(mass=100.0, radius=0.5, slenderness=0.3), motion=PulseMotion("one-sine", 5.0, 2.5), friction=0.1
+)
+SLIDING = {name: lambda scene, name=name: get_engine(name).simulate(scene) for name in ("exudyn", "pybullet", "mujoco")}
+
+
+@pytest.mark.parametrize("solver", ["kernel", *SLIDING])
+def test_a_block_that_slips_beyond_its_half_width_is_said_by_every_solver(solver):
+    """A slip of 2.9 m of a block .3 m wide; not one of .06 m under a short pulse."""
+    run = {"kernel": simulate, **SLIDING}[solver]
+    response = run(SLIDER)
+    half = SLIDER.block.half_width
+    (told,) = [one for one in response.warnings if one.quantity == "peak_slip"]
+    assert told.kind == "limit"
+    assert (told.value, told.limit) == (response.sliding.peak, half) and told.value > 10 * half
+    short = SLIDER.with_(motion=PulseMotion("rectangular", 1.5, 8.0))
+    assert 0 < run(short).sliding.peak < half and "peak_slip" not in [one.quantity for one in run(short).warnings]
+
+
+def test_a_block_that_falls_slips_as_it_falls_and_that_is_no_warning():
+    falls = SLIDER.with_(motion=None, block={"slenderness": 0.15}, start=Start(tilt=0.16), friction=0.03)
+    response = simulate(falls)
+    assert response.outcome == "overturns" and response.sliding.peak > falls.block.half_width
+    assert "peak_slip" not in [one.quantity for one in response.warnings]
+
+
 @pytest.mark.parametrize("x_max", [None, 1.0])
 def test_within_it_nothing_is_said_and_nothing_changes(x_max):
     response = simulate(SCENE.with_(bearings={"x_max": x_max}), history=False)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from random_scenes import random_scene
 
-from analytic import Block, PulseMotion, Scene, SettingError, Start, load_scene, simulate
+from analytic import Block, PulseMotion, Scene, SceneError, SettingError, Start, load_scene, simulate
 from analytic.margins import (
     BISECTIONS,
     FINER,
@@ -239,6 +239,30 @@ def scanned(scene, name, count, span=0.2):
         with contextlib.suppress(ValueError):
             found[change] = simulate(changed(scene, name, change), history=False).outcome
     return np.array(list(found)), np.array(list(found.values()))
+
+
+def test_a_range_ends_where_the_model_refuses_the_changed_scene_and_says_why():
+    """Released beyond its balance the block falls; from 6.7 % less it lands, where its friction is below (8)'s."""
+    block = Block(mass=3172.05, radius=1.0884, slenderness=0.28)
+    found = by_name(Scene(block=block, start=Start(tilt=0.3), friction=0.2), step=1e-3)
+    start, slenderness = found["start"], found["slenderness"]
+    assert start.outcome == "overturns" and "friction = 0.2: below 0.2113" in start.ends_down and not start.ends_up
+    assert -1 + 0.28 / 0.3 <= start.bands[0].low < -1 + 0.28 / 0.3 + 1e-3
+    assert "friction = 0.2: below" in slenderness.ends_up and slenderness.bands[-1].high == pytest.approx(0.071)
+    assert found["friction"].ends_down == found["friction"].ends_up == "" and found["friction"].bands[0].low == -0.2
+
+
+def test_a_range_ends_where_no_scene_is_and_says_why():
+    """e of (7) is at most 1; ka is at least kb."""
+    found = by_name(block_scene(restitution=0.9, start=Start(tilt=0.1)))
+    assert found["restitution"].ends_up.startswith("block.restitution = 1.") and not found["restitution"].ends_down
+    assert 0.9 * (1 + found["restitution"].bands[-1].high) <= 1 < 0.9 * (1 + found["restitution"].bands[-1].high + STEP)
+
+
+def test_a_scene_that_the_model_refuses_has_no_margins():
+    block = Block(mass=3172.05, radius=1.0884, slenderness=0.28)
+    with pytest.raises(SceneError, match="friction = 0.2: below 0.2113"):
+        margins(Scene(block=block, start=Start(tilt=0.2), friction=0.2))
 
 
 def assert_scan_agrees(margin, changes, outcomes):

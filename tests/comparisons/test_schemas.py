@@ -1,10 +1,71 @@
-"""The schemas written down are those of the values that become JSON."""
+"""The schemas written down are those of the values that become JSON, and all that a form takes becomes JSON."""
 
 import json
+import math
+import types
+import typing
+from typing import Any, Literal
 
-from comparisons.schemas.__main__ import FOLDER, schemas
+import jsonschema
+import pytest
+from pydantic import BaseModel
+
+from comparisons.schemas.__main__ import FOLDER, FORMS, schemas
+from comparisons.schemas.form import schema_of
 
 
 def test_every_form_has_its_schema_written_down_under_its_version_and_every_schema_its_form():
     found = {file.stem: json.loads(file.read_text()) for file in FOLDER.glob("*.json")}
     assert found == schemas(), "python -m comparisons.schemas writes them"
+
+
+def sample(kind, number):
+    """A value of a type, in which every number that is no whole one is `number`, and every list has one entry."""
+    origin, parts = typing.get_origin(kind), typing.get_args(kind)
+    if origin in (typing.Union, types.UnionType):
+        kinds = [one for one in parts if one is not type(None)]
+        return sample(float if float in kinds else kinds[0], number)
+    if origin is typing.Annotated:
+        return sample(parts[0], number)
+    if origin is Literal:
+        return parts[0]
+    if origin is list:
+        return [sample(parts[0], number)]
+    if origin is tuple:
+        return tuple(sample(one, number) for one in parts)
+    if origin is dict:
+        return {sample(parts[0], number): sample(parts[1], number)}
+    if isinstance(kind, type) and issubclass(kind, BaseModel):
+        known = {one.alias or name: sample(one.annotation, number) for name, one in kind.model_fields.items()}
+        return kind(**{name: value for name, value in known.items() if name != "schema_" and name != "schema"})
+    return {float: number, int: 3, str: "0" * 64, bool: True, Any: [number, {"deeper": number}]}[kind]
+
+
+@pytest.mark.parametrize("number", [1.5, math.nan, math.inf, -math.inf])
+@pytest.mark.parametrize("form", FORMS)
+def test_each_number_of_each_form_may_be_none_and_the_json_is_valid(form, number):
+    """A form that takes a number writes it: null where JSON has none."""
+    text = sample(form, number).text()
+    written = json.loads(text, parse_constant=lambda word: pytest.fail(f"{word} is no JSON"))
+    jsonschema.validate(written, schema_of(form))
+    assert "NaN" not in text and "Infinity" not in text
+    numbers = list(leaves(written))
+    assert numbers and (None in numbers) == (not math.isfinite(number))
+
+
+def leaves(value):
+    """The numbers and nulls of a JSON value."""
+    if isinstance(value, dict | list):
+        for one in value.values() if isinstance(value, dict) else value:
+            yield from leaves(one)
+    elif value is None or isinstance(value, float):
+        yield value
+
+
+def test_a_form_that_lacks_what_it_promises_is_no_json_of_its_schema():
+    """The check can fail."""
+    form = FORMS[0]
+    written = json.loads(sample(form, 1.0).text())
+    del written[next(name for name in written if name != "schema")]
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate(written, schema_of(form))

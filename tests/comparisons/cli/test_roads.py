@@ -6,14 +6,16 @@ user's are not is a test of its own. The slow form has the real engines, and `ch
 
 import json
 import re
+from importlib import import_module
 
 import jsonschema
 import pytest
-from lying_engine import FAULTS, LIES, liars
+from lying_engine import FAULTS, LIES, SHARE, liars
 from roads import KINDS, REFUSED, write_records
 
-from analytic import bearing_scan, margins, nearby
+from analytic import bearing_scan, load_scene, margins, nearby, simulate
 from analytic.response import DIFFERENCES, JUDGED, Difference
+from analytic.rocking import restitution
 from comparisons.commands import margin
 from comparisons.report import next_step, statue
 from comparisons.running.executors import Done, Executor, lines_of
@@ -71,6 +73,9 @@ def road(rocking, tmp_path, monkeypatch):
     monkeypatch.setattr(next_step, "STEP", 0.2)
     monkeypatch.setattr(nearby, "STEP", 0.0125)
     monkeypatch.setattr("comparisons.running.study.Processes", Here)
+    monkeypatch.setattr(
+        import_module("comparisons.advice.choose"), "Processes", Here
+    )  # the package has a function so called
     for place in ("study.source_digests", "cases.source_digests", "provenance.source_digests", "study.digests_of_all"):
         monkeypatch.setattr(f"comparisons.running.{place}", lambda *_: {})  # what the code is, is no road
     monkeypatch.setattr("comparisons.report.answer.age", lambda *_: None)
@@ -175,7 +180,7 @@ def test_compare(road, kind):
 def test_compare_with_engines_that_fail(road, monkeypatch, kind):
     """Each failure costs its row: the others stand, and the reason is said."""
     monkeypatch.setattr(guard, "run_apart", APART)
-    status, answer, out, err = road("compare", kind, *asked(FAULTS), "--time-limit", 5)
+    status, answer, out, err = road("compare", kind, *asked(FAULTS), "--time-limit", 3)
     assert status == 0
     found = {one["engine"]: one for one in answer["responses"]}
     assert [*found] == ["analytic", *FAULTS]
@@ -219,6 +224,71 @@ def test_design(road, kind):
     for proposal in answer["chosen"].values():
         motions_are_told(proposal, out, counted(kind))
         assert proposal["stroke"] == max(row["stroke"] for row in proposal["motions"])
+
+
+# {kind: (the criterion chosen by default, the engine that lies about it)}
+CHOSEN = {
+    "rocks": ("restitution", "restitution"),
+    "on linear bearings": ("restitution", "restitution"),
+    "vertical motion": ("restitution", "restitution"),
+    "slide-rocks": ("tilt", "tilt"),
+    "given restitution": ("tilt", "tilt"),
+    "slides": ("slip", "slip"),
+    "slides on bearings": ("slip", "slip"),
+    "quiet on bearings": ("displacement", "stroke"),
+    "a copy is refused": ("tilt", "tilt"),
+}
+
+
+@pytest.mark.parametrize("kind", CHOSEN)
+def test_choose(road, kind):
+    """The honest engine has no error and is chosen; the error of the other is that of its lie."""
+    criterion, liar = CHOSEN[kind]
+    status, answer, out, _ = road("choose", kind, *asked(["honest", liar]))
+    assert status == 0 and answer["criterion"] == criterion
+    all_is_told(answer["warnings"], out)
+    assert (answer["chosen"]["engine"], answer["chosen"]["value"]) == ("honest", 1e-2)  # its coarsest level
+    assert answer["command"] in out and answer["command"].endswith("--variant lies --set step=0.01")
+    honest, lying = answer["variants"]
+    assert all(
+        one["error"] < 1e-12 and one["passes"] and one["runs"] == len(answer["neighbours"]) for one in honest["levels"]
+    )
+    assert not any(one["passes"] for one in lying["levels"]) and [one["value"] for one in lying["levels"]] == [
+        1e-2,
+        1e-3,
+    ]
+    factors = {0.95, 0.975, 1.0, 1.025, 1.05}
+    refused = {float(factor) for factor in answer["left_out"]}
+    assert set(answer["neighbours"]) == factors - refused and bool(refused) == (kind == "a copy is refused")
+    assert answer["neighbours"][0] == 1.0
+    scene = load_scene("scene.toml")
+    found, model = lying["levels"][0]["error"], simulate(scene, history=False)
+    if criterion == "restitution":
+        assert found == pytest.approx(0.1 * restitution(scene), rel=1e-6)
+    elif criterion == "tilt":
+        assert 0 < found <= SHARE * model.peak_tilt_ratio * (1 + 1e-9)
+        assert KINDS[kind][1] == "overturns" or found > 0.99 * SHARE * model.peak_tilt_ratio
+    else:
+        assert found == pytest.approx(SHARE, rel=1e-5)  # the peak lies between two samples of the history
+    needed = {part["part"]: part["needed"] for part in answer["parts"]}
+    assert needed["base"] == ("[base]" in KINDS[kind][0]) and not needed["third dimension"]
+    assert needed["rocking"] == (kind != "quiet on bearings")
+    assert needed.get("sliding") == (None if scene.friction is None else bool(model.sliding and model.sliding.peak))
+
+
+def test_choose_by_outcomes_counts_the_neighbours_that_differ(road):
+    status, answer, _, _ = road("choose", "rocks", "--for", "outcome", "--error", 0.3, *asked(["honest", "outcome"]))
+    assert status == 0 and answer["chosen"]["engine"] == "honest" and len(answer["neighbours"]) == 9
+    honest, lying = answer["variants"]
+    assert [one["error"] for one in honest["levels"]] == [0.0, 0.0] and lying["levels"][0]["error"] == 1.0
+    status, answer, out, _ = road("choose", "rocks", "--for", "outcome", *asked(["outcome"]))
+    assert status == 1 and answer["chosen"] is None and "No level passes 0.001 for outcome" in out
+
+
+def test_choose_names_the_model_where_the_block_never_lifts(road):
+    status, answer, out, _ = road("choose", "stands")
+    assert status == 0 and answer["chosen"]["engine"] == "analytic" and not answer["variants"]
+    assert answer["command"] == "rocking run scene.toml" and "the block never lifts on" in out
 
 
 @pytest.mark.parametrize("part", range(2))
@@ -327,7 +397,7 @@ def test_real_engines_answer(rocking, tmp_path, monkeypatch, kind, engine):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
-def test_choose(rocking, tmp_path, monkeypatch, kind):
+def test_choose_among_real_engines(rocking, tmp_path, monkeypatch, kind):
     monkeypatch.chdir(tmp_path)
     write_records(tmp_path / "records")
     (tmp_path / "scene.toml").write_text(KINDS[kind][0])
