@@ -186,7 +186,7 @@ def _chosen(scene, scan, point, groups):
     bearings = Bearings(**{**exact.model_dump(), **{name: float(f"{exact.given(name):.6g}") for name in WRITTEN}})
     borne = scene.with_(bearings=bearings, duration=None)
     rows = rows_of(borne, groups, lambda one: simulate(one, history=False), _demand)
-    demand, worst = max(row.pop("demand") for row in rows), max(rows, key=lambda row: row["stroke"])
+    demand, worst = max(row.pop("demand", math.inf) for row in rows), max(rows, key=lambda row: row["stroke"])
     return {
         "period": point[0],
         "damping": point[1],

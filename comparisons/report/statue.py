@@ -13,7 +13,7 @@ from analytic.nearby import SHARE, cliffs, nearby
 from analytic.records.folder import reversed_sign, same_reversed
 from analytic.response import JUDGED, about_record
 
-from ..running.options import rows_of
+from ..running.options import row_of
 from ..running.provenance import Result
 from ..showing.margins import LIFTED, doubts, headline, motion_warnings
 from ..showing.parts import Column, across, grouped, number, signed, table
@@ -87,7 +87,7 @@ def statue_of(scene: Scene, motions: Mapping[str, Sequence[Motion]], progress: A
     if scene.motion is not None and not same_reversed(scene):  # else it is the mirrored run
         found["reversed"] = _copy(scene.with_(motion=reversed_sign(scene.motion)))
     records = _with_own(scene, motions)
-    rows = rows_of(scene, records, lambda one: simulate(one.with_(duration=None), history=False))
+    rows = [row_of(scene, record, motion, _decided) for record, group in records.items() for motion in group]
     found["motions"] = rows if motions else []
     found["needed"] = None
     if _lifts_or_goes_too_far(scene, found, rows):
@@ -107,6 +107,10 @@ def _lifts_or_goes_too_far(scene, found, rows):
     rows = [found["own"], *found["near"], *rows]
     x_max = math.inf if scene.bearings is None else scene.bearings.x_max or math.inf
     return any(row["outcome"] != "stands" or (row["stroke"] or 0.0) > x_max for row in rows)
+
+
+def _decided(scene):
+    return simulate(scene.with_(duration=None), history=False)
 
 
 def _copy(scene):

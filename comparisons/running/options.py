@@ -15,7 +15,7 @@ import typer
 from analytic.errors import SceneError, SettingError
 
 if TYPE_CHECKING:
-    from analytic import Response, Scene
+    from analytic import Caution, Response, Scene
     from analytic.motion import Motion
 
 # What a user says of a record that the file itself does not.
@@ -123,12 +123,13 @@ def other_motions(
     return motions_of(scene, records, both_signs, directions, units) if given else {}
 
 
-def read_row(record: str, motion: Motion) -> dict[str, Any]:
-    """A motion as it was read: record, motion, peak [m/s2], and warnings on it, as `schemas.runs.MotionRead` has it."""
+def read_row(record: str, motion: Motion, warnings: Sequence[Caution] = ()) -> dict[str, Any]:
+    """A motion as it was read: record, motion, peak [m/s2], and warnings on it, as `schemas.runs.MotionRead` has it;
+    further `warnings` behind them."""
     from analytic.response import about_record
 
-    warnings = [asdict(one) for one in about_record(motion)]
-    return {"record": record, "motion": motion.label, "peak": motion.peak, "warnings": warnings}
+    told = dict.fromkeys((*about_record(motion), *warnings))
+    return {"record": record, "motion": motion.label, "peak": motion.peak, "warnings": list(map(asdict, told))}
 
 
 def rows_of(
@@ -137,12 +138,7 @@ def rows_of(
     simulate: Callable[[Scene], Response],
     more: Callable[[Scene], Mapping[str, Any]] = lambda scene: {},
 ) -> list[dict[str, Any]]:
-    """A row for each motion, as `schemas.runs.MotionRun` has it: the one way from a motion to its warnings.
-
-    simulate : of the scene under a motion; one that the solver refuses is a failed row. more : what else a row has.
-    """
-    from analytic.errors import SceneError
-
+    """`row_of` each motion, in the groups' order; shown as it goes on."""
     from .progress import bar
 
     pairs = [(record, motion) for record, motions in groups.items() for motion in motions]
@@ -150,17 +146,32 @@ def rows_of(
         return []
     rows = []
     with bar(f"{scene.name}: {len(pairs)} motions") as progress:
-        for number, (record, motion) in enumerate(pairs, 1):
-            under = scene.with_(motion=motion)
-            added: Mapping[str, Any] = {}
-            try:
-                response = simulate(under)
-                added = more(under)
-            except SceneError as error:
-                response = refused(under, error)
-            rows.append({**read_row(record, motion), **_measures(under, response), **added})
-            progress(number, len(pairs))
+        for record, motion in pairs:
+            rows.append(row_of(scene, record, motion, simulate, more))
+            progress(len(rows), len(pairs))
     return rows
+
+
+def row_of(
+    scene: Scene,
+    record: str,
+    motion: Motion,
+    simulate: Callable[[Scene], Response],
+    more: Callable[[Scene], Mapping[str, Any]] = lambda scene: {},
+) -> dict[str, Any]:
+    """A scene under one of many motions, as `schemas.runs.MotionRun` has it: the one way from a motion to its warnings.
+
+    simulate : of the scene under the motion; where it is refused, the row is that of a failed run. more : what else a
+    row of a run has.
+    """
+    from analytic.errors import SceneError
+
+    try:
+        under = scene.with_(motion=motion)
+        response, added = simulate(under), more(under)
+    except SceneError as error:
+        response, added = refused(scene.with_(motion=None), error), {}
+    return {**read_row(record, motion, response.warnings), **_measures(scene, response), **added}
 
 
 def refused(scene: Scene, error: SceneError, **known: Any) -> Response:
@@ -177,10 +188,9 @@ def refused(scene: Scene, error: SceneError, **known: Any) -> Response:
 
 
 def _measures(scene: Scene, response: Response) -> dict[str, Any]:
-    """What a run did, and its warnings."""
+    """What a run did."""
     failure = response.failure
     return {
-        "warnings": [asdict(one) for one in response.warnings],
         "outcome": response.outcome,
         "failure": failure and f"{failure.reason}: {failure.message.partition(chr(10))[0]}".removesuffix(": "),
         "tilt": response.peak_tilt_ratio,
