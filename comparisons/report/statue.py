@@ -224,13 +224,17 @@ def _largest(rows, name):
 
 def _worst(found, scene):
     """The worst outcome of all motions, and under how many of the records; and that of the scene's own."""
-    own, rows = found["own"], _by_record(found["motions"])
+    own = found["own"]
+    rows = [
+        max((row["outcome"] for row in group), key=WORST.index)
+        for group in grouped(found["motions"], "record").values()
+    ]
     words = WORDS[own["outcome"]] + ("" if own["decided"] else " (not decided when the run ended)")
-    worst = max((row["outcome"] for row in rows), key=WORST.index, default=None)
+    worst = max(rows, key=WORST.index, default=None)
     known = scene["motion"] and own["decided"] and own["outcome"] == worst
     if not rows or (known and len(rows) == 1):
         return words
-    count = "any" if worst == "stands" else sum(row["outcome"] == worst for row in rows)
+    count = "any" if worst == "stands" else rows.count(worst)
     under = f"{WORDS[worst]} under {count} of {len(rows)} record{'s' * (len(rows) > 1)}"
     if known:
         return f"{under}, its own among them"

@@ -14,7 +14,7 @@ from comparisons.commands.report import form
 from comparisons.report import statue
 from comparisons.report.detail import assets, environment
 from comparisons.report.runs import RESTITUTION, SCENES, load_scenes
-from comparisons.report.statue import _engines, _worst, statue_of
+from comparisons.report.statue import _by_record, _engines, _worst, statue_of
 from comparisons.report.study import make_own_results
 from comparisons.report.write import PAGE, write_page
 from comparisons.running.provenance import read_result
@@ -56,9 +56,16 @@ def scenes(tmp_path_factory):
 @pytest.fixture(scope="module")
 def made(scenes, tmp_path_factory):
     folder = tmp_path_factory.mktemp("page")
-    motions = {"bust": {"other": [synthetic_motion(seed=7), synthetic_motion(seed=8).scaled(2.5)]}}
-    make_own_results(folder, scenes, engines=[], motions=motions)
+    make_own_results(folder, scenes, engines=[], motions={"bust": {"other": MOTIONS}})
     return folder
+
+
+MOTIONS = [synthetic_motion(seed=7), synthetic_motion(seed=8).scaled(2.5)]
+
+
+def peak(scene, motion):
+    """Peak base displacement [m]."""
+    return simulate(scene.with_(motion=motion, duration=None), history=False).peak_base_displacement
 
 
 @pytest.fixture(scope="module")
@@ -87,6 +94,8 @@ def test_each_scene_has_its_card_first_with_its_outcome_in_the_title(page, scene
         words = {"stands": "does not lift", "rocks": "rocks and stays upright", "overturns": "overturns"}[outcome]
         if name == "bust":  # the other record's second motion, which is the worst
             words = f"rocks and stays upright under 1 of 2 records; under its own motion it {words}"
+            assert [peak(scene, motion) > 0.2 for motion in (scene.motion, *MOTIONS)] == [False, True, True]
+            words += "; the base exceeds x_max under 1 of 2 records"
         title = f"{name}: the block {words}"
         assert card.startswith(f"{title} ") and title in titles
         assert "Engines None was run." in card
@@ -135,17 +144,19 @@ TITLES = {  # worst of each record, the scene's own motion and, where it is not 
 
 @pytest.mark.parametrize("outcomes, words", TITLES.items())
 def test_the_title_is_the_worst_of_all_records_and_what_the_scenes_own_motion_does(outcomes, words):
-    found = {"own": {"outcome": outcomes[0], "decided": True}, "motions": [{"outcome": one} for one in outcomes]}
+    rows = [{"record": k, "outcome": one} for k, one in enumerate(outcomes)]
+    found = {"own": {"outcome": outcomes[0], "decided": True}, "motions": rows}
     assert _worst(found, {"motion": "own"}) == words
 
 
 def test_the_title_without_other_motions_and_where_the_scene_has_none_or_is_cut():
     rocks = {"outcome": "rocks", "decided": True}
     assert _worst({"own": rocks, "motions": []}, {"motion": "own"}) == "rocks and stays upright"
-    words = _worst({"own": rocks, "motions": [{"outcome": "rocks"}]}, {"motion": None})
+    words = _worst({"own": rocks, "motions": [{"record": "r", "outcome": "rocks"}]}, {"motion": None})
     assert words == "rocks and stays upright under 1 of 1 record; without a motion it rocks and stays upright"
     words = _worst(
-        {"own": {"outcome": "stands", "decided": False}, "motions": [{"outcome": "stands"}]}, {"motion": "own"}
+        {"own": {"outcome": "stands", "decided": False}, "motions": [{"record": "r", "outcome": "stands"}]},
+        {"motion": "own"},
     )
     assert words.endswith("; under its own motion it does not lift (not decided when the run ended)")
 
@@ -155,9 +166,11 @@ def test_the_scenes_own_motion_counts_among_the_records_and_once(scenes, monkeyp
     scene, other = scenes["bronze"], synthetic_motion(seed=7).scaled(0.1)
     same = SampledMotion(scene.motion.dt, scene.motion.samples, "the record in the folder")
     for motions, count in (({"other": [other]}, 2), ({"a pair": [other, same]}, 1), ({}, 0)):
-        rows = statue_of(scene, motions)["motions"]
+        rows = _by_record(statue_of(scene, motions)["motions"])
         assert len(rows) == count
-        assert [row["overturns"] for row in rows if row["record"] != "other"] == [1] * bool(count)
+        assert [row["overturns"] for row in rows if row["record"] != "other"] == [1 + ("a pair" in motions)] * bool(
+            count
+        )
 
 
 def test_a_symmetric_scene_is_the_same_reversed_and_another_is_run(scenes, statues):
@@ -232,7 +245,7 @@ def test_one_that_rocks_gets_its_own_restitution_and_replaces_an_older_report(tm
     assert "it is left out here, as it rates no engine" in page
     assert "Table 1(a)" not in page and "aryatid" not in page
     told = json.loads(form(tmp_path / PAGE).text())
-    assert told["schema"] == "rocking report 4" and len(told["results"]) == 2
+    assert told["schema"] == "rocking report 5" and len(told["results"]) == 2
     assert [(row["scene"], row["outcome"]) for row in told["rows"]] == [("bust", "stands"), ("released", "rocks")]
     assert "released: in analytic it rocks and stays upright" in page and "bust: in analytic it never lifts" in page
 
