@@ -161,11 +161,11 @@ def energy_gain(scene: Scene, trace: Trace) -> float:
     block = scene.block
     level = low = rise = 0.0
     unit = block.mass * scene.gravity * block.radius * (1 - math.cos(block.slenderness))
-    settled, begin = _settled(trace), 0
+    still, begin = settled(trace), 0
     with np.errstate(over="ignore", invalid="ignore"):  # the balance of an unstable run is NaN
         for piece in trace.pieces():
             balance, kinetic = energy_balance(scene, piece)
-            balance, clean = level + balance, settled[begin : begin + len(balance)]
+            balance, clean = level + balance, still[begin : begin + len(balance)]
             lowest = np.minimum(low, np.minimum.accumulate(np.where(clean, balance, np.inf)))
             rise = np.maximum(rise, (balance - lowest).max(initial=0.0, where=clean))
             unit = np.maximum(unit, kinetic.max(initial=0.0, where=clean))
@@ -183,12 +183,12 @@ def check_energy(scene: Scene, trace: Trace) -> Failure | None:
     )
 
 
-def _settled(trace: Trace) -> np.ndarray:
+def settled(trace: Trace) -> np.ndarray:
     """Whether each step lies outside those in which a compliant contact relaxes after a crossing of tilt = 0.
 
     In those the contact holds energy, and the block does not pivot about its corner.
     """
     crossings = trace.time[1:][np.diff(np.sign(trace.tilt)) != 0]
     last = np.searchsorted(crossings, trace.time, side="right") - 1
-    settled = trace.time - np.concatenate(([-math.inf], crossings))[last + 1] >= trace.settle
-    return settled if settled.sum() >= 2 else np.ones(len(trace.time), dtype=bool)
+    found = trace.time - np.concatenate(([-math.inf], crossings))[last + 1] >= trace.settle
+    return found if found.sum() >= 2 else np.ones(len(trace.time), dtype=bool)

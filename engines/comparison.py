@@ -45,7 +45,7 @@ from .checks import LEAST_SLIP
 from .copies import CHANGE, near_copies
 from .couple import FRICTION
 from .events import at_contact
-from .matching import COUNTED, LEAST_TILT, counts, impacts_of, matched, parting
+from .matching import COUNTED, LEAST_TILT, STILL, counts, impacts_of, matched, parting
 from .swings import Trace
 
 if TYPE_CHECKING:
@@ -255,7 +255,7 @@ def _restitution_differences(here: np.ndarray, there: np.ndarray) -> list[Differ
 
 def outcome_of(scene: Scene, response: Response) -> str:
     """The outcome; "stands" where the peak tilt is too small to count."""
-    still = response.peak_tilt < PEAK * LEAST_TILT * scene.block.slenderness
+    still = response.peak_tilt < STILL * scene.block.slenderness
     if response.outcome not in ("rocks", "slides") or not still:
         return response.outcome
     return "slides" if _value(response, "peak_slip") > LEAST_SLIP * scene.block.radius else "stands"

@@ -11,7 +11,8 @@ import numpy as np
 from analytic.motion import vertical_acceleration
 from analytic.response import Failure, Impact
 
-from .swings import ArrayModel, to_contact
+from .checks import HEIGHT_TOLERANCE, pivoting_centre, settled
+from .swings import LEAST_SLIDING, ArrayModel, to_contact
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -251,4 +252,28 @@ def at_contact(scene: Scene, trace: Trace) -> tuple[np.ndarray, np.ndarray, np.n
         H, N = model.contact_forces(side, tilt, rate, tilting, absolute[flight], up)
         demand[flight] = np.where(N > 0, np.abs(H) / np.where(N > 0, N, 1.0), np.inf)
         normal[flight] = N / (model.m * model.g)
+    if scene.friction is not None and trace.centre is not None:
+        _where_it_moves(scene, trace, demand, normal, absolute)
     return demand, normal, absolute
+
+
+def _where_it_moves(scene: Scene, trace: Trace, demand: np.ndarray, normal: np.ndarray, absolute: np.ndarray) -> None:
+    """Write over the measures of a block that sticks where its corner slides or is in the air: (S1) to (S4) of
+    `analytic.sliding.equations` at the scene's friction. While a compliant contact relaxes nothing is measured."""
+    model, mu = ArrayModel.of(scene), scene.friction
+    apart = trace.centre - pivoting_centre(scene, trace)
+    flies = apart[:, 1] > HEIGHT_TOLERANCE * model.R
+    slides = ~flies & (np.abs(apart[:, 2]) > LEAST_SLIDING * math.sqrt(model.g * model.R))
+    moves = flies | slides
+    tilt, rate = trace.tilt[moves], trace.tilt_rate[moves]
+    pivots, friction = np.abs(tilt) > trace.contact_tilt, -np.sign(apart[moves, 2]) * mu * ~flies[moves]
+    c, n = model.lever(np.sign(tilt), tilt)
+    weight = model.g + vertical_acceleration(scene.motion, trace.time[moves])
+    lifted = np.where(pivots, weight - c * rate**2, weight)
+    lever = n + friction * c
+    alpha = np.where(pivots, -lever * model.m * lifted / (scene.block.centre_inertia + lever * n * model.m), 0.0)
+    N = np.where(flies[moves], 0.0, np.maximum(model.m * (lifted + n * alpha), 0.0))
+    clean = settled(trace)[moves]
+    demand[moves], normal[moves] = np.abs(friction) * clean, np.where(clean, N / model.m, weight) / model.g
+    if scene.base is not None:
+        absolute[moves] = -(trace.bearing_force[moves] + friction * N) / scene.base.mass * clean

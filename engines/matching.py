@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 COUNTED = 0.1
 LEAST_TILT = 0.01  # of the slenderness: a smaller tilt is compared as one of that size
+STILL = 0.02 * LEAST_TILT  # of the slenderness: a block whose peak tilt is smaller has not lifted; a contact yields
 
 
 def impacts_of(response: Response) -> np.ndarray:

@@ -22,6 +22,7 @@ from analytic.termination import is_decided
 
 from .checks import check_energy, check_place, slip_of, slips
 from .events import check_impacts, contact_measures, find_events
+from .matching import STILL
 from .momentum import check_impulse
 from .swings import Trace, find_swings
 from .truncation import ended_early, finite_part, last_state, unstable_time, upright_part, upto_overturning
@@ -69,8 +70,8 @@ def observe(
     Returns
     -------
     Response
-        The outcome is "stands" where |tilt| never exceeded ``trace.contact_tilt``, and "failed" where states are not
-        finite or `_judged` finds a failure.
+        The outcome is "stands" where |tilt| never exceeded ``trace.contact_tilt`` or `matching.STILL` of the
+        slenderness, and "failed" where states are not finite or `_judged` finds a failure.
 
     An impact is reported where the swings before and after it are both resolved, that is, exceed contact_tilt. Its tilt
     rates and base velocities are extrapolated to tilt = 0 by the model's equations of flight. If no such swing follows,
@@ -86,6 +87,7 @@ def observe(
     sliding = slip_of(scene, trace)
     slip = sliding.peak if sliding and overturning_time is None else 0.0
     failure, warnings = _judged(scene, trace, {**seen, "peak_slip": slip}, missed, failure, warnings)
+    lifted = lifted and seen["peak_tilt"] >= STILL * scene.block.slenderness
     upright = "rocks" if lifted else "slides" if sliding and sliding.peak else "stands"
     if sliding and sliding.peak and scene.friction:  # what no-slip formulas ask for is no demand
         seen["friction_demand"] = min(seen["friction_demand"], scene.friction)

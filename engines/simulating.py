@@ -12,6 +12,7 @@ import numpy as np
 
 import analytic
 from analytic import termination
+from analytic.errors import SettingError
 from analytic.response import Caution, Failure
 from analytic.solver import compile_kernels
 
@@ -94,6 +95,9 @@ class Simulator(Engine):
         )
         if response.failure or not compare:
             return response
+        if (held := self._held(scene, response.variant).friction) != scene.friction and scene.friction is not None:
+            words = f"the contact's friction is {held:.3g}, not the scene's {scene.friction:.3g}, as by a smaller one"
+            return replace(response, comparable=f"{words} a couple before the landing slips")
         return compared(scene, response, Reference.of(scene, model))
 
     def traced(
@@ -119,6 +123,9 @@ class Simulator(Engine):
         if not self.variants[name].takes_restitution:
             refuse_restitution(self, scene)
         if (friction := self._held(scene, name).friction) is not None and hasattr(chosen, "friction"):
+            if "friction" in settings:
+                words = f"{self.name} {name}: friction = {settings['friction']:g}"
+                raise SettingError(f"{words}: the contact's friction is {friction:g}, by the scene; leave it out")
             chosen = replace(chosen, friction=friction)
         if model is None:
             return self._once(scene, name, chosen, history)

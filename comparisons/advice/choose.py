@@ -16,9 +16,11 @@ import numpy as np
 
 from analytic import Scene, SettingError, simulate
 from analytic.limits import scene_warnings
+from analytic.response import Caution
 from analytic.solver import TOLERANCE
 from engines import available_engines, get_engine
 from engines.contract import Variant
+from engines.couple import unkept_friction
 from engines.statue_range import outside
 
 from ..running.cases import Case
@@ -228,7 +230,8 @@ def choose(
 def _warnings(scene):
     """What is in doubt of the scene itself, or lies outside the range in which engines are tested."""
     response = simulate(scene, history=False)
-    return (*scene_warnings(scene), *response.warnings, *outside(scene, response))
+    kept = [Caution("engine", words)] if (words := unkept_friction(scene)) else []
+    return (*scene_warnings(scene), *response.warnings, *outside(scene, response), *kept)
 
 
 def _shown(progress, words):
