@@ -137,18 +137,18 @@ def _for_scene(place, base_mass, stroke, tilt, made, many, write, plot, json_fil
     scene = _on_base(load_scene(place), base_mass, place)
     if write and place in shipped_scenes() and not Path(place).exists():
         raise SettingError(f"--write: {place} comes with the package; give a scene file of your own")
-    groups = motions_of(scene, **many)
+    groups, left = motions_of(scene, **many)
     motions = [motion for group in groups.values() for motion in group]
     compile_kernels(any(motion.vertical for motion in motions))
     with bar(f"{scene.name}: bearings") as progress, named_by_options(OF_SCENE), in_file(place):
         scan = scan_bearings(scene, motions, stroke, tilt=tilt, **made, progress=progress)
     points = {LEAST: scan.least_stroke, SOFTEST: scan.softest}  # (period, damping), None without any
-    chosen = {name: _chosen(scene, scan, point, groups) for name, point in points.items() if point is not None}
+    chosen = {name: _chosen(scene, scan, point, groups, left) for name, point in points.items() if point is not None}
     if write and write not in chosen:
         raise SettingError(f"--write: {nothing_holds(scene, scan, stroke)}")
     read = [read_row(record, motion) for record, group in groups.items() for motion in group]
-    warnings = scene_warnings(scene)
-    results = {json_file: _form(scene, stroke, tilt, read, scan, chosen, warnings)}
+    warnings = scene_warnings(scene.with_(bearings=scan.designs[0]))  # it is to have some
+    results = {json_file: _form(scene, stroke, tilt, read, left, scan, chosen, warnings)}
     if write:
         results[place] = _written(place, chosen[write]["bearings"], None if base_mass is None else scene.base)
     write_output(
@@ -175,7 +175,7 @@ def _on_base(scene, mass, place):
         return scene if mass is None else scene.with_(base=Base(mass=float(f"{mass:.6g}")))  # rounded as in the file
 
 
-def _chosen(scene, scan, point, groups):
+def _chosen(scene, scan, point, groups, left=()):
     """The bearings at a point, rounded as in a file, and what each motion does on them, from new runs."""
     from analytic import simulate
     from analytic.scene import Bearings
@@ -199,7 +199,7 @@ def _chosen(scene, scan, point, groups):
         "tilt": max(row["tilt"] for row in rows),
         "worst": worst["motion"],
         "motions": rows,
-        "headline": headline(rows),
+        "headline": headline(rows, left),
     }
 
 
@@ -226,7 +226,7 @@ def _written(place, bearings, base):
     return text
 
 
-def _form(scene, stroke, tilt, motions, scan, chosen, warnings):
+def _form(scene, stroke, tilt, motions, left, scan, chosen, warnings):
     """Content of the JSON file."""
     from ..schemas.advice import BearingProposal, BearingSearch, Constants
     from ..schemas.runs import Warned
@@ -237,6 +237,7 @@ def _form(scene, stroke, tilt, motions, scan, chosen, warnings):
         stroke=stroke,
         tilt=tilt,
         motions=motions,
+        left_out=left,
         warnings=[Warned(**dataclasses.asdict(one)) for one in warnings],
         periods=scan.periods.tolist(),
         dampings=scan.dampings.tolist(),

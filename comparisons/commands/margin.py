@@ -56,7 +56,7 @@ def command(
         raise SettingError(f"--tilt {tilt:g}: give a share of the slenderness, above 0 and up to 1")
     check_writable([json_file], picture=plot, inputs=[scene])
     what = load_scene(scene)
-    groups = other_motions(what, records, both_signs, directions, units)
+    groups, left = other_motions(what, records, both_signs, directions, units)
     compile_kernels()
     scan: dict[str, Any] = {"tilt": tilt, "span": span / 100, "step": span / 100 / STEPS}
     with spinner(f"{what.name}: margins") as tell, in_file(scene):
@@ -67,9 +67,9 @@ def command(
 
     def show():
         print_margins(what, nearest, contact, span, tilt, warnings)
-        print_motions(what, [{**row, "changes": named(row, tilt)} for row in rows])
+        print_motions(what, [{**row, "changes": named(row, tilt)} for row in rows], left)
 
-    form = _form(what, nearest, contact, warnings, rows, span, tilt)
+    form = _form(what, nearest, contact, warnings, rows, left, span, tilt)
     write_output({json_file: form}, show, plot, lambda: draw_margins(what, nearest, tilt))
 
 
@@ -80,7 +80,7 @@ def _decided(scene):
     return simulate(scene.with_(duration=None), history=False)
 
 
-def _form(scene, nearest, contact, warnings, rows, span, tilt):
+def _form(scene, nearest, contact, warnings, rows, left, span, tilt):
     """Content of the JSON file."""
     from analytic.margins import limit_states
 
@@ -98,7 +98,8 @@ def _form(scene, nearest, contact, warnings, rows, span, tilt):
         contact=Contact(**dataclasses.asdict(contact)),
         warnings=[Warned(**dataclasses.asdict(one)) for one in warnings],
         motions=[MotionMargin(**row) for row in rows],
-        headline=headline(rows),
+        left_out=left,
+        headline=headline(rows, left),
     )
 
 
@@ -114,4 +115,5 @@ def _changes(scene, scan):
     from analytic.margins import limit_states, margins
 
     (found,) = margins(scene, **scan, only=("motion",))
-    return {"reached": _reached(found), "changes": {state: found.change(state) for state in limit_states(scene)}}
+    changes = {state: found.change(state) for state in limit_states(scene)}
+    return {"reached": _reached(found), "changes": changes, "interleaved": found.interleaved}

@@ -123,7 +123,7 @@ def _simulate(output, scene, motion, engines, variants, many):
         for place, one in zip(scene, scenes.values(), strict=True):
             with in_file(place):  # before the engines' runs
                 simulate(one, history=False)
-        motions = {name: other_motions(one, *many) for name, one in scenes.items()}
+        motions = {name: other_motions(one, *many)[0] for name, one in scenes.items()}
         make_own_results(output, scenes, engines=engines, variants=variants, motions=motions)
     first = "" if motion is None else "First write this motion into the table [motion] of its file."
     return {name: (_call(place, *many), first) for name, place in zip(scenes, scene, strict=True)}

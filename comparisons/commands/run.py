@@ -19,6 +19,7 @@ from ..running.solving import (
     parse_settings,
     print_failures,
     simulate,
+    with_near,
 )
 
 
@@ -56,7 +57,7 @@ def command(
     check_writable([json_file, csv], picture=plot, inputs=[scene])
     check_solver(engine)
     what, chosen = load_scene(scene), parse_settings(settings or [])
-    about, groups = scene_warnings(what), other_motions(what, records, both_signs, directions, units)
+    about, (groups, left) = scene_warnings(what), other_motions(what, records, both_signs, directions, units)
     with in_file(scene):
         response = simulate(
             what,
@@ -68,7 +69,11 @@ def command(
             words=f"{what.name}: {engine}",
             compare=True,
         )
-    rows = rows_of(what, groups, lambda one: simulate(one, engine, variant, chosen, False, time_limit))
+    rows = rows_of(
+        what.with_(duration=None),  # it is of the scene's own motion
+        groups,
+        lambda one: with_near(one, simulate(one, engine, variant, chosen, False, time_limit)),
+    )
     response = replace(response, warnings=(*response.warnings, *near_motion(what)))
     if response.history is None and (csv or plot):
         say("there is no history to write")
@@ -79,7 +84,7 @@ def command(
 
     def tell():
         show(summary(what, response), [response], about)
-        print_motions(what, rows)
+        print_motions(what, rows, left)
 
     def draw():
         from ..showing.plots import draw_histories
@@ -87,7 +92,9 @@ def command(
         return draw_histories(what, [response])
 
     told = replace(response, warnings=(*about, *response.warnings))
-    form = Run(**told.to_json(), motions=[MotionRun(**row) for row in rows], headline=headline(rows))
+    form = Run(
+        **told.to_json(), motions=[MotionRun(**row) for row in rows], left_out=left, headline=headline(rows, left)
+    )
     print_failures([response])
     write_output({json_file: form, csv: history.getvalue()}, tell, plot, draw)
     if response.failure:

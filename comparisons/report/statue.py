@@ -15,6 +15,7 @@ from analytic.response import JUDGED, about_record
 
 from ..running.options import row_of
 from ..running.provenance import Result
+from ..running.solving import with_near
 from ..showing.margins import LIFTED, doubts, headline, motion_warnings
 from ..showing.parts import Column, across, grouped, number, signed, table
 from ..showing.wording import listed
@@ -110,7 +111,7 @@ def _lifts_or_goes_too_far(scene, found, rows):
 
 
 def _decided(scene):
-    return simulate(scene.with_(duration=None), history=False)
+    return with_near(scene, simulate(scene.with_(duration=None), history=False))
 
 
 def _copy(scene):
@@ -200,8 +201,8 @@ def _failures(rows):
 
 
 def _by_record(rows):
-    """A row for each record: the worst of its motions."""
-    return [
+    """A row for each record, that of the worst of its motions; the worst record first."""
+    found = [
         {
             "record": record,
             "motions": len(group),
@@ -214,6 +215,7 @@ def _by_record(rows):
         }
         for (record,), group in grouped(rows, "record").items()
     ]
+    return sorted(found, key=lambda one: (-WORST.index(one["outcome"]), not one["doubts"], -(one["tilt"] or 0.0)))
 
 
 def _largest(rows, name):

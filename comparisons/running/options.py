@@ -82,8 +82,8 @@ Directions = Annotated[
 
 def motions_of(
     scene: Scene, records: str | None, both_signs: bool, directions: int | None, units: str | None = None
-) -> dict[str, list[Motion]]:
-    """{record: its motions}, the scene's own first; one that lies in the folder counts once. What is left out is said.
+) -> tuple[dict[str, list[Motion]], list[str]]:
+    """({record: its motions}, the scene's own first, one that lies in the folder once; what is left out and why, said).
 
     Raises
     ------
@@ -98,6 +98,7 @@ def motions_of(
         if value is not None and records is None:
             raise SettingError(f"--{name} {value}: give the folder of the records with --records")
     found: dict[str, list[Motion]] = {}
+    left: list[str] = []
     own = scene.motion
     if records is not None:
         with named_by_options({"directions": "--directions"}):
@@ -112,15 +113,15 @@ def motions_of(
         say("--both-signs: mirrored the same, as block and start are symmetric; each motion is run once")
     elif both_signs:
         found = {name: [*motions, *map(reversed_sign, motions)] for name, motions in found.items()}
-    return found
+    return found, left
 
 
 def other_motions(
     scene: Scene, records: str | None, both_signs: bool, directions: int | None, units: str | None = None
-) -> dict[str, list[Motion]]:
+) -> tuple[dict[str, list[Motion]], list[str]]:
     """`motions_of` where one of the options is given, else none."""
     given = both_signs or any(value is not None for value in (records, directions, units))
-    return motions_of(scene, records, both_signs, directions, units) if given else {}
+    return motions_of(scene, records, both_signs, directions, units) if given else ({}, [])
 
 
 def read_row(record: str, motion: Motion, warnings: Sequence[Caution] = ()) -> dict[str, Any]:

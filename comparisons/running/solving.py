@@ -161,21 +161,30 @@ def simulate(
 
 
 def near_motion(scene: Scene) -> tuple[Caution, ...]:
-    """`analytic.nearby.cliffs` of a scene with a motion, or that it was not looked for; none without a motion."""
-    from analytic.nearby import SHARE, cliffs, nearby
-    from analytic.response import Caution
+    """`near` a scene's motion, shown while it is looked for; none without a motion."""
+    from analytic.nearby import SHARE
 
     if scene.motion is None:
         return ()
     with spinner(f"{scene.name}: within {SHARE:.0%} of the motion"):
-        try:
-            return cliffs(scene, *nearby(scene))
-        except SceneError as error:
-            return (
-                Caution(
-                    "motion", f"How the outcome depends on {SHARE:.0%} of the motion was not tested: {error.remedy}."
-                ),
-            )
+        return near(scene)
+
+
+def near(scene: Scene) -> tuple[Caution, ...]:
+    """`analytic.nearby.cliffs` of a scene with a motion, or that it was not looked for."""
+    from analytic.nearby import SHARE, cliffs, nearby
+    from analytic.response import Caution
+
+    try:
+        return cliffs(scene, *nearby(scene))
+    except SceneError as error:
+        text = f"How the outcome depends on {SHARE:.0%} of the motion was not tested: {error.remedy}."
+        return (Caution("motion", text),)
+
+
+def with_near(scene: Scene, response: Response) -> Response:
+    """The response of a scene with the warnings that `near` adds to a single run's, too."""
+    return dataclasses.replace(response, warnings=(*response.warnings, *near(scene)))
 
 
 def check_solver(name: str) -> None:

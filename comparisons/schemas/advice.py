@@ -67,10 +67,12 @@ class Contact(Part):
 
 class MotionMargin(MotionRun):
     """A scene under one of many motions, the limit states reached, and the nearest relative changes of the motion at
-    which each limit state becomes reached, or where it is, no longer is; none of a run that failed."""
+    which each limit state becomes reached, or where it is, no longer is; none of a run that failed. interleaved: as of
+    a `Margin`."""
 
     reached: list[LimitState] = []
     changes: dict[LimitState, float | None] = {}
+    interleaved: bool = False
 
 
 class Margins(Form):
@@ -88,6 +90,7 @@ class Margins(Form):
     contact: Contact
     warnings: list[Warned]
     motions: list[MotionMargin]
+    left_out: list[str] = Field(description="files and channels of the folder, and why")
     headline: str | None
 
 
@@ -162,6 +165,7 @@ class BearingSearch(Form):
     stroke: float = Field(description="m, allowed")
     tilt: float = Field(description="allowed, over the slenderness; 0: no lift")
     motions: list[MotionRead]
+    left_out: list[str] = Field(description="files and channels of the folder, and why")
     warnings: list[Warned] = Field(description="of the scene")
     periods: list[float]
     dampings: list[float]

@@ -144,6 +144,7 @@ class Run(_Values):
 
     schema_: str = Field(default="rocking run 4", serialization_alias="schema")
     motions: list[MotionRun] = Field(default=[], description="where --records, --both-signs or --directions are given")
+    left_out: list[str] = Field(default=[], description="files and channels of the folder, and why")
     headline: str | None = None
 
 

@@ -41,7 +41,8 @@ def answer(choice: Choice) -> str:
     one = choice.chosen
     if one is None:
         reached = f"{choice.best.error:.1e} by {named(choice.best)}" if choice.best else "none"
-        return f"No level passes {choice.error:g} for {choice.criterion}. The least error: {reached}."
+        spare = f" with a factor of {choice.safety_factor:g} to spare" if choice.safety_factor > 1 else ""
+        return f"No level passes {choice.error:g} for {choice.criterion}{spare}. The least error: {reached}."
     if not choice.variants:
         return (
             f"The analytic model: the block never lifts on {_scenes(choice)}, and without contact there is no error of "

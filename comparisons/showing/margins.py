@@ -19,7 +19,8 @@ from ..measuring.statistics import wilson
 from ..running.readable import readable
 from .parts import number, percent
 from .plots import TITLE_CHARACTERS
-from .terminal import Grid, echo, grid, warned
+from .terminal import Grid, digits, echo, grid, warned
+from .wording import listed
 
 # Okabe and Ito; hatches, and the lines’ places, tell them apart in print.
 COLOURS = {
@@ -218,18 +219,19 @@ def _doubt(warning: Mapping[str, Any]) -> tuple[str, str]:
     return DOUBTS.get((warning["kind"], warning["quantity"])) or DOUBTS[warning["kind"], None]
 
 
-def headline(rows: Sequence[Mapping[str, Any]]) -> str | None:
+def headline(rows: Sequence[Mapping[str, Any]], left: Sequence[str] = ()) -> str | None:
     """The worst that must be known of a scene under many motions, by record: failed runs, what is in doubt, whether the
     block lifts and overturns. None without motions.
 
-    rows : as of `running.options.rows_of`.
+    rows : as of `running.options.rows_of`. left : what was left out.
     """
     if not rows:
         return None
     failed = _records(rows, lambda row: row["outcome"] == "failed")
     said = [f"No outcome under {failed}."] if failed else []
     said += [f"Warning: {clause} under {records}." for clause, records in doubts(rows).items()]
-    return " ".join([*said, f"The block {odds(rows, LIFTED, 'lifts')}, and {odds(rows, LIFTED[1:], 'overturns')}."])
+    said.append(f"The block {odds(rows, LIFTED, 'lifts')}, and {odds(rows, LIFTED[1:], 'overturns')}.")
+    return " ".join([*said, *([f"Left out of the folder: {len(left)} files or channels."] if left else [])])
 
 
 def doubts(rows: Sequence[Mapping[str, Any]], kinds: Sequence[str] = KINDS) -> dict[str, str]:
@@ -254,14 +256,14 @@ def _counted(records: int) -> str:
     return f"{records} record{'s' * (records != 1)}"
 
 
-def print_motions(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> None:
+def print_motions(scene: Scene, rows: Sequence[Mapping[str, Any]], left: Sequence[str] = ()) -> None:
     """Print a row for each motion, the warnings of all, and the `headline`; nothing without motions.
 
     rows : as of `rows_of`, and for each more column of a `Mapping` called changes a name and what stands there.
     """
     if not rows:
         return
-    more = list(dict.fromkeys(name for row in rows for name in row.get("changes", ())))
+    more = list(dict.fromkeys(name for row in rows for name in row.get("changes", ())))[::-1]  # overturning first
     columns: dict[str, Callable[[Mapping[str, Any]], str]] = {
         "motion": lambda row: readable(row["motion"]),
         "peak\n[g]": lambda row: f"{row['peak'] / scene.gravity:.3g}",
@@ -270,22 +272,29 @@ def print_motions(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> None:
     if any(row["warnings"] for row in rows):
         columns["warnings"] = lambda row: ", ".join(dict.fromkeys(_doubt(one)[0] for one in row["warnings"]))
     columns |= {
-        "tilt\n[-]": lambda row: f"{row['tilt']:.3g}",
+        "tilt\n[-]": lambda row: digits(row["tilt"], ".3g"),
         **{name.replace(" > ", " >\n"): partial(_change, name) for name in more},
     }
     if scene.base is not None:
-        columns["base\n[m]"] = lambda row: f"{row['stroke']:.3g}"
+        columns["base\n[m]"] = lambda row: digits(row["stroke"], ".3g")
     if any(row["slip"] for row in rows):
-        columns["slip\n[m]"] = lambda row: f"{row['slip'] or 0:.3g}"
+        columns["slip\n[m]"] = lambda row: digits(row["slip"], ".3g")
     table = [[cell(row) for cell in columns.values()] for row in rows]
     failed = [f"{readable(row['motion'])}: {readable(row['failure'])}" for row in rows if row["failure"]]
     echo(
         grid([*columns], table, left=["warnings"], wraps=["motion", "warnings"]),
         *failed,
         *motion_warnings(rows),
-        headline(rows) or "",
+        *_alternating(rows),
+        headline(rows, left) or "",
         wrap=True,
     )
+
+
+def _alternating(rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Under which motions the change given may not be the nearest."""
+    names = listed([readable(row["motion"]) for row in rows if row.get("interleaved")])
+    return [f"The outcomes are interleaved under {names}: do not base a decision on these changes."] if names else []
 
 
 def _change(name: str, row: Mapping[str, Any]) -> str:

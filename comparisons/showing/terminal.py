@@ -268,7 +268,7 @@ def _warnings(responses):
 
 
 def warned(pairs: Iterable[tuple[str, Caution]], count: int, everyone: str) -> list[str]:
-    """Warnings and whom they concern, of (who, warning): of one quantity the first one's words, and the values of all.
+    """Warnings and whom they concern, of (who, warning): of one quantity the words of the largest value, and the range.
 
     everyone : what all `count` of them are called.
     """
@@ -282,7 +282,8 @@ def warned(pairs: Iterable[tuple[str, Caution]], count: int, everyone: str) -> l
         who = everyone if 1 < len(names) == count else listed([*names[: MOST_NAMED if more else None], *more])
         values = {f"{one.value:.3g}": one.value for _, one in found if one.value is not None}
         spread = f" ({min(values.values()):.3g} to {max(values.values()):.3g})" if len(values) > 1 else ""
-        said.append(f"Warning, {who}: {found[0][1]}{spread}")
+        worst = max((one for _, one in found), key=lambda one: abs(one.value or 0.0))
+        said.append(f"Warning, {who}: {worst}{spread}")
     return said
 
 

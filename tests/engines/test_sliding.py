@@ -7,9 +7,10 @@ import pytest
 from engine_cases import needs
 from sliding_scenes import LOST, SAVED, SLIDES, random_slider, scene_of
 
-from analytic import PulseMotion, simulate
+from analytic import Base, Bearings, Block, PulseMotion, Scene, SettingError, simulate
 from engines import comparison, get_engine
 from engines.checks import LEAST_SLIP, energy_gain, pivoting_centre, slips
+from engines.matching import STILL
 from engines.swings import Trace
 
 ENGINES = ("exudyn", "pybullet")
@@ -154,3 +155,52 @@ def test_forty_random_scenes(engine, most):
         assert run.failure is None
         wrong += bool(run.differences)
     assert wrong <= most
+
+
+LIGHT = Scene(  # on a light base, whose acceleration the friction decides
+    block=Block(mass=1500.0, radius=1.0, slenderness=0.28),
+    base=Base(mass=300.0),
+    bearings=Bearings(law="linear", ka=4.0e3, count=4),
+    motion=PulseMotion("one-cosine", 6.0, 5.0),
+    friction=0.3,
+    duration=1.2,
+)
+MOVING = {
+    "slides": LIGHT.with_(block={"slenderness": 0.4}, motion=PulseMotion("one-sine", 6.0, 8.0)),
+    "slides and rocks": LIGHT,
+    "flies": scene_of(
+        0.5, 0.3, motion=PulseMotion("one-sine", 4.0, 12.0, vertical=PulseMotion("one-sine", 16.0, 12.0)), duration=1.0
+    ),
+}
+
+
+@pytest.mark.parametrize("engine", ["exudyn", "pybullet"])
+@pytest.mark.parametrize("name", MOVING)
+def test_forces_and_base_acceleration_are_those_of_a_block_that_moves_on_its_base(engine, name):
+    """By the equations of a block that sticks they were up to three times off."""
+    scene = MOVING[name]
+    model, run = simulate(scene, history=False), get_engine(engine).simulate(scene, history=False)
+    assert model.outcome == run.outcome and model.sliding.peak > 0
+    assert run.peak_base_acceleration == pytest.approx(model.peak_base_acceleration, rel=2e-3)
+    assert run.min_normal_ratio == pytest.approx(model.min_normal_ratio, abs=5e-3)
+    assert run.friction_demand == pytest.approx(scene.friction, rel=1e-9)
+
+
+def test_a_contact_that_yields_lifts_no_block():
+    """A peak tilt of 2e-6 of the slenderness is no rocking, in the run as in the comparison."""
+    scene = scene_of(0.2, 0.28, motion=PulseMotion("one-sine", 6.0, 8.0))
+    run = get_engine("exudyn").simulate(scene, history=False)
+    assert 0 < run.peak_tilt_ratio < STILL and run.outcome == "slides" and not run.differences
+
+
+@pytest.mark.parametrize("engine", ["exudyn", "pybullet"])
+def test_with_a_given_restitution_and_a_smaller_friction_nothing_is_compared(engine):
+    scene = SLIDES.with_(block={"restitution": 0.7})
+    run = get_engine(engine).simulate(scene, history=False)
+    assert run.comparable.startswith("the contact's friction is ") and "not the scene's 0.2" in run.comparable
+    assert not run.differences
+
+
+def test_a_friction_beside_that_of_the_scene_is_refused():
+    with pytest.raises(SettingError, match="the contact's friction is 0.2, by the scene; leave it out"):
+        get_engine("exudyn").simulate(SLIDES, friction=0.01)

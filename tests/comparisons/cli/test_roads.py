@@ -31,7 +31,7 @@ USUAL = {
     "report": (statue.STEP, next_step.STEP, nearby.STEP),
 }
 ERROR = re.compile(r"^Error: (?P<file>\S+): (?P<field>[\w.]+)(?: = (?P<value>.+?))?: (?P<problem>.+); (?P<remedy>.+)$")
-RECORDS = 3  # of the folder that are earthquakes: the others are left out by name
+RECORDS, LEFT = 3, 3  # of the folder that are earthquakes, and that are left out by name
 APART = guard.run_apart
 SOUND = ("honest", "nan")  # of the faults, the engines that claim an outcome
 occurred = set()
@@ -139,6 +139,7 @@ def motions_are_told(answer, out, count):
     assert len({row["record"] for row in rows}) == count
     all_is_told([one for row in rows for one in row["warnings"]], out)
     assert shown(answer["headline"], out)
+    assert (f"Left out of the folder: {LEFT} files or channels." in out) == bool(LEFT)
     beyond = {row["record"] for row in rows if "peak_base_displacement" in [one["quantity"] for one in row["warnings"]]}
     assert (f"the base exceeds x_max under {len(beyond)} of {count} record" in answer["headline"]) == bool(beyond)
     for row in rows:
@@ -156,6 +157,7 @@ def test_run(road, kind):
     status, answer, out, _ = road("run", kind, "--records", "records", "--units", "m/s2")
     assert status == 0 and answer["outcome"] == KINDS[kind][1]
     assert answer["decided"] == (kind != "undecided")
+    assert sum("notes.txt" in line for line in answer["left_out"]) == 1 and len(answer["left_out"]) == LEFT
     all_is_told(answer["warnings"], out)
     motions_are_told(answer, out, counted(kind))
 
@@ -216,7 +218,7 @@ def test_design(road, kind):
     added = () if "[base]" in KINDS[kind][0] else ("--base-mass", 200)
     status, answer, out, _ = road("design", kind, "--stroke", 0.3, *added, "--records", "records", "--units", "m/s2")
     assert status == 0
-    assert len(answer["motions"]) == counted(kind)
+    assert len(answer["motions"]) == counted(kind) and len(answer["left_out"]) == LEFT
     all_is_told([one for row in answer["motions"] for one in row["warnings"]] + answer["warnings"], out)
     held = [one for row in answer["holds"] for one in row]
     assert bool(answer["chosen"]) == any(held) and ("bearings of" in out)
@@ -324,7 +326,8 @@ def test_report(road, rocking, tmp_path, part):
     page = " ".join(re.sub("<[^>]+>", " ", (tmp_path / "page" / "report.html").read_text()).split())
     for kind, file in zip(kinds, files, strict=True):
         assert len({row["record"] for row in answer["motions"][file.stem]}) == counted(kind)
-        assert plain(answer["headlines"][file.stem]) in plain(page)
+        headline = answer["headlines"][file.stem]
+        assert plain(headline) in plain(page)
 
 
 def plain(words):
