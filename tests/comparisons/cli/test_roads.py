@@ -81,10 +81,9 @@ def road(rocking, tmp_path, monkeypatch):
     monkeypatch.setattr("comparisons.report.answer.age", lambda *_: None)
     monkeypatch.setattr("comparisons.report.write.age", lambda *_: None)
     monkeypatch.setattr("comparisons.running.cases.version_of", lambda _: "1")
-    for name in list(ENGINES):
-        monkeypatch.delitem(ENGINES, name)
-    for name, engine in liars().items():
-        monkeypatch.setitem(ENGINES, name, engine)
+    known = dict(ENGINES)
+    ENGINES.clear()
+    ENGINES.update(liars())
     write_records(tmp_path / "records")
 
     def call(command, kind, *words):
@@ -96,7 +95,9 @@ def road(rocking, tmp_path, monkeypatch):
         answer = checked(tmp_path / "out.json") if (tmp_path / "out.json").exists() else None
         return status, answer, " ".join(out.split()), err
 
-    return call
+    yield call
+    ENGINES.clear()
+    ENGINES.update(known)  # in their order
 
 
 def checked(file):
