@@ -12,7 +12,6 @@ import numpy as np
 
 import analytic
 from analytic import termination
-from analytic.errors import SettingError
 from analytic.response import Caution, Failure
 from analytic.solver import compile_kernels
 
@@ -123,9 +122,6 @@ class Simulator(Engine):
         if not self.variants[name].takes_restitution:
             refuse_restitution(self, scene)
         if (friction := self._held(scene, name).friction) is not None and hasattr(chosen, "friction"):
-            if "friction" in settings:
-                words = f"{self.name} {name}: friction = {settings['friction']:g}"
-                raise SettingError(f"{words}: the contact's friction is {friction:g}, by the scene; leave it out")
             chosen = replace(chosen, friction=friction)
         if model is None:
             return self._once(scene, name, chosen, history)

@@ -236,6 +236,9 @@ def _simulate(scene, solver, variant, settings, history, compare):
         engine = get_engine(solver)
         if settings:  # else one called as an argument of `simulate` would be taken for that
             choose(engine, variant, settings)
+            if "friction" in settings and scene.friction is not None:
+                words = f"{solver}: friction = {settings['friction']!r}"
+                raise SettingError(f"{words}: the scene's, {scene.friction:g}, is used in its place; leave it out")
         return engine.simulate(scene, variant=variant, history=history, compare=compare, **settings)
     response = _analytic(scene, variant, settings, history)
     if compare and response.decided:

@@ -99,7 +99,7 @@ def test_contact_noise_is_no_impact():
     assert reference.outcome == response.outcome == "stands"
     assert (response.impacts, response.uplifts, response.rests) == ((), (), ())
     # The check can fail: the same noise above the edge of contact is seen.
-    assert seen(scene, dataclasses.replace(trace, contact_tilt=0.5 * EDGE)).outcome == "rocks"
+    assert seen(scene, dataclasses.replace(trace, contact_tilt=0.5 * EDGE)).uplifts
 
 
 @pytest.mark.parametrize("name", ["rigid ground", "sliding base"])

@@ -7,7 +7,7 @@ import pytest
 from engine_cases import needs
 from sliding_scenes import LOST, SAVED, SLIDES, random_slider, scene_of
 
-from analytic import Base, Bearings, Block, PulseMotion, Scene, SettingError, simulate
+from analytic import Base, Bearings, Block, PulseMotion, Scene, simulate
 from engines import comparison, get_engine
 from engines.checks import LEAST_SLIP, energy_gain, pivoting_centre, slips
 from engines.matching import STILL
@@ -199,8 +199,3 @@ def test_with_a_given_restitution_and_a_smaller_friction_nothing_is_compared(eng
     run = get_engine(engine).simulate(scene, history=False)
     assert run.comparable.startswith("the contact's friction is ") and "not the scene's 0.2" in run.comparable
     assert not run.differences
-
-
-def test_a_friction_beside_that_of_the_scene_is_refused():
-    with pytest.raises(SettingError, match="the contact's friction is 0.2, by the scene; leave it out"):
-        get_engine("exudyn").simulate(SLIDES, friction=0.01)

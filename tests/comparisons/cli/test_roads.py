@@ -376,6 +376,12 @@ def test_the_scans_of_a_user_are_fine():
     assert (margins.SPAN, margins.STEP) == (0.2, 5e-4)
 
 
+def test_a_friction_beside_that_of_the_scene_is_refused(rocking, tmp_path):
+    (tmp_path / "scene.toml").write_text(KINDS["slides"][0])
+    status, _, err = rocking("run", tmp_path / "scene.toml", "--engine", "exudyn", "--set", "friction=0.01")
+    assert status == 2 and "friction = 0.01: the scene's, 0.15, is used in its place; leave it out" in err
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("engine", BUILT_IN)
 @pytest.mark.parametrize("kind", KINDS)
