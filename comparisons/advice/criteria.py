@@ -144,6 +144,22 @@ def neighbours(scene: Scene, criterion: str) -> tuple[dict[float, Scene], dict[f
     return family, left
 
 
+def refusals(scene: Scene, reference: Response) -> dict[str, str]:
+    """{criterion: why it does not apply to a scene}, of which `reference` is the model's run."""
+    without = [
+        (scene.block.restitution is not None, "the scene gives it"),
+        (slides(reference), "the block slides, and then eq. (7) does not hold"),
+        (not strong_impacts(reference), "the block never hits its support"),
+    ]
+    why = {
+        "restitution": next((words for true, words in without if true), ""),
+        "tilt": "the block never lifts" if reference.outcome in LEVEL else "",
+        "displacement": "" if scene.base else "the scene has no base",
+        "slip": "" if slides(reference) else "the block does not slide",
+    }
+    return {criterion: words for criterion, words in why.items() if words}
+
+
 def fitting(scene: Scene) -> str:
     """The default: restitution if there are impacts, tilt if it is given or the block slides; else slip if it slides,
     displacement if there is a base, else outcome."""
@@ -169,24 +185,13 @@ def until(scene: Scene, criterion: str) -> float:
         The criterion does not apply to the scene.
     """
     reference = simulate(scene, history=False)
-    if criterion == "displacement" and scene.base is None:
-        raise SettingError("--for displacement: the scene has no base; choose restitution, tilt or outcome")
+    why = refusals(scene, reference)
+    if criterion in why:
+        others = [one for one in CRITERIA if one not in why]
+        raise SettingError(f"--for {criterion}: {scene.name}: {why[criterion]}; choose one of {', '.join(others)}")
     if criterion == "restitution":
-        if scene.block.restitution is not None:
-            raise SettingError(f"--for restitution: {scene.name} gives it; choose tilt, displacement or outcome")
-        if slides(reference):
-            words = f"the block of {scene.name} slides, and then eq. (7) does not hold"
-            raise SettingError(f"--for restitution: {words}; choose tilt, slip or outcome")
         strong = strong_impacts(reference)[:IMPACTS]
-        if not strong:
-            raise SettingError(
-                f"--for restitution: the block of {scene.name} never hits its base; choose displacement or outcome"
-            )
         return float(min(reference.end.time, strong[-1].time + AFTER * 2 * np.pi / scene.rocking_frequency))
-    if criterion == "slip" and not slides(reference):
-        raise SettingError(f"--for slip: the block of {scene.name} does not slide; choose tilt or outcome")
-    if criterion == "tilt" and reference.outcome in LEVEL:
-        raise SettingError(f"--for tilt: the block of {scene.name} never lifts; choose displacement or outcome")
     if criterion == "outcome":
         return reference.end.time
     cut = scene.with_(duration=reference.end.time)
@@ -266,7 +271,7 @@ def model_parts(
     runs = [simulate(one, history=False) for one in family.values()]
     engine = None if found is None or found.cpu_per_second is None else found.cpu_per_second * runs[0].end.time / own
     parts = {
-        "rocking": _rocking(runs, engine),
+        "rocking": _rocking(scene, runs, engine),
         **({} if scene.friction is None else {"sliding": _sliding(scene, runs)}),
         "base": _base(scene, own),
         "vertical motion": _vertical(scene, runs[0], own, error),
@@ -278,13 +283,14 @@ def model_parts(
 # Each returns (needed, why, cost) of its `ModelPart`.
 
 
-def _rocking(runs, engine):
+def _rocking(scene, runs, engine):
     lifted = sum(run.outcome not in LEVEL for run in runs)
     if lifted:
         return True, f"the block lifts in {lifted} of {len(runs)} scenes", None
     if any(map(slides, runs)):
-        return True, "the block slides and does not lift: an engine's contact model is needed", None
-    why = "the block lifts neither here nor in any neighbour: block and base are one mass on the bearings"
+        return False, "the block slides and does not lift: a contact with this friction is enough", None
+    moves = "block and base are one mass" if scene.base else "the block moves with the ground"
+    why = f"the block lifts neither here nor in any neighbour: {moves}"
     return False, f"{why}; an engine's contact model is not needed", engine
 
 

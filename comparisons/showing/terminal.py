@@ -224,7 +224,8 @@ def _limit(horizons):
     if not any(found.parts for found in horizons.values()):
         size = max(found.perturbation for found in horizons.values())
         return (
-            f"Errors of the solvers' own size, {size:.0e} at most,\ndo not grow: histories can be compared to the end."
+            f"No change of the scene of the solvers' own size of error, {size:.0e} at most,\n"
+            "grows: a difference between histories is a solver's error, to the end."
         )
     lines = ["Sensitivity horizon, beyond which only outcomes can be compared,", "by each solver's own size of error:"]
     for name, found in horizons.items():

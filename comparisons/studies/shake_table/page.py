@@ -233,9 +233,11 @@ def _between(row, model):
 
 
 def _table_of_engines(result, engines):
+    judged = wilson(0, result.settings["records"])[1] < EQUAL  # else no engine can be equal, whatever it does
+    equal = Column("equal", lambda row: "inconclusive" if row["equal"] == TOO_FEW else row["equal"])
     return table(
-        "Engines and the model at the same slenderness. Equal: at most 5 % of outcomes differ, by the upper end of the "
-        f"95 % interval (Wilson, by record){_undecidable(result)}. In brackets: records in which most differences go "
+        "Engines and the model at the same slenderness. At most: the upper end of the 95 % interval (Wilson, by "
+        f"record). {'Equal: at most 5 %. ' if judged else ''}In brackets: records in which most differences go "
         "that way. Last column: differences among the runs in which a change of the scene by 10⁻⁴ changes the model’s "
         "own outcome or time of a fall",
         where(engines, specimen=ALL) or engines,
@@ -243,19 +245,13 @@ def _table_of_engines(result, engines):
         Column("kind", "tier"),
         Column("outcomes that differ", lambda row: f"{apart(row)} of {row['size']}"),
         Column("at most", lambda row: row["interval"][1], percent=True),
-        Column("equal", lambda row: "inconclusive" if row["equal"] == TOO_FEW else row["equal"]),
+        *([equal] if judged else ()),
         Column("overturnings missed", "{only_a} ({records_a})"),
         Column("added", "{only_b} ({records_b})"),
         Column("p, sign test by record", "p_records"),
         Column("failed", "failed"),
         Column("the model’s own end is sensitive", "{on_edge} of {near}"),
     )
-
-
-def _undecidable(result):
-    """Said where so few records cannot show that an engine is equal, even if it were."""
-    records = result.settings["records"]
-    return f"; with {records} records not even an engine without a difference" if wilson(0, records)[1] > EQUAL else ""
 
 
 def _right_of_engines(engines):

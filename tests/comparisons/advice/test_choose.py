@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 
 import pytest
+from roads import KINDS, write_records
 from sliding_scenes import SAVED, SLIDES
 
 from analytic import PulseMotion, SampledMotion, Start, load_scene, simulate
@@ -98,7 +99,7 @@ def test_errors_are_those_of_the_criterion(criterion, response, error):
 
 
 def test_no_variant_is_chosen_by_a_restitution_that_the_scene_gives():
-    with pytest.raises(SettingError, match="--for restitution: .* gives it; choose tilt"):
+    with pytest.raises(SettingError, match="--for restitution: .* gives it; choose one of tilt"):
         criteria.until(GIVEN, "restitution")
 
 
@@ -206,7 +207,7 @@ def test_slip_is_compared_over_its_peak_and_its_restitution_is_not_that_of_eq_7(
     unread = replace(model, history=replace(model.history, slip=None))
     assert criteria.error("slip", SAVED, unread, model) is None
     assert criteria.error("slip", SAVED, replace(model, history=off), unread) == 0.0
-    with pytest.raises(SettingError, match="--for restitution: .* slides, .*; choose tilt, slip or outcome"):
+    with pytest.raises(SettingError, match="--for restitution: .* slides, .*; choose one of tilt, slip, outcome"):
         criteria.until(SAVED, "restitution")
     with pytest.raises(SettingError, match="--for slip: .* does not slide"):
         criteria.until(RIGID, "slip")
@@ -223,3 +224,17 @@ def test_whether_friction_is_needed_is_said_where_it_is_given():
     assert parts["slides"]["sliding"].needed and "does not lift" in parts["slides"]["rocking"].why
     assert not parts["holds"]["sliding"].needed and "the friction 0.9" in parts["holds"]["sliding"].why
     assert "sliding" not in parts["none"]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_each_criterion_applies_or_is_refused_with_others_that_do(tmp_path, kind):
+    (tmp_path / "scene.toml").write_text(KINDS[kind][0])
+    write_records(tmp_path / "records")
+    scene, refused = load_scene(tmp_path / "scene.toml"), {}
+    for criterion in criteria.CRITERIA:
+        try:
+            assert criteria.until(scene, criterion) > 0
+        except SettingError as error:
+            refused[criterion] = str(error).split("; choose one of ")[1].split(", ")
+    applies = [one for one in criteria.CRITERIA if one not in refused]
+    assert criteria.fitting(scene) in applies and all(others == applies for others in refused.values())
