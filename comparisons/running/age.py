@@ -6,13 +6,13 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from .provenance import at_commit
-from .sources import PROJECT, computes, digests_of_all, version_of
+from .sources import changes, version_of
 
 if TYPE_CHECKING:
     from .provenance import Result
 
 OLDER = "older than the code"
-NAMED = 3  # modules that a sentence on a stale result names
+NAMED = 3  # definitions that a sentence on a stale result names
 
 
 def age(result: Result) -> str | None:
@@ -57,10 +57,7 @@ def date_of(origin: Mapping[str, Any]) -> str:
 
 
 def _changed(origin):
-    then = origin["sources"]
-    packages = {*PROJECT, *(name.partition(".")[0] for name in then)}
-    here = {digest[:16] for digest in digests_of_all(packages)}
-    changed = [name for name, digest in then.items() if computes(name) and digest not in here]
+    changed = changes(origin["sources"])
     if not changed:
         return None
     others = f" and {len(changed) - NAMED} more" if len(changed) > NAMED else ""

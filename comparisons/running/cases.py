@@ -15,7 +15,7 @@ from analytic import Block, Response, Scene, Start
 from engines import ENGINES, get_engine
 
 from .progress import compile_kernels
-from .sources import source_digests, version_of
+from .sources import source_digests, today, version_of
 
 # every other name is an engine's, or such a "module:function" itself
 SOLVERS = {
@@ -57,7 +57,7 @@ class Case:
             self.settings,
             self.tag,
             name_of(measure),
-            fingerprint(self.solver, measure.__module__),
+            fingerprint(self.solver, name_of(measure)),
             *([self.constants] if self.constants else ()),
         )
         return hashlib.sha256(json.dumps(content, sort_keys=True, allow_nan=False).encode()).hexdigest()[:32]
@@ -70,7 +70,7 @@ class Case:
         simulate = solver(self.solver)
         with contextlib.ExitStack() as others:
             for name, value in self.constants.items():
-                others.enter_context(patch(name.replace(":", "."), value))  # the worker goes on to other cases
+                others.enter_context(patch(today(name).replace(":", "."), value))  # the worker goes on to other cases
             return simulate(self.scene, **{**options, **self.settings})
 
 
@@ -86,7 +86,7 @@ def solver(name: str) -> Callable:
     """
     if name in ENGINES:
         return get_engine(name).simulate
-    return pkgutil.resolve_name(_place(name))
+    return pkgutil.resolve_name(today(_place(name)))
 
 
 def compile_for(names: Iterable[str]) -> None:
@@ -98,9 +98,9 @@ def compile_for(names: Iterable[str]) -> None:
         solver("time-stepping")(scene, step=0.01)
 
 
-def module_of(name: str) -> str:
-    """The module that holds the solver `name`."""
-    return ENGINES[name].adapter if name in ENGINES else _place(name).partition(":")[0]
+def root_of(name: str) -> str:
+    """Where the code of the solver `name` begins: the module of an engine's adapter, or "module:function"."""
+    return ENGINES[name].adapter if name in ENGINES else _place(name)
 
 
 def versions(name: str) -> dict[str, str | None]:
@@ -119,8 +119,8 @@ def name_of(function: Callable[..., Any]) -> str:
 
 @functools.cache  # of the code this process has loaded: it cannot change under it
 def fingerprint(name: str, measuring: str) -> str:
-    """Digest of the versions and of the project's source files behind a solver and the module of a measure."""
-    sources = source_digests([module_of(name), measuring])
+    """Digest of the versions and of the project's code behind a solver and a measure."""
+    sources = source_digests([root_of(name), measuring])
     return hashlib.sha256(json.dumps([versions(name), sorted(sources.values())]).encode()).hexdigest()
 
 

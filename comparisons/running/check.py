@@ -20,6 +20,7 @@ from .executors import Processes
 from .files import TemporaryFolder
 from .provenance import ResultError, checkout, read_result, record_check
 from .run_sample import case_of, outcome_of
+from .sources import today
 from .sweep import run_sweep
 
 RELATIVE, ABSOLUTE = 1e-9, 1e-12  # numbers this near are equal: another processor rounds otherwise
@@ -117,7 +118,7 @@ def _again(runs, workers, progress):
     groups: dict[Any, list[tuple[int, Any]]] = {}
     for place, run in enumerate(runs):
         try:
-            case, measure = case_of(run), resolve_name(run["measure"])
+            case, measure = case_of(run), resolve_name(today(run["measure"]))
             solver(case.solver)
         except (KeyError, ImportError, AttributeError, SceneError) as error:
             found[place] = f"it cannot be run any more ({error.args[0] if isinstance(error, KeyError) else error})"

@@ -22,7 +22,7 @@ from typing import Any
 
 from analytic.errors import SettingError
 
-from .cases import compile_for, module_of, versions
+from .cases import compile_for, root_of, versions
 from .executors import Done, Executor, Processes, Task, end_with, number_of
 from .progress import say
 from .readable import Mendable
@@ -186,7 +186,7 @@ async def _reach(address):
 def _state(solvers):
     """{what: its version or digest} of all that rows depend on, in the process that asks."""
     known = {package: str(number) for name in solvers for package, number in versions(name).items()}
-    return known | source_digests([*map(module_of, solvers), *PROJECT, __name__])
+    return known | source_digests([*map(root_of, solvers), *PROJECT, __name__])
 
 
 def _check_same(worker, state, mine):

@@ -25,7 +25,7 @@ from pebble import ProcessExpired, ProcessPool
 from analytic.errors import SettingError
 from engines.guard import end_with_parent, raised
 
-from .cases import Case, module_of
+from .cases import Case, root_of
 from .files import PlaceError, TemporaryFolder
 from .progress import redirected
 from .provenance import json_ready, scrub
@@ -100,7 +100,9 @@ class Processes(Executor):
         server = "forkserver" in multiprocessing.get_all_start_methods()
         self._context = multiprocessing.get_context("forkserver" if server else "spawn")
         if server:
-            self._context.set_forkserver_preload(["comparisons.running.executors", *map(module_of, solvers)])
+            self._context.set_forkserver_preload(
+                ["comparisons.running.executors", *(root_of(name).partition(":")[0] for name in solvers)]
+            )
             resource_tracker.ensure_running()  # of the forkserver, whose start would undo the blocking
             before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
             try:  # the server and its workers leave Ctrl-C to this process

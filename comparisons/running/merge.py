@@ -18,12 +18,12 @@ import numpy as np
 from analytic.errors import SettingError
 from engines import ENGINES
 
-from .cases import SOLVERS
+from .cases import SOLVERS, name_of
 from .check import ABSOLUTE, RELATIVE, differences, short
 from .files import check_writable
 from .provenance import Result, ResultError, read_result
 from .run_sample import SIZE
-from .sources import source_digests
+from .sources import kept_digests
 
 if TYPE_CHECKING:
     from .plan import Study
@@ -98,7 +98,7 @@ def merged(study: Study, old: Result, new: Result, engines: Sequence[str], runs:
     for name in engines:
         rows = _joined(rows, new.rows, name, shared)
     count = (old.run_count or 0) + sum(runs[name] for name in added)
-    origin, sample = _provenance(study, old, new, engines, kept), _sample(old, new, engines)
+    origin, sample = _provenance(study, old, new, engines), _sample(old, new, engines)
     return replace(old, settings=settings, rows=rows, arrays=arrays, provenance=origin, runs=sample, run_count=count)
 
 
@@ -234,35 +234,24 @@ def _size(array):
     return None if array is None else f"{array.dtype} {array.shape}"
 
 
-def _provenance(study, old, new, engines, kept):
+def _provenance(study, old, new, engines):
     """Where both come from: the engines from here, the rest from where it was. A check was of the runs before."""
     rest = {name: value for name, value in old.provenance.items() if name != "check"}
-    plan, packages = study.plan.__module__, {ENGINES[name].package for name in engines}
-    others = [ENGINES[name].adapter for name in kept if name in ENGINES]
-    rest["sources"] = _without(rest["sources"], engines, [plan, *others])
+    plan, packages = name_of(study.plan), {ENGINES[name].package for name in engines}
+    adapters = {ENGINES[name].adapter for name in engines}
+    theirs = [digests for root, digests in rest["sources"].items() if root in adapters]  # others may reach them, too
+    others = {root: digests for root, digests in rest["sources"].items() if root not in adapters}
+    rest["sources"] = {**others, plan: "".join((others.get(plan, ""), *theirs))}
     rest["packages"] = {name: version for name, version in rest["packages"].items() if name not in packages}
     later = dict(old.provenance.get("engines") or {})
     foreign = {engine.package for engine in ENGINES.values()}
     for name in engines:
         own = {part: value for part, value in new.provenance.items() if part not in ("seed", "check", "engines")}
-        others = [one for one in engines if one != name]
-        own["sources"] = _without(own["sources"], others, [plan, ENGINES[name].adapter])
+        own["sources"] = kept_digests([plan, ENGINES[name].adapter])
         wanted = {*own["packages"]} - foreign | {ENGINES[name].package}
         own["packages"] = {package: version for package, version in own["packages"].items() if package in wanted}
         later[name] = own
     return {**rest, "engines": later}
-
-
-def _without(sources, engines, needed):
-    """The digests less those of modules that these engines alone need; needed: the modules that others begin with."""
-    adapters = [ENGINES[name].adapter for name in engines]
-    reached, rest = source_digests(adapters), source_digests(needed)
-    packages = tuple(f"{adapter.rpartition('.')[0] or adapter}." for adapter in adapters)  # of modules gone since
-    return {
-        name: digest
-        for name, digest in sources.items()
-        if name in rest or not (name in reached or (packages and name.startswith(packages)))
-    }
 
 
 def _sample(old: Result, new: Result, engines: Sequence[str]) -> list[Any]:

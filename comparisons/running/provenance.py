@@ -27,7 +27,7 @@ from engines import ENGINES
 from ..schemas.study import StudyResult
 from .files import PlaceError, waiting, write, write_pair
 from .readable import Mendable, readable
-from .sources import source_digests, version_of
+from .sources import kept_digests, version_of
 
 SHORT = 80  # characters of a value in a message
 SCHEMA = StudyResult.model_fields["schema_"].default
@@ -65,18 +65,17 @@ def provenance(modules: Iterable[str] = ("analytic",), seed: object = None) -> d
     Parameters
     ----------
     modules : iterable of str
-        The modules whose code the numbers depend on; their project imports are followed.
+        The modules and definitions whose code the numbers depend on: roots of `sources.source_digests`.
     seed : int, list or None
         Of the random numbers used; None where none are.
     """
-    sources = source_digests(modules)
     return {
         "time": datetime.now(UTC).isoformat(timespec="seconds"),
         "machine": machine(),
         "python": platform.python_version(),
         "packages": {name: version_of(name) for name in PACKAGES},
         **checkout(),
-        "sources": {name: digest[:16] for name, digest in sources.items()},
+        "sources": kept_digests(modules),
         "seed": seed,
     }
 

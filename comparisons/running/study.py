@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from engines import ENGINES, installed_engines
 
-from .cases import module_of
+from .cases import name_of, root_of
 from .cluster import Cluster
 from .executors import Processes, number_of
 from .files import check_folder
@@ -22,7 +22,7 @@ from .progress import log, spinner, stdout_to_stderr
 from .provenance import made_here, save
 from .run_sample import sample_of
 from .solving import named_engines
-from .sources import PROJECT, digests_of_all, source_digests
+from .sources import digests_of_all, package_of, source_digests
 from .sweep import Row, Store, run_sweep
 
 if TYPE_CHECKING:
@@ -96,8 +96,8 @@ def compute(
                 asked = installed_engines() if study.all_engines else ()
             else:
                 asked = named_engines(engines)
-            modules = (study.plan.__module__, *(engine.adapter for engine in ENGINES.values()))
-            code = digests_of_all({*PROJECT, *(name.partition(".")[0] for name in modules)})
+            roots = (name_of(study.plan), *(engine.adapter for engine in ENGINES.values()))
+            code = digests_of_all(map(package_of, roots))
         solvers = ("analytic", *asked)
         pool = Processes(workers, solvers) if scheduler is None else Cluster(scheduler, solvers)
         plan = study.plan(Request(asked, quick), **options)
@@ -136,7 +136,7 @@ def _carry_out(study, plan, folder, always, code, store, pool, progress, keep):
         if isinstance(step, Computed):
             answer = None
             solvers.update(dict.fromkeys(step.solvers))
-            modules = [study.plan.__module__, *dict.fromkeys(module_of(name) for name in solvers)]
+            modules = [name_of(study.plan), *dict.fromkeys(map(root_of, solvers))]
             path = folder / f"{step.name or study.name}.json"
             edited = [name for name, digest in source_digests(modules).items() if digest not in code]
             settings = {**step.settings, "changed_while_running": edited}  # its numbers are of the code before

@@ -40,7 +40,7 @@ class Origin(Part):
     packages: dict[str, str | None] = Field(description="versions; null: not installed")
     commit: str | None
     dirty: bool | None
-    sources: dict[str, str] = Field(description="digests of the code that the numbers depend on, by module")
+    sources: dict[str, str] = Field(description="digests of the definitions behind the numbers, by root: those it adds")
 
 
 class Provenance(Origin):

@@ -252,7 +252,7 @@ def test_a_study_is_shown_by_its_own_page_and_says_when_it_is_old(folder, copied
         assert page.table("Agreement")["exudyn", "kappa [-]"] == "0.75"
         assert "Two paragraphs &lt; one." in page.source
     assert "All of it" in own.source and "All of it" not in first.source and "pages/fake.html" in first.links
-    edit(file, lambda content: content["provenance"]["sources"].update({"analytic.errors": "another"}))
+    edit(file, lambda content: content["provenance"]["sources"].update({"analytic.gone": ""}))
     warnings = write_page(copied, studies=studies).read_text().count("Out of date")
     assert warnings == first.source.count("Out of date") + 1
 

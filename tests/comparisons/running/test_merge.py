@@ -13,10 +13,12 @@ from analytic.errors import SettingError
 from comparisons.report.answer import origin_of
 from comparisons.report.gallery import origins
 from comparisons.running.age import age
+from comparisons.running.cases import name_of
 from comparisons.running.check import check, differences
 from comparisons.running.merge import _joined, engine_of, merged, opened
 from comparisons.running.plan import Request, Study
 from comparisons.running.provenance import RESULTS, ResultError, made_here, read_result, save
+from comparisons.running.sources import source_digests
 from comparisons.running.study import RUNS, compute
 from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.overturning import study as overturning
@@ -70,16 +72,17 @@ def test_the_engine_says_where_it_comes_from_and_is_judged_by_that(one, both):
     before, found = read_result(one), read_result(both)
     rest, (own,) = found.provenance, found.provenance["engines"].values()
     assert rest["time"] == before.provenance["time"] and own["time"] >= rest["time"] and age(found) is None
-    theirs = [any(f"engines.{SECOND}." in name for name in origin["sources"]) for origin in (rest, own)]
-    assert theirs == [False, True] and not any(f"engines.{FIRST}." in name for name in own["sources"])
+    plan, first, second = name_of(MADE.plan), ENGINES[FIRST].adapter, ENGINES[SECOND].adapter
+    assert first in rest["sources"] and second not in rest["sources"] and [*own["sources"]] == [plan, second]
     assert own["packages"].keys() == {"numpy", "scipy", "numba", SECOND} and SECOND not in rest["packages"]
     own |= {"time": "2030-02-03T00:00:00+00:00", "commit": "f" * 40, "dirty": False}
     assert f"; {SECOND}: 2030-02-03, commit ffffffffffff, " in origin_of(found)
     assert f"; {SECOND}: 2030-02-03 | " in origins({"made": found})
-    own["sources"][f"engines.{SECOND}.adapter"] = "0" * 16
+    variants = source_digests([second])[f"{second}.VARIANTS"]
+    own["sources"][second] = own["sources"][second].replace(variants, "")
     assert age(found) == (
         f"in the rows of {SECOND} older than the code: computed on 2030-02-03 at commit fffffff; since then changed: "
-        f"engines.{SECOND}.adapter"
+        f"{second}.VARIANTS"
     )
     rest["packages"]["numpy"] = "1.0"
     assert age(found).startswith(f"apart from the rows of {SECOND} computed with other versions than those here: numpy")
@@ -215,7 +218,7 @@ def test_no_row_of_a_study_that_takes_one_engine_hangs_on_another(name, monkeypa
     def found(*engines):
         plan = study.plan(Request(engines, True), **SMALL[name])
         answer = answered(plan, run if name == "stability" else by_model())[-1]
-        own = ["analytic", study.plan.__module__, *(ENGINES[one].adapter for one in engines)]
+        own = ["analytic", name_of(study.plan), *(ENGINES[one].adapter for one in engines)]
         return made_here(name, answer.settings, answer.rows, answer.arrays, modules=own, seed=answer.seed)
 
     def same(whole, joined):

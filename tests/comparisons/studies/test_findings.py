@@ -9,6 +9,7 @@ import pytest
 from page_numbers import number_in
 
 from comparisons.report.write import SHORT
+from comparisons.running.cases import name_of
 from comparisons.running.provenance import RESULTS, read_result
 from comparisons.running.sources import source_digests
 from comparisons.showing.parts import NAME, Head, where
@@ -38,7 +39,7 @@ def told(name):
 
 @pytest.mark.parametrize("name", BUILT_IN)
 def test_what_shows_is_no_part_of_what_a_result_depends_on(name):
-    behind = source_digests([get_study(name).plan.__module__])
+    behind = source_digests([name_of(get_study(name).plan)])
     assert behind and not [module for module in behind if module.endswith(".page") or ".showing" in module]
 
 
