@@ -68,7 +68,7 @@ KINDS = {
     "outside the range": (scene(gamma=0.04, motion=pulse(0.45, 9.0)), "rocks"),
     "undecided": (scene(motion=pulse(4.0), more="[run]\nduration = 0.7\n"), "rocks"),
     "a copy is refused": (scene(friction=0.15, more=start(0.26)), "overturns"),
-    "free-standing it is refused": (scene(LINEAR, friction=0.2, more=start(0.2)), "rocks"),
+    "free-standing it is refused": (scene(LINEAR, friction=0.185, more=start(0.2)), "rocks"),
 }
 # {kind: (field, part of the problem)}: the model refuses the scene itself
 REFUSED = {
