@@ -13,7 +13,8 @@ import pytest
 from lying_engine import FAULTS, LIES, SHARE, liars
 from roads import KINDS, REFUSED, write_records
 
-from analytic import bearing_scan, load_scene, margins, nearby, simulate
+from analytic import Base, Bearings, bearing_scan, load_scene, margins, nearby, simulate
+from analytic.design import properties
 from analytic.response import DIFFERENCES, JUDGED, Difference
 from analytic.rocking import restitution
 from comparisons.commands import margin
@@ -236,6 +237,15 @@ def design(road, kind, *words):
     held = [one for row in answer["holds"] for one in row]
     assert bool(answer["chosen"]) == any(held) and ("bearings of" in out)
     assert any(held) or "no bearings" in out
+    scene = load_scene("scene.toml")
+    for proposal in answer["chosen"].values():
+        bearings = Bearings(**{name: value for name, value in proposal["bearings"].items() if value is not None})
+        isolated = scene.with_(base=Base(mass=answer["base_mass"]), bearings=bearings)
+        found = properties(bearings, isolated.total_mass, answer["stroke"])
+        assert [found.period, found.damping_equivalent] == pytest.approx([proposal["period"], proposal["damping"]], rel=1e-3)
+        if scene.motion:  # as a run on these bearings has it
+            moved = simulate(isolated, history=False).peak_base_displacement
+            assert min(abs(row["stroke"] / moved - 1) for row in proposal["motions"]) < 1e-9
     return answer, out
 
 
