@@ -79,7 +79,7 @@ def print_margins(
             f"{200 * bands[0].step:.2g} % alternate there. Narrower ones may lie nearer than the change "
             "given: do not base a decision on this margin."
         )
-    parts.append(f"{_normal_words(contact)} {_friction_words(contact)}")
+    parts.append(" ".join(filter(None, [_normal_words(contact), _friction_words(contact)])))
     if scene.bearings is not None:
         parts.append("Assumed: the bearings are stiff vertically (real ones sway at 10 to 20 Hz).")
     echo(*parts, wrap=True)
@@ -190,7 +190,8 @@ def _normal_words(contact):
         return "The normal force falls to 0: the block flies."
     if contact.least_normal <= 0:
         return f"The normal force falls to {contact.least_normal:.3g} m g: the outcome is outside the model."
-    return f"The normal force falls to {contact.least_normal:.3g} m g; at 0 the block would jump."
+    least = f"{contact.least_normal:.3g}"
+    return f"The normal force falls to {least} m g; at 0 the block would jump." if float(least) < 1 else ""
 
 
 def _friction_words(contact):
