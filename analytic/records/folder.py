@@ -17,6 +17,7 @@ from . import Channel, fema, read_channels
 VERTICAL = ("up", "u-d", "ud", "vertical", "vert", "dwn", "ver", "v", "z", "u")  # how files call it
 # and the two horizontal components
 PAIRS = (("e", "n"), ("ew", "ns"), ("e-w", "n-s"), ("x", "y"), ("1", "2"), ("a", "b"))
+CURE = "a scene whose [motion] names it as vertical beside its record runs it"  # of a vertical motion left out
 Components = list[tuple[str, SampledMotion]]  # of a record: what each is called, and its motion
 RUN_STEPS = 5000  # what a run costs beside a step for each sample, in steps: .3 ms
 # The component in a file's name: a separate word, letters after those of an instrument (HNE), a number after such
@@ -105,7 +106,7 @@ def folder_motions(
     groups = _once(groups, left)
     mine = next((motion for group in groups.values() for _, motion in group if _is_level_of(own, motion)), None)
     left += [
-        f"{up.label}: left out, a vertical motion; a scene whose [motion] names it as vertical beside its record runs it"
+        f"{up.label}: left out, a vertical motion; {CURE}"
         for up in uprights
         if mine is None or not _is_level_of(own, mine, up)
     ]
