@@ -62,6 +62,19 @@ def test_the_scenes_own_record_in_the_folder_counts_once(rocking, folder):
     assert [row["peak"] for row in rows[:2]] == pytest.approx([2.0, 4.0], rel=1e-3)
 
 
+def test_the_scenes_own_record_with_a_vertical_one_in_the_folder_counts_once(rocking, folder):
+    (folder / "A-UP.csv").write_text((folder / "weak.csv").read_text().replace("0.00,0.0", "0.00,0.1"))
+    file = folder.parent / "own.toml"
+    file.write_text(f'{OWN_RECORD}vertical = "records/A-UP.csv"\n')
+    for command in ("run", "margin"):
+        answer = json.loads(rocking(command, file, "--records", folder, "--json", "-")[1])
+        assert [row["record"] for row in answer["motions"]] == ["A*.csv", "A*.csv", "weak.csv"]
+        assert "vertical A-UP.csv" in answer["motions"][0]["motion"] and "of 2 records" in answer["headline"]
+        assert [line.partition(":")[0] for line in answer["left_out"]] == ["notes.txt"]
+    answer = json.loads(rocking("run", "caryatid-rigid", "--records", folder, "--json", "-")[1])
+    assert sum("A-UP.csv: left out, a vertical motion; a scene whose" in line for line in answer["left_out"]) == 1
+
+
 def test_the_same_record_read_otherwise_is_another_motion_of_it(rocking, folder):
     (folder / "plain.txt").write_text("".join(f"{t:.2f} {0.1 * np.sin(6 * t):.8f}\n" for t in TIME))
     file = folder.parent / "own.toml"

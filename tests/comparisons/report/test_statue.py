@@ -194,9 +194,8 @@ def test_other_motions_are_counted_by_record(page, scenes):
     own = simulate(scenes["bust"], history=False)
     lifting = [any(one.outcome != "stands" for one in record) for record in ([own], found)]
     assert f"lifts under {sum(lifting)} of 2 motions" in bust and "Motions Warning" in bust
-    assert (
-        "By motion motion runs largest peak" in bust and "the scene&#39;s own motion 1 " in bust and "other 2 " in bust
-    )
+    assert "By motion motion runs largest peak" in bust
+    assert "the scene&#39;s own motion 1 " in bust and "other 2 " in bust
     assert f"{max(one.peak_base_displacement for one in found):.3f}" in bust
 
 
