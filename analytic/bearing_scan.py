@@ -32,6 +32,7 @@ PERIOD_STEP, DAMPING_STEP = 0.01, 0.005  # relative, absolute: properties of bea
 CHUNK = 200  # runs between two reports of progress
 LINEAR_DAMPING = 0.15  # of the bearings in `first_stroke`, as in `rocking new`
 ROOM = 1.5  # factor on their displacement: yielding bearings need .9 to 1.2 of it (20 scenes)
+LIMITS = ("model", "stroke", "slip", "tilt", "uplift")  # model: none is left, it jumps off its base or overturns
 COARSE = 4  # step of the first scan, in these steps; cells that the limit may cross are run at every step
 
 
@@ -150,8 +151,7 @@ def scan_bearings(
 
     def run(wanted):
         at = [scene.with_(bearings=softened(designs[i], columns[k]), duration=None) for i, k in np.argwhere(wanted)]
-        demand, moved = _worst(scene, at, motions, tilt, workers, progress)
-        scan.demand[wanted], scan.stroke[wanted] = np.maximum(demand, moved / stroke), moved
+        scan.demand[wanted], scan.stroke[wanted] = _worst(scene, at, motions, stroke, tilt, workers, progress)
 
     coarse = np.zeros(shape, dtype=bool)
     coarse[::COARSE, ::COARSE] = True
@@ -160,34 +160,44 @@ def scan_bearings(
     return replace(scan, demand=np.where(np.isnan(scan.stroke), _between(scan.demand), scan.demand))
 
 
-def _worst(scene, scenes, motions, tilt, workers, progress):
+def hardest(
+    scene: Scene, bearings: Bearings, motions: Sequence[Motion], stroke: float, tilt: float
+) -> tuple[str, Motion, float]:
+    """(limit of LIMITS, motion, demand) of the largest demand on these bearings; the rest as in `scan_bearings`."""
+    demands = []
+    for motion in motions:
+        run = simulate_many([scene.with_(bearings=bearings, motion=motion, duration=None)], contact=True)
+        found = _demands(run, scene, stroke, tilt)
+        demands += [(limit, motion, float(demand[0])) for limit, demand in found.items()]
+    return max(demands, key=lambda one: one[2])
+
+
+def _worst(scene, scenes, motions, stroke, tilt, workers, progress):
     """(demand, peak base displacement [m]) of each of the scenes, copies of `scene`, under its worst motion."""
     demand, moved, done = np.zeros(len(scenes)), np.zeros(len(scenes)), 0
     for motion in motions:
         for part in np.array_split(np.arange(len(scenes)), 1 + len(scenes) // CHUNK):
             found = simulate_many([scenes[j].with_(motion=motion) for j in part], contact=True, workers=workers)
             moved[part] = np.maximum(moved[part], found.peak_base_displacement)
-            demand[part] = np.maximum(demand[part], _lift(found, scene, tilt))
+            demand[part] = np.maximum.reduce([demand[part], *_demands(found, scene, stroke, tilt).values()])
             done += len(part)
             if progress:
                 progress(done, len(scenes) * len(motions))
     return demand, moved
 
 
-def _lift(found: Outcomes, scene: Scene, tilt: float) -> np.ndarray:
-    """Base acceleration over uplift acceleration, above 1 where the block lifts, or peak tilt over its limit; with a
-    friction, at least the demand over it, above 1 where the block slides."""
+def _demands(found: Outcomes, scene: Scene, stroke: float, tilt: float) -> dict[str, np.ndarray]:
+    """{name of LIMITS: demand of each run}; where the block lifts or slides, that on this limit is above 1."""
     beyond = np.nextafter(1.0, 2.0)
-    sliding = np.where(found.slid, beyond, 0.0)
+    lost = found.failed | found.overturns if tilt else found.failed
+    demands = {"model": np.where(lost, math.inf, 0.0), "stroke": found.peak_base_displacement / stroke}
     if scene.friction is not None:
-        sliding = np.maximum(sliding, found.friction_demand / scene.friction)
-    if tilt == 0:
-        lifting = np.maximum(
-            found.friction_demand / math.tan(scene.block.slenderness), np.where(found.lifted, beyond, 0)
-        )
-        return np.where(found.failed, math.inf, np.maximum(lifting, sliding))
-    tilting = found.peak_tilt / scene.block.slenderness / tilt
-    return np.where(found.failed | found.overturns, math.inf, np.maximum(tilting, sliding))
+        rubs = found.friction_demand / scene.friction
+        demands["slip"] = np.maximum(rubs, np.where(found.slid, beyond, 0.0))
+    if tilt:
+        return {**demands, "tilt": found.peak_tilt / scene.block.slenderness / tilt}
+    uplift = found.friction_demand / math.tan(scene.block.slenderness)
+    return {**demands, "uplift": np.maximum(uplift, np.where(found.lifted, beyond, 0.0))}
 
 
 def _crossed(coarse: np.ndarray, shape: tuple[int, int]) -> np.ndarray:

@@ -58,13 +58,13 @@ def find_events(
             break  # the trace ends in flight
         following = swings.first[i + 1] if i + 1 < n else None
         if following is not None:
+            if _goes_on(scene, trace, swings, i, land[i]):
+                continue
             if _passes(trace, swings, i, lift[i + 1] - land[i], before[i], after[i + 1], _pull(model)):
                 impacts.append(
                     Impact(float(land[i]), float(before[i]), float(after[i + 1]), float(v_after[i + 1] - v_before[i]))
                 )
                 continue
-            if swings.side[i + 1] == swings.side[i] and not np.isfinite(land[i]):
-                continue  # a graze of contact without a landing
         landing = float(land[i]) if np.isfinite(land[i]) else float(trace.time[last])
         limit, pull = _limit_time(model, scene, trace, last, swings.side[i], landing, before[i])
         turned = following is not None and swings.side[i + 1] == -swings.side[i] and counts[i] and counts[i + 1]
@@ -86,6 +86,20 @@ def find_events(
             rests.append(min(limit, uplift))
             uplifts.append(uplift)
     return tuple(impacts), tuple(uplifts), tuple(float(rest) for rest in rests), tuple(missed)
+
+
+def _goes_on(scene: Scene, trace: Trace, swings: Swings, i: int, landing: float) -> bool:
+    """Whether swing i goes on in the next one without a landing: after a graze of contact, or in the air.
+
+    In the air only where the scene gives a friction: in the model no other block leaves its support.
+    """
+    if swings.side[i + 1] == swings.side[i] and not np.isfinite(landing):
+        return True
+    if scene.friction is None or trace.centre is None:
+        return False
+    between = trace.at(slice(swings.last[i], swings.first[i + 1] + 1))
+    height = (between.centre - pivoting_centre(scene, between))[:, 1]
+    return bool((height > HEIGHT_TOLERANCE * scene.block.radius).all())
 
 
 def _passes(trace: Trace, swings: Swings, i: int, apart: float, before: float, after: float, pull: float) -> bool:

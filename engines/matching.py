@@ -1,5 +1,8 @@
 """Matching of the impacts of two runs of one scene: which count, which match, which have no match.
 
+Impacts are those at tilt 0. A corner that lands at another tilt, after a flight, is an impact of the analytic model,
+too, but the trace of an engine does not tell it. It is left out here.
+
 Two impacts on the same side match if they are closer to each other than to the next ones on that side. An impact counts
 if its rate is at least `COUNTED` of the largest of its run, and at least that of a swing of a tenth of `LEAST_TILT`: an
 engine cannot tell smaller ones from the compliance of its contact.
@@ -13,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from analytic.rocking import RockingModel
+from analytic.sliding.layout import FLIGHT, MODES
 
 if TYPE_CHECKING:
     from analytic import Response, Scene
@@ -23,9 +27,13 @@ STILL = 0.02 * LEAST_TILT  # of the slenderness: a block whose peak tilt is smal
 
 
 def impacts_of(response: Response) -> np.ndarray:
-    """Rows of time [s], rate before and rate after [rad/s], shape (impacts, 3)."""
+    """Rows of time [s], rate before and rate after [rad/s] of the impacts that end no flight, shape (impacts, 3)."""
     rows = [(impact.time, impact.rate_before, impact.rate_after) for impact in response.impacts]
-    return np.array(rows, dtype=float).reshape(-1, 3)
+    impacts = np.array(rows, dtype=float).reshape(-1, 3)
+    modes = response.sliding.modes if response.sliding else ()
+    begun = np.searchsorted([time for time, _ in modes], impacts[:, 0])  # of the modes; an impact ends the last
+    flown = np.array([False, *(mode == MODES[FLIGHT] for _, mode in modes)])
+    return impacts[~flown[begun]]
 
 
 def matched(scene: Scene, impacts: np.ndarray, others: np.ndarray, until: float) -> tuple[np.ndarray, np.ndarray]:

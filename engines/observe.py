@@ -74,9 +74,10 @@ def observe(
         slenderness, and "failed" where states are not finite or `_judged` finds a failure.
 
     An impact is reported where the swings before and after it are both resolved, that is, exceed contact_tilt. Its tilt
-    rates and base velocities are extrapolated to tilt = 0 by the model's equations of flight. If no such swing follows,
-    the block came to rest, at the limit time of the model's impacts after the last landing. Friction demand and normal
-    force follow from the states and the model's accelerations.
+    rates and base velocities are extrapolated to tilt = 0 by the model's equations of flight. In a scene with a
+    friction the block may pass tilt = 0 in the air, which is no impact. If no such swing follows, the block came to
+    rest, at the limit time of the model's impacts after the last landing. Friction demand and normal force follow from
+    the states and the model's accelerations.
     """
     finite, failure = finite_part(trace, failure)
     if finite is None:

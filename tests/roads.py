@@ -68,7 +68,7 @@ KINDS = {
     "outside the range": (scene(gamma=0.04, motion=pulse(0.45, 9.0)), "rocks"),
     "undecided": (scene(motion=pulse(4.0), more="[run]\nduration = 0.7\n"), "rocks"),
     "a copy is refused": (scene(friction=0.15, more=start(0.26)), "overturns"),
-    "free-standing it is refused": (scene(LINEAR, friction=0.2, more=start(0.2)), "rocks"),
+    "free-standing it is refused": (scene(LINEAR, friction=0.185, more=start(0.2)), "rocks"),
 }
 # {kind: (field, part of the problem)}: the model refuses the scene itself
 REFUSED = {
@@ -81,7 +81,8 @@ REFUSED = {
 
 
 def write_records(folder):
-    """Two records, a file that is none, one that looks like no earthquake, and one that is beyond usual motions."""
+    """Three records, one with a vertical channel, one of them twice; a file that is none, and two that look like no
+    earthquake."""
     folder.mkdir()
 
     def rows(values, step=0.02):
@@ -90,7 +91,9 @@ def write_records(folder):
     values = noise(100, 1)
     head = "time [s],acceleration [m/s2]\n"
     (folder / "plain.csv").write_text(head + rows(3.0 * values))
-    (folder / "strong.csv").write_text(head + rows(12.0 * noise(120, 2)))
+    (folder / "same.csv").write_text(head + rows(3.0 * values))
+    both = (f"{k * 0.02:.2f},{12.0 * value:.6f},{4.0 * value:.6f}\n" for k, value in enumerate(noise(120, 2)))
+    (folder / "strong.csv").write_text("time [s],E [m/s2],Up [m/s2]\n" + "".join(both))
     (folder / "bare.txt").write_text("".join(f"{k * 0.02:.2f} {value:.6f}\n" for k, value in enumerate(0.2 * values)))
     (folder / "gal.txt").write_text("".join(f"{k * 0.02:.2f} {value:.6f}\n" for k, value in enumerate(60 * values)))
     (folder / "spectrum.txt").write_text(

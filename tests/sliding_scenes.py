@@ -21,6 +21,22 @@ def scene_of(friction, slenderness=0.2, radius=1.0884, base=None, **parts):
 SAVED = scene_of(0.4, 0.348, 1.86, motion=PulseMotion("half-sine", 9.38, 6.34), duration=4.0)
 LOST = scene_of(0.5, 0.449, 1.044, motion=PulseMotion("one-sine", 17.39, 10.13), duration=3.0)
 SLIDES = scene_of(0.2, 0.4, motion=PulseMotion("rectangular", 4.0, 6.0), duration=2.0)
+# The first flies, and lands on the same side; the second, released, passes the upright in the air.
+LANDS = scene_of(
+    0.6,
+    0.25,
+    1.0,
+    motion=PulseMotion("one-sine", 4.0, 12.0, vertical=PulseMotion("one-sine", 10.0, 12.0)),
+    duration=4.0,
+)
+PASSES = scene_of(
+    1.5,
+    0.25,
+    1.0,
+    start={"tilt": 0.15},
+    motion=PulseMotion("one-sine", 0.5, 12.0, start=0.4, vertical=PulseMotion("one-sine", -20.0, 12.0, start=0.4)),
+    duration=4.0,
+)
 
 
 def random_slider(rng, number):

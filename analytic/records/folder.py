@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
@@ -17,6 +17,8 @@ from . import Channel, fema, read_channels
 VERTICAL = ("up", "u-d", "ud", "vertical", "vert", "dwn", "ver", "v", "z", "u")  # how files call it
 # and the two horizontal components
 PAIRS = (("e", "n"), ("ew", "ns"), ("e-w", "n-s"), ("x", "y"), ("1", "2"), ("a", "b"))
+CURE = "a scene whose [motion] names it as vertical beside its record runs it"  # of a vertical motion left out
+Components = list[tuple[str, SampledMotion]]  # of a record: what each is called, and its motion
 RUN_STEPS = 5000  # what a run costs beside a step for each sample, in steps: .3 ms
 # The component in a file's name: a separate word, letters after those of an instrument (HNE), a number after such
 # letters (H1, HN2; a number alone counts files), or an azimuth.
@@ -78,16 +80,16 @@ def folder_motions(
         are. A pair is two horizontal channels of one file, or two files whose names differ in the component alone:
         E and N, EW and NS, H1 and H2, X and Y, azimuths 90 degrees apart.
     own : SampledMotion, PulseMotion or None
-        The scene's own motion. If it is a component of a record in the folder, that record comes first, and this motion
-        is the first in it.
+        The scene's own motion. If it is a component of a record in the folder, alone or with a vertical motion, that
+        record comes first, and this motion is the first in it.
     said : units, dt
         Of the records that do not state them themselves, see `read_record`.
 
     Returns
     -------
     (dict, list of str)
-        {record: its motions}, one record a pair; and a sentence for each file or channel that is left out: refused,
-        vertical, or like no earthquake (`Channel.odd`) and not `own`.
+        {record: its motions}, one record a pair; and a sentence for each file or channel that is left out: refused, a
+        copy of another, vertical and not part of `own`, or like no earthquake (`Channel.odd`) and not `own`.
 
     Raises
     ------
@@ -99,7 +101,15 @@ def folder_motions(
     folder = Path(folder)
     if not folder.is_dir() and not fema.is_one(folder):
         raise SettingError(f"--records {folder}: no folder; give one with record files")
-    groups, left = _components(folder, own, said)
+    own = own if isinstance(own, SampledMotion) else None  # no pulse lies in a folder
+    groups, uprights, left = _components(folder, own, said)
+    groups = _once(groups, left)
+    mine = next((motion for group in groups.values() for _, motion in group if _is_level_of(own, motion)), None)
+    left += [
+        f"{up.label}: left out, a vertical motion; {CURE}"
+        for up in uprights
+        if mine is None or not _is_level_of(own, mine, up)
+    ]
     if directions is not None:
         _check_cost(directions, groups.values())
     found: dict[str, list[SampledMotion]] = {}
@@ -111,10 +121,10 @@ def folder_motions(
                 left += [f"{motion.label}: no pair of horizontal components, it is not turned" for motion in motions]
         else:
             found[record] = motions if directions is None else directions_of(motions[0], motions[1], directions, record)
-        if same := [motion for motion in motions if own is not None and motion.digest() == own.digest()]:
-            record = record if record in found else same[0].label
-            others = [motion for motion in found.pop(record) if motion.digest() != same[0].digest()]
-            found = {record: [*same[:1], *others], **found}
+        if own is not None and mine is not None and any(motion is mine for motion in motions):
+            record = record if record in found else mine.label
+            others = [motion for motion in found.pop(record) if motion.digest() != mine.digest()]
+            found = {record: [mine if own.vertical is None else own, *others], **found}
     if not found:
         raise SettingError(
             f"--records {folder}: no horizontal ground motion in it; " + "; ".join(left[:3] or ["empty"])
@@ -133,11 +143,37 @@ def _check_cost(directions: int, groups: Iterable[Sequence[tuple[str, SampledMot
         )
 
 
+def _is_level_of(own: SampledMotion | None, level: SampledMotion, upright: SampledMotion | None = None) -> bool:
+    """Whether `own` is this horizontal motion, with this vertical one or, without it, with its own if it has one."""
+    if own is None:
+        return False
+    upright = upright or own.vertical
+    try:
+        return (level if upright is None else paired(level, upright)).digest() == own.digest()
+    except SceneError:  # too long together
+        return False
+
+
+def _once(groups: Mapping[str, Components], left: list[str]) -> dict[str, Components]:
+    """The groups without copies of a motion, which `left` then names; of a copy and a pair the pair stays whole."""
+    first: dict[str, SampledMotion] = {}
+    for record in sorted(groups, key=lambda record: not is_pair([word for word, _ in groups[record]])):
+        for _, motion in groups[record]:
+            first.setdefault(motion.digest(), motion)
+    found = {}
+    for record, group in groups.items():
+        same = [(motion, first[motion.digest()]) for _, motion in group]
+        left += [f"{copy.label}: left out, same as {one.label}" for copy, one in same if copy is not one]
+        found[record] = [one for one, (copy, kept) in zip(group, same, strict=True) if copy is kept]
+    return {record: group for record, group in found.items() if group}
+
+
 def _components(
-    folder: Path, own: Motion | None, said: dict
-) -> tuple[dict[str, list[tuple[str, SampledMotion]]], list[str]]:
-    """{record: [(component, its horizontal motion)]}, and sentences on what was left out."""
-    found: dict[str, list[tuple[str, SampledMotion]]] = {}
+    folder: Path, own: SampledMotion | None, said: dict
+) -> tuple[dict[str, Components], list[SampledMotion], list[str]]:
+    """{record: [(component, its horizontal motion)]}, the vertical motions, and sentences on what was left out."""
+    found: dict[str, Components] = {}
+    uprights: list[SampledMotion] = []
     left = []
     paths = (
         map(Path, fema.names(str(folder))) if fema.is_one(folder) else filter(Path.is_file, sorted(folder.iterdir()))
@@ -148,17 +184,16 @@ def _components(
         except SceneError as error:
             left.append(f"{path.name}: left out, {error.in_file('')}")
             continue
-        level = [channel for channel in channels if channel.direction.casefold() not in VERTICAL]
         record, word = _named(path) if len(channels) == 1 else (path.name, "")
-        if not level or word in VERTICAL:
-            left.append(f"{path.name}: left out, a vertical motion")
-            continue
-        odd = [one for one in level if one.odd and (own is None or one.motion.digest() != own.digest())]
+        level = [one for one in channels if not {one.direction.casefold(), word} & {*VERTICAL}]
+        uprights += [one.motion for one in channels if one not in level]
+        odd = [one for one in level if one.odd and not _is_level_of(own, one.motion)]
         left += [f"{one.motion.label}: left out, {'; '.join(one.odd)}" for one in odd]
         level = [one for one in level if one not in odd]
         words = PAIRS[0] if len(level) == 2 else [word] * len(level)
-        found.setdefault(record, []).extend(zip(words, [one.motion for one in level], strict=True))
-    return found, left
+        if level:
+            found.setdefault(record, []).extend(zip(words, [one.motion for one in level], strict=True))
+    return found, uprights, left
 
 
 def _channels(path: Path, said: dict) -> Sequence[Channel]:

@@ -19,6 +19,7 @@ from ..running.options import (
     Directions,
     Records,
     Units,
+    end_with,
     motions_of,
     named_by_options,
     read_row,
@@ -71,7 +72,8 @@ def command(
 
     Where the scene gives a friction, the block must not slide on its base, either.
 
-    For a block on the ground, give the mass of a base, which --write adds to the file, too.
+    For a block on the ground, give the mass of a base, which --write adds to the file, too. Status 1: on the bearings
+    found, the model failed under a motion.
     Example: rocking design bust.toml --stroke 0.25 --plot bearings.svg --write least-stroke
     Example: rocking design --period 2 --damping 0.30 --definition paper --xmax 0.30 --mass 3384.05
     """
@@ -144,8 +146,9 @@ def _for_scene(place, base_mass, stroke, tilt, made, many, write, plot, json_fil
         scan = scan_bearings(scene, motions, stroke, tilt=tilt, **made, progress=progress)
     points = {LEAST: scan.least_stroke, SOFTEST: scan.softest}  # (period, damping), None without any
     chosen = {name: _chosen(scene, scan, point, groups, left) for name, point in points.items() if point is not None}
-    if write and write not in chosen:
-        raise SettingError(f"--write: {nothing_holds(scene, scan, stroke)}")
+    nothing = "" if chosen else nothing_holds(scene, scan, stroke, tilt, motions)
+    if write and nothing:
+        raise SettingError(f"--write: {nothing}")
     read = [read_row(record, motion) for record, group in groups.items() for motion in group]
     warnings = scene_warnings(scene.with_(bearings=scan.designs[0]))  # it is to have some
     results = {json_file: _form(scene, stroke, tilt, read, left, scan, chosen, warnings)}
@@ -153,12 +156,13 @@ def _for_scene(place, base_mass, stroke, tilt, made, many, write, plot, json_fil
         results[place] = _written(place, chosen[write]["bearings"], None if base_mass is None else scene.base)
     write_output(
         results,
-        lambda: print_bearings(scene, scan, stroke, tilt, read, chosen, warnings),
+        lambda: print_bearings(scene, scan, stroke, tilt, read, chosen, warnings, nothing),
         plot,
         lambda: draw_bearings(scene, scan, stroke, tilt),
     )
     if write and json_file != "-":
         print(f"written into {place}: {write}")
+    end_with([row for one in chosen.values() for row in one["motions"]])
 
 
 def _on_base(scene, mass, place):

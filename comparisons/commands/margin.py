@@ -6,7 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from ..cli.output import write_output
-from ..running.options import BothSigns, Directions, Records, Units, other_motions, rows_of
+from ..running.options import BothSigns, Directions, Records, Units, end_with, other_motions, rows_of
 from ..running.progress import compile_kernels, spinner
 from ..running.solving import in_file
 
@@ -38,7 +38,7 @@ def command(
     Two further limit states are a peak tilt above --tilt, and a base displacement beyond the x_max of the bearings.
     One quantity is changed at a time, in steps of a four-hundredth of the span, in the analytic model. Changes that
     give no valid scene (a restitution above 1, ka below kb) or leave the model's validity end the range. The vertical
-    stiffness of bearings is taken as infinite.
+    stiffness of bearings is taken as infinite. Status 1: the model failed on the scene, or under one of its motions.
 
     Example: rocking margin caryatid-isolated --plot margins.svg
     """
@@ -71,6 +71,7 @@ def command(
 
     form = _form(what, nearest, contact, warnings, rows, left, span, tilt)
     write_output({json_file: form}, show, plot, lambda: draw_margins(what, nearest, tilt))
+    end_with(rows, response)
 
 
 def _decided(scene):

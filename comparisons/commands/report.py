@@ -123,8 +123,10 @@ def _simulate(output, scene, motion, engines, variants, many):
         for place, one in zip(scene, scenes.values(), strict=True):
             with in_file(place):  # before the engines' runs
                 simulate(one, history=False)
-        motions = {name: other_motions(one, *many)[0] for name, one in scenes.items()}
-        make_own_results(output, scenes, engines=engines, variants=variants, motions=motions)
+        motions, left = {}, {}
+        for name, one in scenes.items():
+            motions[name], left[name] = other_motions(one, *many)
+        make_own_results(output, scenes, engines=engines, variants=variants, motions=motions, left=left)
     first = "" if motion is None else "First write this motion into the table [motion] of its file."
     return {name: (_call(place, *many), first) for name, place in zip(scenes, scene, strict=True)}
 
@@ -163,14 +165,15 @@ def form(page: Path) -> Report:
         found |= {name: row.get(name) or [] for name in ("warnings", "differences")}
         found["comparable"] = row.get("comparable") or UNCOMPARED
         rows.append(Reported.model_validate({name: found.get(name) for name in Reported.model_fields}))
-    motions = {name: statue["motions"] for name, statue in result.settings.get("statues", {}).items()}
+    statues = result.settings.get("statues", {})
     return Report(
         page=str(page),
         results=[str(file) for file in files],
         missing=result.settings["missing"],
         rows=rows,
-        motions={name: [MotionRun(**row) for row in under] for name, under in motions.items()},
-        headlines={name: headline(under) for name, under in motions.items()},
+        motions={name: [MotionRun(**row) for row in one["motions"]] for name, one in statues.items()},
+        left_out={name: one["left_out"] for name, one in statues.items()},
+        headlines={name: headline(one["motions"], one["left_out"]) for name, one in statues.items()},
     )
 
 

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from ..cli.output import write_output
-from ..running.options import BothSigns, Directions, Records, Units, other_motions, rows_of
+from ..running.options import BothSigns, Directions, Records, Units, end_with, other_motions, rows_of
 from ..running.progress import say
 from ..running.solving import (
     TIME_LIMIT,
@@ -41,7 +41,8 @@ def command(
     plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw the history (.png, .svg or .pdf).")] = None,
     time_limit: Annotated[float, typer.Option(metavar="SECONDS", help=TIME_LIMIT_HELP)] = TIME_LIMIT,
 ) -> None:
-    """Simulate one scene. Status 1: the solver failed on it; 2: the scene, a setting or a file is wrong.
+    """Simulate one scene. Status 1: the solver failed on it, or under one of its motions; 2: the scene, a setting or a
+    file is wrong.
 
     Example: rocking run caryatid-isolated --engine exudyn --plot isolated.svg
     """
@@ -97,5 +98,4 @@ def command(
     )
     print_failures([response])
     write_output({json_file: form, csv: history.getvalue()}, tell, plot, draw)
-    if response.failure:
-        raise typer.Exit(1)
+    end_with(rows, response)

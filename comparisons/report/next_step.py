@@ -21,20 +21,26 @@ def needed_by(scene: Scene, motions: Sequence[Motion]) -> dict[str, float | None
     """What keeps the block of a scene from lifting under all these motions; None where nothing does.
 
     stroke : first one to try in a search for bearings [m]: their x_max, or `first_stroke`. stands, upright : width of
-    a plate fixed to the block [m] with which it does not lift, or, where it overturns on a narrower one, does not.
-    friction : what it needs not to slide on a plate so wide, where the scene's is less.
+    a plate fixed to the block [m] with which it does not lift, or, where it overturns on a narrower one, does not, nor
+    slips beyond the plate's half width. slip : how far it slips [m] on the plate on which it does not lift or, where
+    that is farther, on the other. friction : what it needs not to slide on a plate so wide, where the scene's is less.
     """
     if scene.start.tilt or scene.start.tilt_rate or not motions:  # it lifts however it stands
-        return {"stroke": None, "stands": None, "upright": None, "friction": None}
+        return dict.fromkeys(("stroke", "stands", "upright", "slip", "friction"))
     stroke, height = first_stroke(scene, motions), 2 * scene.block.half_height
     broad = scene.with_(block=on_plate(scene.block, BROAD * height), friction=None)
     demand = max(found.friction_demand[0] for found in _runs([broad], motions))  # tan(gamma) at which it just lifts
     lifts = min(demand, scene.friction or math.inf)  # with tan(gamma) above its friction a block at rest slides
     stands = _up(height * lifts) if math.tan(scene.block.slenderness) < lifts < BROAD else None
+    upright = stands and _upright(scene, motions, stands)
+    slips = {width: _slip(scene, motions, width) for width in (stands, upright) if width}
+    if upright and (upright >= stands or slips[upright] > upright / 2):
+        upright = None
     return {
         "stroke": stroke and ((scene.bearings and scene.bearings.x_max) or stroke),
         "stands": stands,
-        "upright": stands and _upright(scene, motions, stands),
+        "upright": upright,
+        "slip": max((slips[width] for width in (stands, upright) if width), default=None),
         "friction": _up(demand) if scene.friction is not None and demand > scene.friction else None,
     }
 
@@ -61,6 +67,11 @@ def _runs(scenes, motions):
     """`Outcomes` of the scenes under each of the motions."""
     for motion in motions:
         yield simulate_many([one.with_(motion=motion, duration=None) for one in scenes], contact=True)
+
+
+def _slip(scene, motions, width):
+    """The largest slip [m] of the block on a plate so wide [m]."""
+    return max(float(found.peak_slip[0]) for found in _runs([scene.with_(block=on_plate(scene.block, width))], motions))
 
 
 def _upright(scene, motions, widest):
@@ -113,7 +124,14 @@ def _sizes(scene, needed):
     if needed["stands"] is None:
         return held.removeprefix("; ")
     now, stands = number(2 * scene["half_width"], 3), number(needed["stands"], 3)
+    slip = needed.get("slip") or 0.0
+    if slip > needed["stands"] / 2:
+        return (
+            f"fix it, as a plate does not do: on one {stands} m wide (now {now} m) it slides by {number(slip, 3)} m, "
+            f"beyond half of that{held}"
+        )
     words = "widen, fix or lower it: fixed to a plate"
+    held = f", but slides by up to {number(slip, 3)} m{held}" if slip else held
     if needed["upright"] is None:
         return f"{words} {stands} m wide (now {now} m) it does not lift{held}"
     upright = number(needed["upright"], 3)

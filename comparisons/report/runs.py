@@ -64,13 +64,14 @@ def plan(
     histories: str | PathLike[str],
     variants: Mapping[str, str | None],
     motions: Mapping[str, Mapping[str, Sequence[Motion]]],
+    left: Mapping[str, Sequence[str]],
     own: bool,
 ) -> Plan:
     """The plan of a report's runs: the scenes in every solver and, of scenes of one's own, what the page of a statue
     asks, and the restitution of a block that rocks.
 
     histories: folder in which those of the runs are kept meanwhile. variants: of the engines not taken as they come.
-    motions: of each scene, {record: its motions} besides its own.
+    motions: of each scene, {record: its motions} besides its own; left: what was left out.
     """
     cases = [
         Case(
@@ -92,7 +93,9 @@ def plan(
         more["statues"] = {}
         for name, scene in scenes.items():
             with spinner(f"{scene.name}: the analytic model") as tell:
-                more["statues"][name] = statue_of(scene, motions.get(name, {}), partial(_tell, tell, scene.name))
+                more["statues"][name] = statue_of(
+                    scene, motions.get(name, {}), left.get(name, ()), partial(_tell, tell, scene.name)
+                )
     found = scenes_computed(Path(histories), rows, scenes, **more)
     rocking = [row.case.scene for row in rows if row.case.solver == "analytic" and row.values["outcome"] not in LEVEL]
     if not (own and rocking):

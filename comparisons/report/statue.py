@@ -13,10 +13,10 @@ from analytic.nearby import SHARE, cliffs, nearby
 from analytic.records.folder import reversed_sign, same_reversed
 from analytic.response import JUDGED, about_record
 
-from ..running.options import row_of
+from ..running.options import row_of, with_own
 from ..running.provenance import Result
 from ..running.solving import with_near
-from ..showing.margins import LIFTED, doubts, headline, motion_warnings
+from ..showing.margins import LIFTED, counted, doubts, headline, motion_warnings, unit_of
 from ..showing.parts import Column, across, grouped, number, signed, table
 from ..showing.wording import listed
 from .next_step import needed_by, next_step
@@ -52,10 +52,12 @@ class Card:
     tables: list
 
 
-def statue_of(scene: Scene, motions: Mapping[str, Sequence[Motion]], progress: Any = None) -> dict[str, Any]:
+def statue_of(
+    scene: Scene, motions: Mapping[str, Sequence[Motion]], left: Sequence[str] = (), progress: Any = None
+) -> dict[str, Any]:
     """Results of the model for a scene, ready for a result file.
 
-    motions : {record: its motions}. The scene's own is one more where it is not among them.
+    motions : {record: its motions}. The scene's own is one more where it is not among them. left : what was left out.
     """
     found: dict[str, Any] = {"own": _figures(scene), "cautions": [], "near": [], "margins": []}
     found["cautions"] += map(str, scene_warnings(scene))
@@ -87,20 +89,13 @@ def statue_of(scene: Scene, motions: Mapping[str, Sequence[Motion]], progress: A
         found["cautions"].append(f"The distance to another outcome was not searched: {error.remedy}.")
     if scene.motion is not None and not same_reversed(scene):  # else it is the mirrored run
         found["reversed"] = _copy(scene.with_(motion=reversed_sign(scene.motion)))
-    records = _with_own(scene, motions)
+    records = with_own(scene.motion, motions)
     rows = [row_of(scene, record, motion, _decided) for record, group in records.items() for motion in group]
-    found["motions"] = rows if motions else []
+    found |= {"motions": rows if motions else [], "left_out": [*left]}
     found["needed"] = None
     if _lifts_or_goes_too_far(scene, found, rows):
         found["needed"] = needed_by(scene, [motion for group in records.values() for motion in group])
     return found
-
-
-def _with_own(scene, motions):
-    """{record: its motions}, the scene's own among them."""
-    own = scene.motion
-    known = own is None or any(one.digest() == own.digest() for group in motions.values() for one in group)
-    return motions if known else {own.label: [own, *motions.get(own.label, ())], **motions}
 
 
 def _lifts_or_goes_too_far(scene, found, rows):
@@ -174,13 +169,15 @@ def card_of(result: Result, name: str, call: str = "FILE", first: str = "") -> C
     scene, found = result.settings["scenes"][name], result.settings["statues"][name]
     own = found["own"]
     sentences = [*_sentences(found), *(("Warning", one["text"]) for one in own["warnings"])]
-    sentences += [("Records", words) for words in _failures(found["motions"]) + motion_warnings(found["motions"])]
+    sentences += [(_heading(found), words) for words in _failures(found["motions"]) + motion_warnings(found["motions"])]
     sentences.append(("Engines", _engines([row for row in result.rows if row["scene"] == name])))
     tables = [_main(found)]
     if found["near"]:
         tables.append(_near_table(found["near"], scene))
     if found["motions"]:
-        tables.append(_motion_table(_by_record(found["motions"]), scene))
+        tables.append(_motion_table(_by_record(found["motions"]), unit_of(found["motions"]), scene))
+    if found["left_out"]:
+        tables.append(table("Left out of the folder", found["left_out"], Column("file or channel, and why", str)))
     nearest = next((margin for margin in found["margins"][:1] if margin["nearest"] is not None), None)
     title = f"{scene['name']}: the block {'; '.join([_worst(found, scene), *_beyond(found)])}"
     command, words = next_step(scene, found["needed"], call)
@@ -237,7 +234,7 @@ def _worst(found, scene):
     if not rows or (known and len(rows) == 1):
         return words
     count = "any" if worst == "stands" else rows.count(worst)
-    under = f"{WORDS[worst]} under {count} of {len(rows)} record{'s' * (len(rows) > 1)}"
+    under = f"{WORDS[worst]} under {count} of {counted(found['motions'], len(rows))}"
     if known:
         return f"{under}, its own among them"
     return f"{under}; {'under its own motion' if scene['motion'] else 'without a motion'} it {words}"
@@ -254,8 +251,12 @@ def _sentences(found):
     elif found["near"]:
         sentences.append(("Motion reversed", "The same, mirrored: block and start are symmetric."))
     if rows := found["motions"]:
-        sentences.append(("Records", headline(rows)))
+        sentences.append((_heading(found), headline(rows, found["left_out"])))
     return sentences
+
+
+def _heading(found):
+    return f"{unit_of(found['motions']).capitalize()}s"
 
 
 def _does(copy):
@@ -355,12 +356,12 @@ def _near_table(near, scene):
     )
 
 
-def _motion_table(motions, scene):
+def _motion_table(motions, unit, scene):
     return table(
-        "By record",
+        f"By {unit}",
         motions,
-        Column("record", "record"),
-        Column("motions", "motions"),
+        Column(unit, "record"),
+        Column("runs", "motions"),
         Column("largest peak [g]", lambda one: one["pga"] / scene["gravity"], 3),
         Column("lifts", "lifts"),
         Column("overturns", "overturns"),

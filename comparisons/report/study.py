@@ -27,11 +27,12 @@ def make_own_results(
     engines: Sequence[str] | None = None,
     variants: Mapping[str, str | None] | None = None,
     motions: Mapping[str, Mapping[str, Sequence[Motion]]] | None = None,
+    left: Mapping[str, Sequence[str]] | None = None,
 ) -> None:
     """Simulate what the report on one's own scenes shows, {name: scene}, and write its result files into `folder`.
 
     engines: those to compare, all that are installed without it; variants: of those not taken as they come; motions: of
-    each scene, {record: its motions} besides its own.
+    each scene, {record: its motions} besides its own; left: of each scene, what was left out of them and why.
 
     >>> from tempfile import mkdtemp
     >>> from analytic import load_scene
@@ -41,7 +42,8 @@ def make_own_results(
     >>> write_page(folder).name
     'report.html'
     """
-    _make(folder, engines, scenes=scenes, variants=dict(variants or {}), motions=dict(motions or {}), own=True)
+    many = {"motions": dict(motions or {}), "left": dict(left or {})}
+    _make(folder, engines, scenes=scenes, variants=dict(variants or {}), **many, own=True)
 
 
 def make_results(
@@ -60,7 +62,7 @@ def make_results(
         Those to compare; None: all that are installed.
     """
     scenes = {name: scene.with_(duration=duration) for name, scene in load_scenes(CARYATID, motion).items()}
-    _make(folder, engines, scenes=scenes, variants={}, motions={}, own=False)
+    _make(folder, engines, scenes=scenes, variants={}, motions={}, left={}, own=False)
 
 
 def _make(folder, engines, *, scenes, **options):

@@ -80,10 +80,13 @@ Directions = Annotated[
 ]
 
 
+OWN = "the scene's own motion"  # the record of one that is not among those of the folder
+
+
 def motions_of(
     scene: Scene, records: str | None, both_signs: bool, directions: int | None, units: str | None = None
 ) -> tuple[dict[str, list[Motion]], list[str]]:
-    """({record: its motions}, the scene's own first, one that lies in the folder once; what is left out and why, said).
+    """({record: its motions}, the scene's own among them as of `with_own`; what is left out and why, said).
 
     Raises
     ------
@@ -99,21 +102,27 @@ def motions_of(
             raise SettingError(f"--{name} {value}: give the folder of the records with --records")
     found: dict[str, list[Motion]] = {}
     left: list[str] = []
-    own = scene.motion
     if records is not None:
         with named_by_options({"directions": "--directions"}):
-            others, left = folder_motions(records, directions=directions, own=own, units=units)
+            others, left = folder_motions(records, directions=directions, own=scene.motion, units=units)
         found = {name: [*motions] for name, motions in others.items()}
         for line in left:
             say(line)
-    first = next(iter(found.values()), [])[:1]
-    if own is not None and own.digest() not in [motion.digest() for motion in first]:
-        found = {own.label: [own, *found.pop(own.label, [])], **found}
+    found = with_own(scene.motion, found)
     if both_signs and same_reversed(scene):
         say("--both-signs: mirrored the same, as block and start are symmetric; each motion is run once")
     elif both_signs:
         found = {name: [*motions, *map(reversed_sign, motions)] for name, motions in found.items()}
     return found, left
+
+
+def with_own(own: Motion | None, groups: Mapping[str, Sequence[Motion]]) -> dict[str, list[Motion]]:
+    """{record: its motions}, a scene's own motion among them: where it is not yet, the first of the record of its name
+    or, without one, of `OWN`."""
+    found = {record: [*motions] for record, motions in groups.items()}
+    if own is None or any(one.digest() == own.digest() for motions in found.values() for one in motions):
+        return found
+    return {own.label if own.label in found else OWN: [own, *found.pop(own.label, [])], **found}
 
 
 def other_motions(
@@ -173,6 +182,12 @@ def row_of(
     except SceneError as error:
         response, added = refused(scene.with_(motion=None), error), {}
     return {**read_row(record, motion, response.warnings), **_measures(scene, response), **added}
+
+
+def end_with(rows: Sequence[Mapping[str, Any]], *responses: Response) -> None:
+    """End the command with status 1 where the run of a motion, or one of the responses, failed."""
+    if any(row["failure"] for row in rows) or any(response.failure for response in responses):
+        raise typer.Exit(1)
 
 
 def refused(scene: Scene, error: SceneError, **known: Any) -> Response:

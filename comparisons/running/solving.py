@@ -21,7 +21,7 @@ from .readable import readable
 if TYPE_CHECKING:
     from analytic import Caution, Response, SampledMotion, Scene
 
-ANALYTIC = "analytic"
+ANALYTIC, KERNEL = "analytic", "kernel"  # and the variant that its runs are told as
 TIME_LIMIT = 300.0  # s, of one run
 TIME_LIMIT_HELP = "A run that takes longer is ended, and counts as failed."
 
@@ -252,8 +252,8 @@ def _simulate(scene, solver, variant, settings, history, compare):
 def _analytic(scene, variant, settings, history):
     import analytic
 
-    if variant is not None:
-        raise SettingError(f"the analytic model has no variant {variant!r}: leave --variant out")
+    if variant not in (None, KERNEL):
+        raise SettingError(f"the analytic model has no variant {variant!r}: leave --variant out, or give {KERNEL}")
     parameters = inspect.signature(analytic.simulate).parameters
     known = [name for name in parameters if name not in ("scene", "history")]
     for name, value in settings.items():

@@ -73,7 +73,7 @@ class Warned(Part):
 class MotionRead(Part):
     """One of many motions, as it was read."""
 
-    record: str
+    record: str = Field(description="its motions count as one; of the scene's own outside the folder, words")
     motion: str
     peak: float = Field(description="m/s2")
     warnings: list[Warned]
@@ -242,7 +242,8 @@ class Reported(Part):
 
 class Report(Form):
     """A page written, and the rows behind its first table. results: the result files it is made from. motions: of each
-    scene of one's own, what each of many motions does; headlines: under how many of them what must be known happens."""
+    scene of one's own, what each of many motions does; left_out: files and channels of the folder, and why; headlines:
+    under how many of the motions what must be known happens."""
 
     schema_: str = Field(default="rocking report 5", serialization_alias="schema")
     page: str
@@ -250,6 +251,7 @@ class Report(Form):
     missing: dict[str, str]
     rows: list[Reported]
     motions: dict[str, list[MotionRun]] = {}
+    left_out: dict[str, list[str]] = {}
     headlines: dict[str, str | None] = {}
 
 

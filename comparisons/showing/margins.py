@@ -11,11 +11,13 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from analytic import Caution, Scene
-from analytic.bearing_scan import BearingScan
+from analytic.bearing_scan import BearingScan, hardest
 from analytic.margins import Contact, Margin, limit_states
+from analytic.motion import Motion
 from analytic.response import KINDS
 
 from ..measuring.statistics import wilson
+from ..running.options import OWN
 from ..running.readable import readable
 from .parts import number, percent
 from .plots import TITLE_CHARACTERS
@@ -79,7 +81,7 @@ def print_margins(
             f"{200 * bands[0].step:.2g} % alternate there. Narrower ones may lie nearer than the change "
             "given: do not base a decision on this margin."
         )
-    parts.append(f"{_normal_words(contact)} {_friction_words(contact)}")
+    parts.append(" ".join(filter(None, [_normal_words(contact), _friction_words(contact)])))
     if scene.bearings is not None:
         parts.append("Assumed: the bearings are stiff vertically (real ones sway at 10 to 20 Hz).")
     echo(*parts, wrap=True)
@@ -190,7 +192,8 @@ def _normal_words(contact):
         return "The normal force falls to 0: the block flies."
     if contact.least_normal <= 0:
         return f"The normal force falls to {contact.least_normal:.3g} m g: the outcome is outside the model."
-    return f"The normal force falls to {contact.least_normal:.3g} m g; at 0 the block would jump."
+    least = f"{contact.least_normal:.3g}"
+    return f"The normal force falls to {least} m g; at 0 the block would jump." if float(least) < 1 else ""
 
 
 def _friction_words(contact):
@@ -202,6 +205,7 @@ def _friction_words(contact):
 
 
 LIFTED = ("rocks", "overturns")
+RECORD = "record"
 # {(kind, quantity) of a warning, or kind alone: (in a table, in the headline)}; what must be known first stands first.
 DOUBTS = {
     ("limit", "peak_base_displacement"): ("x_max", "the base exceeds x_max"),
@@ -221,7 +225,7 @@ def _doubt(warning: Mapping[str, Any]) -> tuple[str, str]:
 
 def headline(rows: Sequence[Mapping[str, Any]], left: Sequence[str] = ()) -> str | None:
     """The worst that must be known of a scene under many motions, by record: failed runs, what is in doubt, whether the
-    block lifts and overturns. None without motions.
+    block lifts and overturns. None without motions. Records are called motions where the scene's own is one of them.
 
     rows : as of `running.options.rows_of`. left : what was left out.
     """
@@ -231,11 +235,14 @@ def headline(rows: Sequence[Mapping[str, Any]], left: Sequence[str] = ()) -> str
     said = [f"No outcome under {failed}."] if failed else []
     said += [f"Warning: {clause} under {records}." for clause, records in doubts(rows).items()]
     said.append(f"The block {odds(rows, LIFTED, 'lifts')}, and {odds(rows, LIFTED[1:], 'overturns')}.")
-    return " ".join([*said, *([f"Left out of the folder: {len(left)} files or channels."] if left else [])])
+    if unit_of(rows) != RECORD and len({row["record"] for row in rows}) < len(rows):
+        said.append("Components, directions and signs count as one motion.")
+    few = "file or channel" if len(left) == 1 else "files or channels"
+    return " ".join([*said, *([f"Left out of the folder: {len(left)} {few}."] if left else [])])
 
 
 def doubts(rows: Sequence[Mapping[str, Any]], kinds: Sequence[str] = KINDS) -> dict[str, str]:
-    """{what warnings of these kinds say, in a clause: under how many records}; rows as in `headline`."""
+    """{what warnings of these kinds say, in a clause: under how many records or motions}; rows as in `headline`."""
     found = {
         clause: _records(rows, partial(_warns, clause)) for (kind, _), (_, clause) in DOUBTS.items() if kind in kinds
     }
@@ -247,13 +254,19 @@ def _warns(clause: str, row: Mapping[str, Any]) -> bool:
 
 
 def _records(rows: Sequence[Mapping[str, Any]], holds: Callable[[Mapping[str, Any]], bool]) -> str:
-    """In words, how many records have a motion of which this holds; "" where none has."""
+    """In words, how many records, or motions, have a run of which this holds; "" where none has."""
     some, every = {row["record"] for row in rows if holds(row)}, {row["record"] for row in rows}
-    return f"{len(some)} of {_counted(len(every))}" if some else ""
+    return f"{len(some)} of {counted(rows, len(every))}" if some else ""
 
 
-def _counted(records: int) -> str:
-    return f"{records} record{'s' * (records != 1)}"
+def unit_of(rows: Iterable[Mapping[str, Any]]) -> str:
+    """What the records of rows are called, in the singular: motion where the scene's own, of none, is among them."""
+    return "motion" if any(row["record"] == OWN for row in rows) else RECORD
+
+
+def counted(rows: Iterable[Mapping[str, Any]], number: int) -> str:
+    """So many of what `unit_of` calls them."""
+    return f"{number} {unit_of(rows)}{'s' * (number != 1)}"
 
 
 def print_motions(scene: Scene, rows: Sequence[Mapping[str, Any]], left: Sequence[str] = ()) -> None:
@@ -307,8 +320,8 @@ def motion_warnings(rows: Sequence[Mapping[str, Any]]) -> list[str]:
     return [readable(words) for words in warned(pairs, len(rows), "all motions")]
 
 
-def odds(rows: Iterable[Mapping[str, Any]], outcomes: Sequence[str], word: str) -> str:
-    """Under how many records the block comes to one of these outcomes, in some direction or sign at least.
+def odds(rows: Sequence[Mapping[str, Any]], outcomes: Sequence[str], word: str) -> str:
+    """Under how many records or motions the block comes to one of these outcomes, in some direction or sign at least.
 
     The interval of the share is Wilson's, of records: motions of one record are no sample. A record under which no
     motion does so and one failed is left out.
@@ -320,10 +333,10 @@ def odds(rows: Iterable[Mapping[str, Any]], outcomes: Sequence[str], word: str) 
         found[row["record"]] = 1.0 if 1.0 in (hit, before) else before + hit
     known = [hit for hit in found.values() if not math.isnan(hit)]
     if not known:
-        return f"{word} under no record that could be run"
+        return f"{word} under no {unit_of(rows)} that could be run"
     low, high = wilson(int(sum(known)), len(known))
     interval = f"({number(100 * low, 2)} to {percent(high)} at 95 %)"
-    return f"{word} under {sum(known):.0f} of {_counted(len(known))} {interval}"
+    return f"{word} under {sum(known):.0f} of {counted(rows, len(known))} {interval}"
 
 
 HELD = "#009E73"  # Okabe and Ito
@@ -337,8 +350,9 @@ def print_bearings(
     motions: Sequence[Mapping[str, Any]],
     chosen: Mapping[str, Mapping[str, Any]],
     warnings: Sequence[Caution] = (),
+    nothing: str = "",
 ) -> None:
-    """Print the bearings named, a column each, or how near the best ones come where none hold; `warnings` first.
+    """Print the bearings named, a column each, or `nothing`, that none hold; `warnings` first.
 
     motions : as they were read, `running.options.read_row`.
     """
@@ -350,7 +364,7 @@ def print_bearings(
         wrap=True,
     )
     if not chosen:
-        return echo(*motion_warnings(motions), nothing_holds(scene, scan, stroke), wrap=True)
+        return echo(*motion_warnings(motions), nothing, wrap=True)
     if len({(one["period"], one["damping"]) for one in chosen.values()}) == 1:
         chosen = {" and ".join(chosen): next(iter(chosen.values()))}
     rows = {
@@ -377,15 +391,26 @@ def print_bearings(
     )
 
 
-def nothing_holds(scene: Scene, scan: BearingScan, stroke: float) -> str:
-    """That no bearings hold, and which come nearest; and what to change."""
+EXCEEDED = {  # {limit of `bearing_scan.LIMITS`: that it is exceeded}
+    "stroke": "the stroke is exceeded",
+    "slip": "the block slides, the friction exceeded",
+    "tilt": "the tilt limit is exceeded",
+    "uplift": "the block lifts, the acceleration of uplift exceeded",
+}
+
+
+def nothing_holds(scene: Scene, scan: BearingScan, stroke: float, tilt: float, motions: Sequence[Motion]) -> str:
+    """That no bearings hold; which come nearest, which limit they exceed and under which motion; and what to change."""
     period, damping = scan.nearest
+    limit, motion, demand = hardest(scene, scan.bearings(period, damping), motions, stroke, tilt)
     row, column = np.abs(scan.dampings - damping).argmin(), np.abs(scan.periods - period).argmin()
+    under = f"under {readable(motion.label)}"
     near = (
-        f"Nearest: {period:.3g} s with {damping:.3g}, at {scan.demand[row, column]:.3g} times a limit, the base moving "
-        f"{scan.stroke[row, column]:.3g} m of {stroke:g}."
-        if math.isfinite(scan.demand[row, column])
-        else "None comes near: the block jumps off its base or overturns on all of them."
+        f"Nearest: {period:.3g} s with {damping:.3g} of critical damping: {EXCEEDED[limit]} by {percent(demand - 1)} "
+        f"{under}. The base moves by up to {scan.stroke[row, column]:.3g} m of {stroke:g}."
+        if math.isfinite(demand)
+        else f"None comes near: the block jumps off its base or overturns on all of them, {under} on those of "
+        f"{period:.3g} s with {damping:.3g}."
     )
     cure = f"Allow more stroke{_or_tilt(scene)}; or widen, fix or lower the block."
     return f"no bearings {_scanned(scan)} hold. {near} {cure}"

@@ -9,7 +9,8 @@ import pytest
 from analytic import Base, Bearings, Block, Failure, Impact, PulseMotion, Response, Scene, Start, load_scene, simulate
 from analytic.errors import SceneError
 from analytic.response import COMPARED, DIFFERENCES, EDGE, Difference
-from engines.comparison import FRICTION, Reference, compare
+from engines.comparison import FRICTION, Reference, compare, outcome_of
+from engines.matching import STILL
 
 BLOCK = Block(mass=3172.05, radius=1.0884, slenderness=0.28)
 FREE = Scene(block=BLOCK, start=Start(tilt=0.14))
@@ -54,6 +55,16 @@ def test_a_displacement_too_small_to_count_is_compared_as_one_at_its_limit():
 def test_another_outcome_and_one_that_is_not_decided():
     assert told(FREE, outcome="overturns") == ["outcome"]
     assert told(FREE, outcome="overturns", decided=False) == []
+
+
+@pytest.mark.parametrize("tilt, found", [(1.5, []), (2.5, ["peak_tilt"])])
+def test_outcomes_that_are_told_alike_do_not_differ(tilt, found):
+    """Of two blocks that rock, one by less than counts, the peak tilts tell; tilt: over that, the other's."""
+    scene = FREE.with_(start=Start(tilt=0.9 * STILL * BLOCK.slenderness))
+    model = simulate(scene, history=False)
+    assert (model.outcome, outcome_of(scene, model)) == ("rocks", "stands")
+    assert told(scene, peak_tilt=tilt * STILL * BLOCK.slenderness) == found
+    assert told(scene, peak_tilt=tilt * STILL * BLOCK.slenderness, outcome="stands") == found
 
 
 # It overturns after three impacts, on bearings that swing on after the pulse; under a stronger one at once.

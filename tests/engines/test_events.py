@@ -7,6 +7,7 @@ import pytest
 from sampled_traces import BEARINGS, EDGE, SCENES, block, observed, seen
 
 from analytic import Base, Scene, Start, simulate
+from engines.checks import pivoting_centre
 from engines.events import MOST_RESTITUTION, check_impacts, find_events, straddled
 from engines.swings import Trace, find_swings
 
@@ -42,6 +43,19 @@ def test_a_carry_takes_substeps_as_the_bearing_needs_them():
     trace = Trace(*(getattr(reference.history, name) for name in Trace.COLUMNS), EDGE)
     found, wanted = ((one.impacts[0].time, one.impacts[0].rate_before) for one in (seen(scene, trace), reference))
     assert found == pytest.approx(wanted, rel=1e-5)
+
+
+@pytest.mark.parametrize("friction, gap, flies", [(0.6, 0.05, True), (0.6, 1e-3, False), (None, 0.05, False)])
+def test_a_passage_of_the_upright_is_an_impact_unless_the_block_is_in_the_air(friction, gap, flies):
+    """A block that rocks, raised by so much about its first impact; without a friction the model's does not fly."""
+    scene, trace, reference, _ = observed("rigid ground", 1e-3)
+    first = reference.impacts[0].time
+    centre = pivoting_centre(scene, trace)
+    centre[:, 1] += np.where(np.abs(trace.time - first) < 0.05, gap * scene.block.radius, 0.0)
+    raised = dataclasses.replace(trace, centre=centre)
+    found, *_, missed = find_events(scene.with_(friction=friction), raised, find_swings(raised))
+    count = len(find_events(scene, trace, find_swings(trace))[0])
+    assert (len(found), missed) == (count - flies, ()) and (abs(found[0].time - first) > 0.1) == flies
 
 
 @pytest.mark.parametrize("share, reason", [(1.05, "an impact added energy"), (0.95, None)])

@@ -19,7 +19,7 @@ from analytic.errors import SceneError, SettingError
 from analytic.pairing import paired
 from analytic.rocking import RockingModel
 from analytic.synthetic import synthetic_motion
-from engines import ENGINES
+from engines import ENGINES, get_engine
 from engines.couple import unkept_friction
 from engines.scripting import write_script
 
@@ -261,6 +261,29 @@ def test_a_script_draws_its_history(engine, tmp_path):
     script = written(engine, FEW["rigid, released"].with_(duration=0.3), tmp_path)
     assert "still moving" in run_alone(script, "--plot", tmp_path / "tilt.svg")
     assert "tilt [rad]" in (tmp_path / "tilt.svg").read_text()
+
+
+@every_engine
+@pytest.mark.parametrize("name", ["rocks", "slides", "on bearings", "beyond its balance", "quiet", "decided"])
+def test_a_script_ends_with_the_run_and_says_as_it_does_that_nothing_is_decided(engine, name, tmp_path):
+    needs(engine)
+    scene = {
+        "rocks": pulse(on_ground(block_of(0.35)), size=1.2, speed=3.0).with_(duration=0.3),
+        "slides": SLIDES.with_(duration=0.4),
+        "on bearings": SLIDES_ON_BEARINGS.with_(duration=0.4),
+        "beyond its balance": on_ground(block_of(0.2)).with_(motion=None, start={"tilt": 0.22}, duration=0.1),
+        "quiet": pulse(on_ground(block_of(0.35)), size=0.1).with_(duration=0.1),
+        "decided": released(on_ground(block_of(0.2))).with_(duration=0.3),
+    }[name]
+    found = ran(engine, scene, tmp_path)
+    run, last = (
+        get_engine(engine).simulate(scene),
+        np.loadtxt(tmp_path / "history.csv", delimiter=",", skiprows=1)[-1, 0],
+    )
+    assert last == pytest.approx(scene.duration, abs=1e-9)
+    assert run.end.time == pytest.approx(last, abs=1e-9)
+    assert run.decided == (name == "decided")
+    assert re.search(rf"^{re.escape(run.outcome_text)}[;,]", found.said, re.MULTILINE)
 
 
 @every_engine

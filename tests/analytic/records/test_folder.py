@@ -50,8 +50,8 @@ def test_two_files_that_differ_in_the_component_are_a_pair(tmp_path, names):
     ],
 )
 def test_other_files_are_no_pair_and_that_is_said(tmp_path, names):
-    for name in names:
-        write(tmp_path, name)
+    for factor, name in enumerate(names, 1):
+        write(tmp_path, name, factor * FIRST)
     found, left = folder_motions(tmp_path, directions=4)
     assert [len(motions) for motions in found.values()] == [1] * len(names)
     assert ["no pair" in line for line in left] == [True] * len(names)
@@ -59,13 +59,13 @@ def test_other_files_are_no_pair_and_that_is_said(tmp_path, names):
 
 def test_more_directions_than_can_be_run_are_refused_before_they_are_made(tmp_path):
     """Of a pair of 4 samples 1e8 steps hold 1e8/(5000 + 4) runs; single components are not turned."""
-    for name in ("A_E.csv", "A_N.csv", "single.csv"):
-        write(tmp_path, name)
+    for factor, name in enumerate(("A_E.csv", "A_N.csv", "single.csv"), 1):
+        write(tmp_path, name, factor * FIRST)
     for count in (19_985, 10**9, 10**400):
         with pytest.raises(SettingError, match=r"directions = \d+: .*give at most 19984, or fewer records"):
             folder_motions(tmp_path, directions=count)
-    for name in ("B_E.csv", "B_N.csv"):
-        write(tmp_path, name)
+    for factor, name in enumerate(("B_E.csv", "B_N.csv"), 4):
+        write(tmp_path, name, factor * FIRST)
     with pytest.raises(SettingError, match="give at most 9992, or"):
         folder_motions(tmp_path, directions=9993)
 
@@ -98,7 +98,7 @@ def test_units_hold_for_files_that_state_none_and_what_looks_like_no_earthquake_
         "spectrum.txt: left out, all accelerations have one sign: check that they are no spectrum and have no offset",
     ]
     found, left = folder_motions(tmp_path, units="gal")
-    assert [*found] == ["gal_no_unit.csv", "motion.csv"] and len(left) == 1
+    assert [*found] == ["gal_no_unit.csv"] and left[1] == "motion.csv: left out, same as gal_no_unit.csv"
     _, left = folder_motions(tmp_path)
     assert left[0].startswith("gal_no_unit.csv: left out, motion.units: missing; the header names no unit; add units, ")
 
@@ -123,6 +123,52 @@ def test_a_motion_of_ones_own_is_never_left_out(tmp_path):
     mine = SampledMotion(0.01, 981 * FIRST, "as the scene calls it")
     found, left = folder_motions(mixed(tmp_path), own=mine, units="g")
     assert [*found] == ["gal_no_unit.csv", "motion.csv"] and [line.split(":")[0] for line in left] == ["spectrum.txt"]
+
+
+VERTICAL = "left out, a vertical motion; a scene whose [motion] names it as vertical beside its record runs it"
+THREE = "t [s],E [m/s2],N [m/s2],Up [m/s2]\n" + "".join(
+    f"{0.01 * k:.2f},{FIRST[k]},{SECOND[k]},{0.3 * SECOND[k]:.2f}\n" for k in range(4)
+)
+
+
+def test_a_vertical_channel_beside_horizontal_ones_is_named_with_what_to_do(tmp_path):
+    (tmp_path / "a.csv").write_text(THREE)
+    found, left = folder_motions(tmp_path)
+    assert len(found["a.csv"]) == 2 and left == [f"a.csv, column 4 (Up): {VERTICAL}"]
+
+
+@pytest.mark.parametrize("vertical", ["a.csv", "b.csv", "longer.csv", "finer.csv"])
+def test_a_scenes_motion_with_its_vertical_one_is_the_records_of_the_folder_whose_place_it_takes(tmp_path, vertical):
+    """The vertical one is left out only where it is not that of the scene."""
+    (tmp_path / "a.csv").write_text(THREE)
+    write(tmp_path, "b.csv", 0.2 * FIRST)
+    write(tmp_path, "longer.csv", [*0.2 * FIRST, 0.1, -0.1])
+    (tmp_path / "finer.csv").write_text("t [s],a [m/s2]\n0,0\n0.005,0.1\n0.01,-0.2\n0.015,0.3\n")
+    more = '\nvertical_column = "Up"' if vertical == "a.csv" else ""
+    (tmp_path / "scene").mkdir()
+    (tmp_path / "scene" / "s.toml").write_text(
+        "[block]\nmass = 1.0\nradius = 1.0\nslenderness = 0.2\n"
+        f'[motion]\nrecord = "../a.csv"\ncolumn = "N"\nvertical = "../{vertical}"{more}\n'
+    )
+    own = load_scene(tmp_path / "scene" / "s.toml").motion
+    for directions, count in ((None, 2), (3, 4)):
+        found, left = folder_motions(tmp_path, own=own, directions=directions)
+        first = next(iter(found.values()))
+        assert first[0] is own and len(first) == count and len({motion.digest() for motion in first}) == count
+        verticals = [line for line in left if "vertical" in line]
+        assert verticals == ([] if vertical == "a.csv" else [f"a.csv, column 4 (Up): {VERTICAL}"])
+    found, left = folder_motions(tmp_path, own=own.scaled(2.0))  # another motion
+    assert own not in found["a.csv"] and left == folder_motions(tmp_path)[1]
+
+
+def test_a_copy_counts_once_and_a_pair_stays_whole(tmp_path):
+    for name, values in (("0.csv", SECOND), ("A_E.csv", FIRST), ("A_N.csv", SECOND), ("other.csv", FIRST)):
+        write(tmp_path, name, values)
+    found, left = folder_motions(tmp_path)
+    assert {name: [motion.label for motion in motions] for name, motions in found.items()} == {
+        "A_*.csv": ["A_E.csv", "A_N.csv"]
+    }
+    assert left == ["0.csv: left out, same as A_N.csv", "other.csv: left out, same as A_E.csv"]
 
 
 def test_other_warnings_stay_on_the_motion(tmp_path):

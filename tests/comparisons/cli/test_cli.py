@@ -66,6 +66,14 @@ def test_json_of_an_engine_is_alone_too(engine):
     assert done.returncode == 0, done.stderr
 
 
+def test_the_variant_that_tables_name_may_be_given(rocking):
+    (status, out, _), (_, plain, _) = (
+        rocking("run", "free-rocking-rigid", *more, "--json", "-") for more in (("--variant", "kernel"), ())
+    )
+    given, own = (json.loads(text) for text in (out, plain))
+    assert (status, given["variant"], given["peak_tilt"]) == (0, "kernel", own["peak_tilt"])
+
+
 def test_module_and_status_in_a_new_process(tmp_path):
     path = write_scene(tmp_path, SCENE.replace("3172.05", "-1"))
     done = in_a_new_process(path)

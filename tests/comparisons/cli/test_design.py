@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 from own_scenes import BUST
 
-from analytic import load_scene, simulate
-from analytic.design import properties
+from analytic import PulseMotion, load_scene, simulate
+from analytic.bearing_scan import BearingScan
+from analytic.design import design_bearings, properties
+from comparisons.showing.margins import nothing_holds
+from comparisons.showing.parts import percent
 
 BEARINGS = '[bearings]\nlaw = "linear"\nka = 2e5\n'
 
@@ -59,6 +62,55 @@ def test_where_nothing_holds_it_says_what_comes_nearest_and_writes_nothing(rocki
     status, _, err = rocking("design", file, "--stroke", "0.01", "--write", "softest")
     assert status == 2 and "--write" in err
     assert file.read_text() == BUST.format(bearings="")
+
+
+LIMITS = {  # {what is said to be exceeded: how far, of a run}
+    "the stroke is exceeded": lambda scene, run, stroke, tilt: run.peak_base_displacement / stroke,
+    "the tilt limit is exceeded": lambda scene, run, stroke, tilt: run.peak_tilt_ratio / (tilt or np.inf),
+    "the block slides, the friction exceeded": lambda scene, run, stroke, tilt: (
+        run.friction_demand / (scene.friction or np.inf)
+    ),
+    "the block lifts, the acceleration of uplift exceeded": lambda scene, run, stroke, tilt: (
+        run.friction_demand / np.tan(scene.block.slenderness) if not tilt else 0.0
+    ),
+}
+
+
+@pytest.mark.parametrize(
+    "friction, stroke, tilt, limit",
+    [
+        (None, 0.02, 0.0, "the stroke is exceeded"),
+        (None, 2.0, 0.0, "the block lifts, the acceleration of uplift exceeded"),
+        (0.1, 2.0, 0.0, "the block slides, the friction exceeded"),
+        (None, 2.0, 0.001, "the tilt limit is exceeded"),
+    ],
+)
+def test_of_the_nearest_bearings_it_says_which_limit_is_exceeded_and_under_which_motion(friction, stroke, tilt, limit):
+    scene = load_scene("caryatid-isolated").with_(friction=friction)
+    motions = [PulseMotion("one-sine", amplitude, 8.0) for amplitude in (1.0, 6.0, 3.0)]
+    periods, dampings = np.array([1.0, 2.0]), np.array([0.1, 0.2])
+    designs = [design_bearings(scene.total_mass, 1.0, float(damping), 0.25) for damping in dampings]
+    scan = BearingScan(periods, dampings, np.array([[3.0, 3.0], [3.0, 2.0]]), np.full((2, 2), 0.1), designs)
+    words = nothing_holds(scene, scan, stroke, tilt, motions)
+    held = scene.with_(bearings=scan.bearings(2.0, 0.2), duration=None, friction=None)  # it does not slide
+    found = {
+        (name, motion.label): over(scene, simulate(held.with_(motion=motion), history=False), stroke, tilt)
+        for motion in motions
+        for name, over in LIMITS.items()
+    }
+    (name, label), most = max(found.items(), key=lambda one: one[1])
+    assert name == limit and f"Nearest: 2 s with 0.2 of critical damping: {limit} by {percent(most - 1)} " in words
+    assert f" under {label}. The base moves by up to 0.1 m of {stroke:g}." in words
+
+
+def test_where_the_block_jumps_or_overturns_on_all_bearings_the_motion_is_named(rocking, tmp_path):
+    (tmp_path / "calm.csv").write_text("t [s],a [m/s2]\n" + "".join(f"{0.1 * k:.1f},{(-1) ** k}\n" for k in range(9)))
+    motion = '[motion]\npulse = "one-sine"\namplitude = 40.0\nfrequency = 4.0\n'
+    (tmp_path / "s.toml").write_text(f"[block]\nmass = 1.0\nradius = 1.0\nslenderness = 0.2\n{motion}")
+    options = ("--stroke", 0.01, "--base-mass", 1, "--tilt", 0.5, "--records", tmp_path)
+    status, out, _ = rocking("design", tmp_path / "s.toml", *options)
+    words = " ".join(out.split())
+    assert status == 0 and "overturns on all of them, under one-sine pulse, 40 m/s2, 4 rad/s on those of 0.3 s" in words
 
 
 def test_a_folder_of_records_adds_motions(rocking, tmp_path):

@@ -7,9 +7,10 @@ import pytest
 
 from analytic import SampledMotion, load_scene, simulate
 from comparisons.measuring.statistics import wilson
+from comparisons.running.options import OWN
 from comparisons.showing.margins import LIFTED, odds
 
-OWN = '[block]\nmass = 100.0\nradius = 1.0\nslenderness = 0.25\n[motion]\nrecord = "records/A090.csv"\n'
+OWN_RECORD = '[block]\nmass = 100.0\nradius = 1.0\nslenderness = 0.25\n[motion]\nrecord = "records/A090.csv"\n'
 TIME = 0.01 * np.arange(300)
 
 
@@ -41,7 +42,7 @@ def test_run_tells_every_motion_as_a_run_of_its_own_does(rocking, folder):
 
 def test_a_tilted_block_is_run_under_both_signs(rocking, folder):
     file = folder.parent / "tilted.toml"
-    file.write_text(f"{OWN}scale = 0.3\n[start]\ntilt = 0.02\n")  # another motion than the record's
+    file.write_text(f"{OWN_RECORD}scale = 0.3\n[start]\ntilt = 0.02\n")  # another motion than the record's
     status, out, err = rocking("run", file, "--records", folder, "--both-signs", "--json", "-")
     assert status == 0 and "mirrored" not in err, err
     rows = json.loads(out)["motions"]
@@ -61,10 +62,23 @@ def test_the_scenes_own_record_in_the_folder_counts_once(rocking, folder):
     assert [row["peak"] for row in rows[:2]] == pytest.approx([2.0, 4.0], rel=1e-3)
 
 
+def test_the_scenes_own_record_with_a_vertical_one_in_the_folder_counts_once(rocking, folder):
+    (folder / "A-UP.csv").write_text((folder / "weak.csv").read_text().replace("0.00,0.0", "0.00,0.1"))
+    file = folder.parent / "own.toml"
+    file.write_text(f'{OWN_RECORD}vertical = "records/A-UP.csv"\n')
+    for command in ("run", "margin"):
+        answer = json.loads(rocking(command, file, "--records", folder, "--json", "-")[1])
+        assert [row["record"] for row in answer["motions"]] == ["A*.csv", "A*.csv", "weak.csv"]
+        assert "vertical A-UP.csv" in answer["motions"][0]["motion"] and "of 2 records" in answer["headline"]
+        assert [line.partition(":")[0] for line in answer["left_out"]] == ["notes.txt"]
+    answer = json.loads(rocking("run", "caryatid-rigid", "--records", folder, "--json", "-")[1])
+    assert sum("A-UP.csv: left out, a vertical motion; a scene whose" in line for line in answer["left_out"]) == 1
+
+
 def test_the_same_record_read_otherwise_is_another_motion_of_it(rocking, folder):
     (folder / "plain.txt").write_text("".join(f"{t:.2f} {0.1 * np.sin(6 * t):.8f}\n" for t in TIME))
     file = folder.parent / "own.toml"
-    file.write_text(OWN.replace("A090.csv", "plain.txt") + 'units = "g"\n')
+    file.write_text(OWN_RECORD.replace("A090.csv", "plain.txt") + 'units = "g"\n')
     out = rocking("run", file, "--records", folder, "--units", "m/s2", "--json", "-")[1]
     rows = [row for row in json.loads(out)["motions"] if row["record"] == "plain.txt"]
     assert [row["peak"] for row in rows] == pytest.approx([0.981, 0.1], rel=1e-3)
@@ -102,7 +116,47 @@ def test_run_prints_the_odds_of_records_and_not_of_motions(rocking, folder):
     status, out, _ = rocking("run", "caryatid-isolated", "--records", folder, "--both-signs")
     assert status == 0
     low, high = wilson(0, 3)
-    assert f"under 0 of 3 records ({100 * low:.0f} to {100 * high:.0f} % at 95 %)" in " ".join(out.split())
+    words = " ".join(out.split())  # the scene's own motion is no record
+    assert f"under 0 of 3 motions ({100 * low:.0f} to {100 * high:.0f} % at 95 %)" in words
+    assert "Components, directions and signs count as one motion. Left out of the folder: 1 file or channel." in words
+
+
+def test_what_is_counted_is_called_motions_where_the_scenes_own_is_no_record(rocking, folder):
+    (folder / "copy.csv").write_text((folder / "weak.csv").read_text())
+    rows = json.loads(rocking("run", "caryatid-rigid", "--records", folder, "--json", "-")[1])
+    assert [row["record"] for row in rows["motions"]] == [OWN, "A*.csv", "A*.csv", "copy.csv"]
+    assert "weak.csv: left out, same as copy.csv" in rows["left_out"] and "of 3 motions (" in rows["headline"]
+    for command in ("run", "margin"):
+        alone = json.loads(rocking(command, "caryatid-rigid", "--both-signs", "--json", "-")[1])
+        assert [row["record"] for row in alone["motions"]] == [OWN] and "of 1 motion (" in alone["headline"]
+    file = folder.parent / "own.toml"
+    file.write_text(OWN_RECORD)
+    rows = json.loads(rocking("run", file, "--records", folder, "--json", "-")[1])
+    assert "of 2 records (" in rows["headline"] and "count as one" not in rows["headline"]
+
+
+# under the strong records the given restitution asks for more than the friction gives, under the weak one not
+GIVEN = """friction = 0.3
+[block]
+mass = 400.0
+radius = 1.0
+slenderness = 0.25
+restitution = 0.5
+"""
+
+
+@pytest.mark.parametrize("command", ["run", "margin"])
+def test_a_motion_under_which_the_model_fails_ends_with_status_1_and_the_rest_is_told(rocking, folder, command):
+    file = folder.parent / "given.toml"
+    file.write_text(GIVEN)
+    status, out, _ = rocking(command, file, "--records", folder, "--json", "-")
+    answer = json.loads(out)
+    failed = [row["motion"] for row in answer["motions"] if row["failure"]]
+    assert status == 1 and failed and len(failed) < len(answer["motions"]) and "No outcome under" in answer["headline"]
+    for name in failed:
+        (folder / name).unlink()
+    status, out, _ = rocking(command, file, "--records", folder, "--json", "-")
+    assert status == 0 and [row["failure"] for row in json.loads(out)["motions"]] == [None] * (3 - len(failed))
 
 
 def test_margin_tells_for_each_motion_what_change_of_it_lifts_the_block(rocking, folder):

@@ -117,6 +117,14 @@ def test_every_limit_state_has_its_column_and_the_widest_numbers_fit(capsys, mon
     assert "yield force 1.2345e-11 kg -0.123 % -0.123 % -0.123 % +123 % -12.3 %" in words
 
 
+@pytest.mark.parametrize("least, said", [(1.0, False), (0.9996, False), (0.98, True)])
+def test_a_normal_force_that_does_not_fall_is_not_said_to(least, said, capsys):
+    scene = Scene(block=BLOCK, motion=PulseMotion("one-sine", 0.5 * THRESHOLD, 7.8))
+    print_margins(scene, margins(scene, span=0.01, step=0.01), Contact(least, 0.1, None), 1.0, 0.5)
+    words = " ".join(capsys.readouterr().out.split())
+    assert ("The normal force falls to" in words) == said and "The friction demand is 0.1;" in words
+
+
 def test_interleaved_outcomes_are_said(capsys):
     scene = Scene(block=BLOCK, motion=PulseMotion("one-sine", 1.1 * GAP * THRESHOLD, 7.8))
     for step, interleaved in ((0.04, True), (0.01, False)):

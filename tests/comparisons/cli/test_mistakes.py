@@ -51,7 +51,7 @@ MISTAKES = {
         for name in ("self", "scene", "variant", "history", "compare")
     },
     f"{RIGID} --engine ode": "unknown engine 'ode': choose one of exudyn, pybullet",
-    f"{RIGID} --variant fast": "the analytic model has no variant 'fast'",
+    f"{RIGID} --variant fast": "the analytic model has no variant 'fast': leave --variant out, or give kernel",
     f"{RIGID} --set tolerance": "write name=value",
     f"{RIGID} --set tolerance=tight": "give a number",
     f"{RIGID} --set tolerance=true": "give a number",

@@ -107,7 +107,7 @@ def test_the_stroke_is_the_x_max_of_the_bearings_and_none_where_none_would_do():
     built = weak.with_(bearings={"x_max": 0.07})
     assert needed_by(built, [built.motion])["stroke"] == 0.07
     assert needed_by(GROUND, [PulseMotion("one-sine", 10.0, 2.3)])["stroke"] is None
-    nothing = {"stroke": None, "stands": None, "upright": None, "friction": None}
+    nothing = dict.fromkeys(("stroke", "stands", "upright", "slip", "friction"))
     assert needed_by(load_scene("free-rocking-isolated"), []) == nothing
     assert needed_by(GROUND.with_(start={"tilt": 0.01}), [GROUND.motion]) == nothing
 
@@ -141,6 +141,19 @@ SAID = [
         "rocking margin FILE",
         "from lifting or sliding; it needs a friction of 0.400 (now 0.300) not to slide.",
     ),
+    (
+        {**SCENE, "friction": 0.3},
+        {**NEEDED, "slip": 0.0123, "friction": 0.4},
+        "",
+        "to one of 0.800 m it does not lift, but slides by up to 0.0123 m; it needs a friction of 0.400",
+    ),
+    (
+        {**SCENE, "friction": 0.3},
+        {"stroke": None, "stands": 0.8, "upright": None, "slip": 0.41, "friction": 0.4},
+        "rocking margin FILE",
+        "or sliding; fix it, as a plate does not do: on one 0.800 m wide (now 0.550 m) it slides by 0.410 m, beyond "
+        "half of that; it needs a friction of 0.400 (now 0.300) not to slide.",
+    ),
     (SCENE, dict.fromkeys(NEEDED), "rocking margin FILE", "lifting; widen, fix or lower it."),
 ]
 
@@ -149,6 +162,29 @@ SAID = [
 def test_what_is_said_next(scene, needed, command, words):
     found, said = next_step(scene, needed, "FILE")
     assert command in ("", found) and words in said and said.endswith(".")
+
+
+@pytest.mark.parametrize("amplitude, beyond", [(5.0, False), (8.0, True)])
+def test_a_plate_on_which_the_block_slips_beyond_half_of_it_is_not_advised(amplitude, beyond):
+    """A block that does not lift slips as far on every plate: by the run of a broad one."""
+    motions = [PulseMotion("one-sine", amplitude, 3.0), PulseMotion("one-sine", 1.0, 3.0)]
+    rubs = GROUND.with_(friction=0.35)
+    found = needed_by(rubs, motions)
+    broad = rubs.with_(block=on_plate(rubs.block, 9.0), motion=motions[0], duration=None)
+    assert found["slip"] == pytest.approx(simulate(broad, history=False).sliding.peak, rel=1e-6)
+    assert (found["slip"] > found["stands"] / 2) == beyond
+    words = next_step({**SCENE, "friction": 0.35}, found, "FILE")[1]
+    assert ("a plate does not do" in words) == beyond and ("fixed to a plate" in words) != beyond
+
+
+def test_a_plate_on_which_it_stays_upright_and_slips_too_far_is_not_advised(monkeypatch):
+    rubs, motions = GROUND.with_(friction=0.35), [PulseMotion("one-sine", 5.0, 3.0)]
+    monkeypatch.setattr("comparisons.report.next_step._upright", lambda *_: 0.6)
+    slips = {0.6: 0.29, 0.733: 0.26}
+    monkeypatch.setattr("comparisons.report.next_step._slip", lambda scene, motions, width: slips[round(width, 3)])
+    assert (needed_by(rubs, motions)["upright"], needed_by(rubs, motions)["slip"]) == (0.6, 0.29)
+    slips[0.6] = 0.31
+    assert (needed_by(rubs, motions)["upright"], needed_by(rubs, motions)["slip"]) == (None, 0.26)
 
 
 def test_where_the_friction_is_less_than_the_block_needs_it_is_said_and_how_wide_it_only_slides():

@@ -93,9 +93,9 @@ def test_each_scene_has_its_card_first_with_its_outcome_in_the_title(page, scene
         outcome = simulate(scene, history=False).outcome
         words = {"stands": "does not lift", "rocks": "rocks and stays upright", "overturns": "overturns"}[outcome]
         if name == "bust":  # the other record's second motion, which is the worst
-            words = f"rocks and stays upright under 1 of 2 records; under its own motion it {words}"
+            words = f"rocks and stays upright under 1 of 2 motions; under its own motion it {words}"
             assert [peak(scene, motion) > 0.2 for motion in (scene.motion, *MOTIONS)] == [False, True, True]
-            words += "; the base exceeds x_max under 1 of 2 records"
+            words += "; the base exceeds x_max under 1 of 2 motions"
         title = f"{name}: the block {words}"
         assert card.startswith(f"{title} ") and title in titles
         assert "Engines None was run." in card
@@ -193,7 +193,9 @@ def test_other_motions_are_counted_by_record(page, scenes):
     found = [simulate(scenes["bust"].with_(motion=motion, duration=None), history=False) for motion in motions]
     own = simulate(scenes["bust"], history=False)
     lifting = [any(one.outcome != "stands" for one in record) for record in ([own], found)]
-    assert f"lifts under {sum(lifting)} of 2 records" in bust
+    assert f"lifts under {sum(lifting)} of 2 motions" in bust and "Motions Warning" in bust
+    assert "By motion motion runs largest peak" in bust
+    assert "the scene&#39;s own motion 1 " in bust and "other 2 " in bust
     assert f"{max(one.peak_base_displacement for one in found):.3f}" in bust
 
 
