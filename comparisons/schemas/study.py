@@ -69,7 +69,7 @@ class Runs(Part):
 class StudyResult(Form):
     """The result file of a study: a row is one object; equal columns mean the same in all rows of a study."""
 
-    schema_: Literal["rocking study 2"] = Field(default="rocking study 2", alias="schema")
+    schema_: Literal["rocking study 3"] = Field(default="rocking study 3", alias="schema")
     digest: Digest = Field(description="SHA-256 of all else in this file, as JSON with sorted keys and without spaces")
     kind: str = Field(description="which study")
     provenance: Provenance

@@ -175,10 +175,10 @@ def test_another_layout_is_refused_with_the_one_that_is_read_and_who_reads_it(tm
         return path
 
     for schema in (1, 99, "rocking study 1"):  # that of before results had a digest
-        with pytest.raises(ResultError, match=f"schema {schema!r}, this version reads 'rocking study 2', the version"):
+        with pytest.raises(ResultError, match=f"schema {schema!r}, this version reads 'rocking study 3', the version"):
             read_result(changed(schema=schema, provenance=content["provenance"] | {"commit": "0" * 40}))
     for origin in (None, {"commit": 7}):
-        with pytest.raises(ResultError, match="schema 1, this version reads 'rocking study 2'; run"):
+        with pytest.raises(ResultError, match="schema 1, this version reads 'rocking study 3'; run"):
             read_result(changed(schema=1, provenance=origin))
     for wrong in ({"rows": [1]}, {"settings": None}, {"provenance": {}}, {"more": 1}):
         with pytest.raises(ResultError, match=f"no result file of a study, {next(iter(wrong))}"):
