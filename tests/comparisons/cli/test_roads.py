@@ -340,6 +340,14 @@ def test_choose_names_the_model_where_the_block_never_lifts(road):
     assert answer["command"] == "rocking run scene.toml" and "the block never lifts on" in out
 
 
+@pytest.mark.parametrize(
+    "words, said", [(("--error", 2), "below 1"), (("--for", "speed"), "choose one of restitution")]
+)
+def test_choose_refuses_what_it_cannot_choose_by(road, words, said):
+    status, answer, _, err = road("choose", "rocks", *words)
+    assert status == 2 and answer is None and said in err
+
+
 @pytest.mark.parametrize("part", range(2))
 def test_report(road, rocking, tmp_path, part):
     """All kinds, in two reports: of the model, an engine that lies, one that fails, and one that gives no numbers."""
