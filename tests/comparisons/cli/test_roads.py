@@ -79,7 +79,7 @@ def road(rocking, tmp_path, monkeypatch):
     monkeypatch.setattr(
         import_module("comparisons.advice.choose"), "Processes", Here
     )  # the package has a function so called
-    for place in ("study.source_digests", "cases.source_digests", "provenance.source_digests", "study.digests_of_all"):
+    for place in ("study.source_digests", "cases.source_digests", "provenance.kept_digests", "study.digests_of_all"):
         monkeypatch.setattr(f"comparisons.running.{place}", lambda *_: {})  # what the code is, is no road
     monkeypatch.setattr("comparisons.report.answer.age", lambda *_: None)
     monkeypatch.setattr("comparisons.report.write.age", lambda *_: None)
