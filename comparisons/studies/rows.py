@@ -128,7 +128,6 @@ ROWS = {
         "vulnerable": "slenderness step period",
         "benefit": """motion cells 'both stay upright' 'only the isolated one does' 'only the free-standing one does'
             'both overturn' 'only the isolated one does, within 0.30 m' 'isolated lifts' 'beyond x_max'""",
-        "cost": "integrator what ratio? ratio_low? ratio_high? ratios errors cpu_seconds at_errors",
     },
     "tolerances": {"tolerance": "quantity engine variant scenes bound? unit measured? source found? holds failure?"},
     "constants": {
