@@ -111,10 +111,7 @@ ROWS = {
     "speed-error": {
         "work-precision": """scene engine variant model law? parameter? level? outcome? failure? timings errors lost?
             repeatable | cpu_seconds cpu_low cpu_high simulated steps? step? cpu_per_second cpu_per_step?
-            boundary_shifts? settings""",
-        "share": "scene engine variant level failure? share?",
-        "first run": "scene engine variant code failure? cpu_seconds?",
-        "growth": "engine variant against value failure? | cpu_seconds traced_bytes? resident_bytes?",
+            boundary_shifts? settings"""
     },
     "caryatid": {
         "value": "where quantity engine? paper study difference? status note",
