@@ -111,10 +111,7 @@ ROWS = {
     "speed-error": {
         "work-precision": """scene engine variant model law? parameter? level? outcome? failure? timings errors lost?
             repeatable | cpu_seconds cpu_low cpu_high simulated steps? step? cpu_per_second cpu_per_step?
-            boundary_shifts? settings""",
-        "share": "scene engine variant level failure? share?",
-        "first run": "scene engine variant code failure? cpu_seconds?",
-        "growth": "engine variant against value failure? | cpu_seconds traced_bytes? resident_bytes?",
+            boundary_shifts? settings"""
     },
     "caryatid": {
         "value": "where quantity engine? paper study difference? status note",
@@ -128,7 +125,6 @@ ROWS = {
         "vulnerable": "slenderness step period",
         "benefit": """motion cells 'both stay upright' 'only the isolated one does' 'only the free-standing one does'
             'both overturn' 'only the isolated one does, within 0.30 m' 'isolated lifts' 'beyond x_max'""",
-        "cost": "integrator what ratio? ratio_low? ratio_high? ratios errors cpu_seconds at_errors",
     },
     "tolerances": {"tolerance": "quantity engine variant scenes bound? unit measured? source found? holds failure?"},
     "constants": {

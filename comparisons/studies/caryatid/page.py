@@ -161,8 +161,6 @@ def _motion(result):
                     for key in SHARES
                 ),
             ),
-            Head("Is the algebraic law cheaper than Bouc-Wen?"),
-            *_cost([row for row in where(result.rows, part="cost") if row["at_errors"]]),
             Head("All runs"),
             _agreement(runs),
             _table("All runs", [row for same in grouped(runs, SCENE.of).values() for row in same], *RUN),
@@ -295,32 +293,6 @@ def _benefit(result):
         "0.30 m; there the law describes no built bearing.",
         keys,
         keys,
-    )
-
-
-def _cost(rows):
-    won = [f"{row['integrator']} ({row['what']})" for row in rows if row["ratio_high"] and row["ratio_high"] < 1]
-    found = (
-        f"Cheaper beyond the spread in {', '.join(won)}."
-        if won
-        else "Not confirmed here: it was not cheaper in any variant."
-    )
-    yield (
-        f"{found} The Bouc-Wen law is the simplest one, linear in z: a multiplication where the algebraic law raises "
-        "to a power. Not tested are the paper's own case, sub-steps inside a time-step scheme, and other exponents."
-    )
-
-    yield _table(
-        "CPU time of the algebraic bearing over that of a Bouc-Wen bearing of the same limit force and stiffnesses",
-        rows,
-        Column("integrator", "integrator"),
-        Column("how", "what"),
-        Column("errors over the peak displacement [-]", "at_errors", digits=1),
-        Column("algebraic, finest [s]", lambda row: row["cpu_seconds"][0][-1]),
-        Column("Bouc-Wen, finest [s]", lambda row: row["cpu_seconds"][1][-1]),
-        Column("median ratio [-]", "ratio", digits=3),
-        Column("10 to 90 % of ratios [-]", "{ratio_low} to {ratio_high}", digits=3),
-        Column("ratios [-]", "ratios"),
     )
 
 

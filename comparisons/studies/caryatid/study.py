@@ -22,10 +22,10 @@ from ...running.progress import log
 from ...running.solving import ground_motion
 from .formulas import formulas
 from .runs import ISOLATED, X_MAX, caryatid, equivalent_oscillators, motion_values, simulations, spectra
-from .variations import claims, cost_rows, maps, uplift_slenderness
+from .variations import claims, maps, uplift_slenderness
 
 # Why one engine's rows cannot be computed anew by themselves, see `Study.whole`.
-WHOLE = "its answer is several files, under a motion that they do not hold, with CPU times measured together"
+WHOLE = "its answer is several files, under a motion that they do not hold"
 
 PART_PAPER, PART_MOTION, PART_HISTORIES = "paper", "motion", "histories"
 
@@ -96,8 +96,7 @@ def _analytic(motion, runs, quick):
     fitting, periods = claims(motion, quick)
     log("other slendernesses, intensities and motions")
     shares, benefit = maps(motion, quick)
-    log("algebraic against Bouc-Wen")
-    rows += [*fitting, *shares, *cost_rows(motion, quick)]
+    rows += [*fitting, *shares]
     arrays |= periods | benefit
     singles = {name: one.astype(np.float32) for name, one in arrays.items() if one.dtype == np.float64}
     return rows, arrays | singles

@@ -103,7 +103,6 @@ BRACKETS = {"one-sine": (1.35, 1.45), "one-cosine": (1.8, 1.95)}
 
 TRANSPARENT = ("free-rigid", "near-overturning")  # scenes without base or record
 SAMPLED = ("isolated-standing", "isolated-rocking")
-PEER = "comparisons.studies.speed_error.taylor:simulate_heyoka"
 PLAIN = "isolated-rocking"  # the scene in which engines are compared at their defaults
 
 NEEDED = "as needed"
@@ -234,8 +233,6 @@ SCIPY_SAMPLED = {
     "LSODA": (powers(-6), ()),
     "Radau": (powers(-3), ()),
 }
-# of heyoka; between the samples of a record a step is far finer than asked for
-TAYLOR = (powers(-3, -6, -9, -12, -15), powers(-6, -12))
 
 
 def refined(levels: Sequence[float]) -> list[float]:
@@ -262,7 +259,6 @@ def _ladders(trial: Trial, engines: Sequence[str], quick: bool) -> Iterator[list
         yield from _integrators(trial, quick)
         return
     yield from _models(trial, SCIPY_SAMPLED if trial.name in SAMPLED else SCIPY, quick)
-    yield from _peers(trial, quick)
     for name in engines:
         engine = get_engine(name)
         if engine.script and not quick:
@@ -293,23 +289,12 @@ def _models(trial, methods, quick):
         yield [Entry(trial, "scipy", method, "rtol", level, "twin", settings) for level in levels[quick]]
 
 
-def _peers(trial, quick):
-    """heyoka in both its variants, where it is installed."""
-    for (engine, variant), version in integrators.installed().items():
-        settings = {"callback": integrators.TAYLOR[variant], "version": version}
-        yield [Entry(trial, engine, variant, "tolerance", level, PEER, settings) for level in TAYLOR[quick]]
-
-
 def _integrators(trial, quick):
-    """Those that are here; a peer's version is part of what a stored run is known by."""
-    peers = integrators.installed()
     for (engine, variant), levels in integrators.TOLERANCES.items():
-        if (engine, variant) in peers or (engine, variant) not in integrators.PEERS:
-            settings = {"engine": engine, "variant": variant, "version": peers.get((engine, variant))}
-            yield [
-                Entry(trial, engine, variant, "tolerance", level, integrators.SOLVER, settings)
-                for level in levels[quick]
-            ]
+        settings = {"engine": engine, "variant": variant}
+        yield [
+            Entry(trial, engine, variant, "tolerance", level, integrators.SOLVER, settings) for level in levels[quick]
+        ]
 
 
 def _kernel(trial, level, **modelled):

@@ -1,5 +1,5 @@
-"""Problems A and B, a block alone, that every integrator solves, with references of 30 digits: the kernel, scipy's
-`solve_ivp` and, of the optional extra `peers`, heyoka, each set up by someone who wants it fast.
+"""Problems A and B, a block alone, that every integrator solves, with references of 30 digits: the kernel and scipy's
+`solve_ivp`, set up by someone who wants it fast.
 
 There are no classes, the right-hand side uses floats instead of arrays, the set of events is the smallest possible, and
 the first step follows from the length of the next swing. The simple form to learn from is `analytic.twin`.
@@ -11,8 +11,6 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from importlib.metadata import version
-from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
@@ -28,7 +26,6 @@ from ...running.cases import Case
 
 SOLVER = f"{__name__}:prepared"
 SHORT_HOP = 0.3  # in units of 1/omega_r: below it, the first step is the whole hop
-COOLDOWN = 1e-12  # s; heyoka's own choice drops the shortest hops silently
 
 
 @dataclass(frozen=True)
@@ -157,69 +154,10 @@ def scipy_run(problem: Problem, rtol: float, method: str) -> Callable[[], tuple[
     return run
 
 
-def heyoka_run(problem: Problem, tolerance: float, callback: bool) -> Callable[[], tuple[float, int]]:
-    """One compiled system in flight under the pulse, one for free flight.
-
-    Impacts are a callback in heyoka's own loop, between which there is no return to Python, or they stop that loop.
-    """
-    import heyoka
-
-    p2, gamma, e, a, frequency = problem.p2, problem.gamma, problem.restitution, problem.a, problem.frequency
-    phi, w = heyoka.make_vars("phi", "w")
-    angle = heyoka.par[0] * gamma - phi
-    counted = [0]
-
-    def impact(system, _):
-        counted[0] += 1
-        system.state[:] = 0.0, e * system.state[1]
-        system.pars[0] = -system.pars[0]
-        return abs(system.state[1]) >= problem.rest_rate
-
-    def system(push):
-        called = {"callback": impact} if callback else {}
-        event = heyoka.t_event(
-            heyoka.par[0] * phi, direction=heyoka.event_direction.negative, cooldown=COOLDOWN, **called
-        )
-        equations = [(phi, w), (w, -p2 * (heyoka.sin(angle) + push))]
-        return heyoka.taylor_adaptive(equations, [0.0, 0.0], pars=[1.0], tol=tolerance, t_events=[event])
-
-    free = system(0.0)
-    stages = [(free, problem.horizon)]
-    if a:
-        forced = system(a * heyoka.sin(frequency * heyoka.time) * heyoka.cos(angle))
-        stages.insert(0, (forced, problem.pulse_end))
-    duration, reached = problem.scene.duration, heyoka.taylor_outcome.time_limit
-
-    def propagate(stage, until):
-        while stage.propagate_until(until)[0] != reached and not callback and impact(stage, None):
-            pass
-
-    def run():
-        counted[0] = 0
-        t, y, side = problem.begin, (problem.tilt, 0.0), problem.side
-        for stage, until in stages:
-            stage.time = t
-            stage.state[:] = y
-            stage.pars[0] = side
-            stage.reset_cooldowns()
-            propagate(stage, until)
-            t, y, side = until, stage.state, stage.pars[0]
-        tilt = float(free.state[0])
-        if problem.horizon < duration:
-            propagate(free, duration)
-        return tilt, counted[0]
-
-    return run
-
-
 METHODS = ("RK45", "DOP853", "LSODA", "Radau")
-TAYLOR = {"Taylor, callback": True, "Taylor, stopped at events": False}  # how heyoka handles impacts
-# an engine's name is that of its package
-PEERS = {("heyoka", name): functools.partial(heyoka_run, callback=callback) for name, callback in TAYLOR.items()}
 INTEGRATORS: dict[tuple[str, str], Callable[..., Any]] = {
     ("analytic", "kernel"): kernel_run,
     **{("scipy", method): functools.partial(scipy_run, method=method) for method in METHODS},
-    **PEERS,
 }
 # relative tolerances, of a full and of a quick run
 TOLERANCES = {
@@ -231,13 +169,7 @@ TOLERANCES = {
     ("scipy", "DOP853"): ((1e-6, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13), (1e-10, 1e-11, 1e-12)),
     ("scipy", "LSODA"): ((1e-6, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12), (1e-9, 1e-11)),
     ("scipy", "Radau"): ((1e-6, 1e-8, 1e-9), (1e-6,)),
-    **dict.fromkeys(PEERS, ((1e-6, 1e-8, 1e-9, 1e-10, 1e-12, 1e-14, 2.3e-16), (1e-9, 1e-12, 2.3e-16))),
 }
-
-
-def installed() -> dict[tuple[str, str], str]:
-    """{(engine, variant): version} of the peers that can be imported here."""
-    return {name: version(name[0]) for name in PEERS if find_spec(name[0])}
 
 
 @functools.lru_cache(maxsize=256)

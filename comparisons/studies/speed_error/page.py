@@ -1,8 +1,10 @@
 """What is shown of the speed-error study."""
 
+import math
 import statistics
 
 import numpy as np
+import numpy.typing as npt
 
 from ...measuring.scripts import NAME as SCRIPT
 from ...running.provenance import Result
@@ -30,14 +32,10 @@ from .costs import (
     passing,
     times,
 )
-from .growth import fit
 
 __all__ = ["glance", "judgements", "page"]
 LEVELS = (1e-2, 1e-3, 1e-4, 1e-5)  # of an error
-USUAL = 1e-8  # tolerance of the kernel in comparisons with engines at default levels; its own default takes longer
 DRAWN, ROUNDING = 1e-9, 1e-13  # errors below the first are drawn there, those below the second tell no order
-AGAINST = {"duration": "duration [s]", "samples": "record samples per second [1/s]"}
-MIB = 2**20
 # (scene, error) of the figure of the report's page; the first screen has that of the peak tilt
 FIRST = (("free-rigid", "restitution"), (PLAIN, "restitution"), ("near-overturning", "boundary_shift"),
          ("near-overturning-jump", "boundary_shift"))  # fmt: skip
@@ -72,9 +70,6 @@ def page(result: Result) -> Page:
             Head("The cheapest level of each solver"),
             *(_costs(result, some) for some in errors.values()),
             _without_error(every),
-            Head("First runs, and who does the work"),
-            _first_runs(result),
-            _shares(result),
             Head("Step and order"),
             _figure(rows, Column("mean step [s]", "step"), "Mean step: simulated time over steps.", rows),
             *(
@@ -89,7 +84,6 @@ def page(result: Result) -> Page:
                 Column("CPU time per step [µs]", lambda row: _range(row["rows"], "cpu_per_step", 1e6)),
             ),
             *_more_than_needed(result, every),
-            *_growth(where(result.rows, part="growth", failure=None)),
         ),
         how=_how(result, every),
         evidence=tuple(
@@ -100,26 +94,6 @@ def page(result: Result) -> Page:
             for row in every
             if row["failure"]
         ),
-    )
-
-
-def _first_runs(result):
-    return table(
-        "CPU time of a first run, in a process of its own from its start to the answer; isolated, rocking",
-        where(result.rows, part="first run", failure=None),
-        SOLVER,
-        Column("the analytic model's code", "code"),
-        Column("CPU time [s]", "cpu_seconds", digits=3),
-    )
-
-
-def _shares(result):
-    return table(
-        "CPU time inside the engine's compiled functions over that of the run, default levels; the rest is Python, "
-        "mostly the adapter's; isolated, rocking",
-        where(result.rows, part="share", failure=None),
-        SOLVER,
-        Column("engine's own share", "share", percent=True),
     )
 
 
@@ -137,8 +111,7 @@ CAPTION = (
 FINE_CAPTION = (
     "Integrators alone, left and low is better. Problems A (a free block) and B (a block under a pulse) have "
     "references of 30 digits. All integrate the same two equations, set up for speed: scipy without classes and with "
-    "a first step of the length of the hop. scipy restarts at each impact; heyoka's impacts are a callback in its own "
-    "loop, or they stop it and Python applies them."
+    "a first step of the length of the hop. scipy restarts at each impact."
 )
 
 
@@ -260,6 +233,12 @@ def _orders(measure, rows, scenes):
     )
 
 
+def fit(x: npt.ArrayLike, y: npt.ArrayLike) -> tuple[float, float]:
+    """(exponent, its standard error) of y ~ x^exponent by least squares of the logarithms; three points or more."""
+    (slope, _), covariance = np.polyfit(np.log(x), np.log(y), 1, cov=True)
+    return float(slope), math.sqrt(covariance[0, 0])
+
+
 def _range(rows, key, unit):
     values = [unit * row[key] for row in rows if row.get(key)]
     return f"{number(min(values), 2)} – {number(max(values), 2)}" if values else None
@@ -316,43 +295,6 @@ def _more_than_needed(result, every):
     )
 
 
-def _growth(rows):
-    if not rows:
-        return
-    figures = [
-        lines(where(rows, against=against), Column(head, "value"), CPU, "How the cost of one run grows.", log="xy")
-        for against, head in AGAINST.items()
-    ]
-    grown = []
-    for (against, engine, variant), some in grouped(rows, "against", "engine", "variant").items():
-        x, y = ([row[key] for row in some] for key in ("value", "cpu_seconds"))
-        exponent, error = fit(x, y) if len(some) >= 3 else (None, None)
-        last = float(np.log(y[-1] / y[-2]) / np.log(x[-1] / x[-2])) if len(some) >= 2 else None
-        sizes = {
-            key: [None if row[key] is None else row[key] / MIB for row in (some[0], some[-1])]
-            for key in ("traced_bytes", "resident_bytes")
-        }
-        grown.append(
-            {"name": f"{engine}, {variant}", "against": AGAINST[against], "x": [x[0], x[-1]], "exponent": exponent,
-             "error": error, "last": last, **sizes}
-        )  # fmt: skip
-    yield Head("Growth of the cost")
-    yield beside(*figures)
-    yield table(
-        "CPU time as a power of duration or sample rate; peak memory of a run without history, at the first and the "
-        "last value. Adapters of engines keep every step until the run is measured.",
-        grown,
-        NAME,
-        Column("against", "against"),
-        Column("first, last value", "x", digits=None),
-        Column("exponent [-]", "exponent", digits=3),
-        Column("standard error [-]", "error", digits=1),
-        Column("exponent of the last two [-]", "last", digits=3),
-        Column("allocated [MiB]", "traced_bytes", digits=3),
-        Column("resident, increase [MiB]", "resident_bytes", digits=3),
-    )
-
-
 def _how(result, every):
     same = sum(row["repeatable"] for row in every)
     differing = sorted({row["name"] for row in every if not row["repeatable"]})
@@ -362,7 +304,7 @@ def _how(result, every):
     beside = f" Other processes took {percent(max(load))} of it at most." if load else ""
     return (
         f"{result.settings['rounds']} fresh processes one after the other; in each, every solver has its turn after a "
-        "warm-up. CPU times are the least of the rounds (medians of first runs and of growth), of the simulation "
+        "warm-up. CPU times are the least of the rounds, of the simulation "
         "without import, compilation and building of the scene. The median round took up to "
         f"{number(noise(result), 2)} times as long as the least for {NOISE} % of the levels: costs closer than that "
         f"are not distinguished. Machine: {machine['processor']}, {machine['logical_cores']} cores.{beside}",

@@ -9,12 +9,13 @@ from types import SimpleNamespace
 from typing import Annotated, Any
 
 import numpy as np
+import psutil
 import typer
 
 from analytic import Impact, Response, SettingError
 from analytic.rocking import restitution
 from analytic.twin import simulate_twin
-from engines import ENGINES, get_engine
+from engines import get_engine
 
 from ...measuring.errors import (
     lost_impacts,
@@ -26,18 +27,16 @@ from ...measuring.errors import (
 )
 from ...running.cases import Case, variant_settings
 from ...running.plan import Batch, Computed, Plan, Request
-from .cases import PEER, PLAIN, RUNS, Boundary, Entry, Trial, entries, levels_of, problem_trials, searched, trials
-from .cold import ANEW, STORED, first_run, load
-from .growth import TICK, grown, growth_cases
-from .integrators import PROBLEMS, SOLVER, TAYLOR, installed, timed
-from .share import own_share
+from .cases import RUNS, Boundary, Entry, Trial, entries, levels_of, problem_trials, searched, trials
+from .integrators import PROBLEMS, SOLVER, timed
 
 # Why one engine's rows cannot be computed anew by themselves, see `Study.whole`.
 WHOLE = "its CPU times are compared with each other, so they have to be measured together"
 
 REPEATS, QUICK_REPEATS = 5, 3
-USUAL = 1e-8  # tolerance of a peer in its first run
+TICK = 4e-3  # s of CPU: shorter measurements are repeated until they took as long, and the mean counts
 SLOW = 0.5  # s of CPU: next to it what is loaded in a first run is nothing; such a measurement needs no warm-up
+SECONDS = 1.0  # over which the load of the machine is measured
 MOST_REPEATS = 200
 TWIN_TOLERANCE = 1e-13  # of the independent solution each reference is compared with
 EVIDENCE = 600  # characters of an engine's message that a row keeps
@@ -46,9 +45,12 @@ EVIDENCE = 600  # characters of an engine's message that a row keeps
 STRAY, LAST = 0.025, 3
 
 Repeats = Annotated[int | None, typer.Option(min=1, max=1000, help="Fresh processes in turn. Default 5, quick 3.")]
-Only = Annotated[
-    str | None, typer.Option("--scene", metavar="NAME", help='One scene alone, as "problem A"; no growth of cost.')
-]
+Only = Annotated[str | None, typer.Option("--scene", metavar="NAME", help='One scene alone, as "problem A".')]
+
+
+def load(case: Case, response: Response) -> dict[str, Any]:
+    """Measure: the share of the machine's CPU time that other processes take meanwhile, as nothing of ours runs [-]."""
+    return {"cost": {"load": psutil.cpu_percent(SECONDS) / 100}}
 
 
 def measure(case: Case, response: Response) -> dict[str, Any]:
@@ -116,7 +118,6 @@ def plan(
     request: Request,
     scenes: Sequence[Trial] | None = None,
     keep: Callable[[Entry], bool] = lambda entry: True,
-    grow: bool = True,
     *,
     repeats: Repeats = None,
     scene: Only = None,
@@ -130,8 +131,6 @@ def plan(
         None: all.
     keep : callable
         Entry -> bool: which of them to run.
-    grow : bool
-        Whether to measure the growth of cost too; it needs the scene "isolated-standing".
     repeats : int or None
         Rounds.
     scene : str or None
@@ -150,11 +149,6 @@ def plan(
         done = yield Batch(cases, measure, f"round {turn + 1} of {rounds}", alone=True)
         for (_, rows), row in zip(measured, done, strict=True):
             rows.append(row)
-    rows = [_row(entry, timings) for entry, timings in measured]
-    rows += yield from _shares([entry for entry, _ in measured])
-    rows += yield from _first_runs(scenes, request, rounds)
-    if grow and scene is None:
-        rows += yield from _growth(scenes, request, rounds)
     settings = {
         "quick": request.quick,
         "rounds": rounds,
@@ -166,7 +160,7 @@ def plan(
             for variant, kind in get_engine(engine).variants.items()
         ],
     }
-    return Computed(settings, rows)
+    return Computed(settings, [_row(entry, timings) for entry, timings in measured])
 
 
 def _row(entry, timings):
@@ -210,81 +204,10 @@ def _row(entry, timings):
     }
 
 
-def _shares(measured):
-    """Rows of the engines' own shares: of each variant at its default in the scene `PLAIN`."""
-    chosen = [
-        entry
-        for entry in measured
-        if entry.trial.name == PLAIN and entry.engine in ENGINES and not entry.solver
-        if entry.level == get_engine(entry.engine).variants[entry.variant].default
-    ]
-    done = yield Batch([entry.case(0) for entry in chosen], own_share, "engines' own shares", alone=True)
-    return [
-        {
-            "part": "share",
-            "scene": PLAIN,
-            "engine": entry.engine,
-            "variant": entry.variant,
-            "level": entry.level,
-            "failure": _evidence(row.failure),
-            "share": None if row.failure else row.cost["share"],
-        }
-        for entry, row in zip(chosen, done, strict=True)
-    ]
-
-
-def _first_runs(scenes, request, rounds):
-    """Rows of first runs, each in a process of its own, in the scene `PLAIN`: of every solver as it comes."""
-    solvers: list[tuple[str, str, str, str, dict[str, Any]]] = [
-        ("analytic", "analytic", "kernel", STORED, {}),
-        ("analytic", "analytic", "kernel", ANEW, {}),
-        ("twin", "scipy", "DOP853", STORED, {}),
-        *((PEER, *pair, STORED, {"callback": TAYLOR[pair[1]], "tolerance": USUAL}) for pair in installed()),
-        *((name, name, get_engine(name).default_variant, STORED, {}) for name in request.engines),
-    ]
-    rows = []
-    for scene in (trial.scene for trial in scenes if trial.name == PLAIN):
-        for solver, engine, variant, code, settings in solvers:
-            cases = [Case(scene, solver, None, settings, {"code": code, "round": turn}) for turn in range(rounds)]
-            done = yield Batch(cases, first_run, f"first runs, {solver}", alone=True)
-            seconds = [row.cost["cpu_seconds"] for row in done if not row.failed]
-            row = {"part": "first run", "scene": PLAIN, "engine": engine, "variant": variant, "code": code}
-            cpu = statistics.median(seconds) if seconds else None
-            rows.append({**row, "failure": _evidence(done[0].failure), "cpu_seconds": cpu})
-    return rows
-
-
 def _evidence(failure):
     if failure is None:
         return None
     return {key: str(failure[key])[:EVIDENCE] for key in ("kind", "reason", "message") if failure.get(key)}
-
-
-def _growth(scenes, request, rounds):
-    """Rows of growth: each measurement in a process of its own, so that none finds memory another has left."""
-    rows = []
-    (stands,) = (trial.scene for trial in scenes if trial.name == "isolated-standing")
-    for case in growth_cases(stands, request.engines, request.quick):
-        turns, tag = [], case.tag
-        for turn in range(rounds):
-            again = dataclasses.replace(case, tag={**tag, "round": turn})
-            turns += yield Batch([again], grown, f"growth against {tag['against']}", alone=True)
-        sound = [each for each in turns if not each.failed]
-        row = {
-            "part": "growth",
-            "engine": case.solver,
-            "variant": tag["variant"],
-            "against": tag["against"],
-            "value": tag["value"],
-            "failure": _evidence(turns[0].failure),
-        }
-        if sound:
-            row["cpu_seconds"] = statistics.median(each.cost["cpu_seconds"] for each in sound)
-            for name in ("traced_bytes", "resident_bytes"):
-                known = [each.values[name] for each in sound if each.values[name] is not None]
-                row[name] = statistics.median(known) if known else None
-        rows.append(row)
-    return rows
 
 
 def description(trial: Trial) -> dict[str, Any]:

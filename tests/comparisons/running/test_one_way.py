@@ -21,7 +21,6 @@ ELSEWHERE = {
     ("comparisons/lessons/lesson.py", "svg", "savefig"): "into memory",
     ("comparisons/lessons/lesson.py", "downloads", "savefig"): "into memory",
     ("comparisons/commands/run.py", "command", "to_csv"): "into memory",
-    ("comparisons/studies/speed_error/growth.py", "_resident_growth", "write_text"): "a switch of the system's",
     ("comparisons/cli/interrupts.py", "open_streams", "open"): "a standard stream",
     ("comparisons/cli/interrupts.py", "open_streams", "os.open"): "no file: os.devnull",
     ("comparisons/cli/__init__.py", "_silence", "os.open"): "no file: os.devnull",

@@ -32,12 +32,9 @@ from comparisons.studies.caryatid.runs import (
 )
 from comparisons.studies.caryatid.variations import (
     BOTH,
-    DIVISIONS,
     NEITHER,
     ONLY_FREE,
     ONLY_ISOLATED,
-    _cpu_at,
-    _fixed_step,
     _intervals,
     _overlap,
     benefit,
@@ -144,19 +141,6 @@ def test_benefit_map_against_single_runs(short):
             expected = np.nan if isolated.outcome == "overturns" else isolated.peak_base_displacement
             assert displacement[i, k] == pytest.approx(expected, rel=1e-6, nan_ok=True)
     assert len(np.unique(category)) >= 3
-
-
-@pytest.mark.parametrize("law", ["algebraic", "bouc-wen"])
-def test_fixed_step_of_the_cost_claim_solves_the_same_problem(law):
-    scene = caryatid(ISOLATED, synthetic_motion()).with_(bearings={"law": law}, duration=synthetic_motion().end)
-    exact = simulate(scene, history=False)
-    coarse, fine = (abs(_fixed_step(scene, n)[1] - exact.end.base_displacement) for n in (DIVISIONS[0], DIVISIONS[-1]))
-    assert coarse < 1e-4 * exact.peak_base_displacement and fine < 1e-2 * coarse
-
-
-def test_cost_at_an_error_lies_between_the_rungs():
-    errors, cpu = [1e-4, 1e-6, 1e-8], [1.0, 10.0, 100.0]
-    assert [_cpu_at(error, errors, cpu) for error in (1e-3, 1e-5, 1e-9)] == [None, pytest.approx(math.sqrt(10)), None]
 
 
 def test_end_to_end(short, tmp_path):

@@ -12,7 +12,7 @@ from comparisons.showing.parts import where
 from comparisons.studies import get_study
 from comparisons.studies.speed_error import integrators, page
 from comparisons.studies.speed_error.cases import entries, problem_trials
-from comparisons.studies.speed_error.integrators import METHODS, PEERS, PROBLEMS, installed, run_of
+from comparisons.studies.speed_error.integrators import METHODS, PROBLEMS, run_of
 from comparisons.studies.speed_error.study import TICK, measure, plan
 
 # (engine, variant): relative tolerance, and what its error then stays below
@@ -22,16 +22,13 @@ REACHED = {
     ("scipy", "RK45"): (1e-9, 2e-8),
     ("scipy", "LSODA"): (1e-11, 1e-8),
     ("scipy", "Radau"): (1e-6, 1e-5),
-} | dict.fromkeys(PEERS, (1e-12, 1e-9))
+}
 
 
 @pytest.mark.parametrize("problem", PROBLEMS)
 @pytest.mark.parametrize("name", REACHED)
 def test_every_integrator_reaches_the_reference_with_all_impacts(problem, name):
     (engine, variant), (tolerance, most) = name, REACHED[name]
-    if name in PEERS:
-        pytest.importorskip(engine, reason=f"{engine} comes with the extra `peers`")
-        assert name in installed()
     tilt, impacts = run_of(problem, engine, variant, tolerance)()
     assert impacts == PROBLEMS[problem].impacts and PROBLEMS[problem].error(tilt) < most
 
@@ -52,7 +49,7 @@ def few(monkeypatch):
 
 def found(folder):
     """The study's `Result` of the problems, by runs in this process."""
-    asked = plan(Request(quick=True), problem_trials(), grow=False)
+    asked = plan(Request(quick=True), problem_trials())
     return stored(folder, "speed-error", answered(asked, by_runs(folder))[-1])
 
 
@@ -107,13 +104,3 @@ def test_one_scene_alone_is_asked_for_by_its_name(few, tmp_path):
     assert {row["scene"] for row in answered(asked, by_runs(tmp_path))[-1].rows} == {"problem A"}
     with pytest.raises(SettingError, match="--scene problem C: no such scene; give one of free-rigid, .*problem B"):
         next(plan(Request(quick=True), scene="problem C"))
-
-
-def test_a_stored_run_is_known_by_the_version_of_its_peer(monkeypatch):
-    name = next(iter(PEERS))
-    keys = set()
-    for version in ("1.0", "2.0"):
-        monkeypatch.setattr(integrators, "installed", lambda version=version: {name: version})
-        made = entries(problem_trials(), (), True)
-        keys |= {one.case(0).key(measure) for one in made if one.engine == name[0]}
-    assert len(keys) == 2 * len(PROBLEMS) * len(integrators.TOLERANCES[name][1])

@@ -1,4 +1,4 @@
-"""The speed-error study: its errors against known ones, its boundary search, repetition, growth and what is shown."""
+"""The speed-error study: its errors against known ones, its boundary search, repetition and what is shown."""
 
 import dataclasses
 import math
@@ -16,11 +16,9 @@ from comparisons.running.provenance import Result, read_result
 from comparisons.running.study import compute
 from comparisons.showing.parts import COST, Figure, Table, short
 from comparisons.studies import get_study
-from comparisons.studies.speed_error import cold, growth
 from comparisons.studies.speed_error.cases import NEEDED, entries, margin, problem_trials, searched, trials
 from comparisons.studies.speed_error.costs import advice, keeping, level_costs, levels_run, passing
-from comparisons.studies.speed_error.page import LEVELS
-from comparisons.studies.speed_error.share import own_share, seconds_inside
+from comparisons.studies.speed_error.page import LEVELS, fit
 from comparisons.studies.speed_error.study import errors, measure
 from engines import ENGINES, get_engine
 
@@ -140,50 +138,12 @@ def test_a_first_script_is_not_touched_by_other_clients(free):
     assert ends[0] == ends[1]
 
 
-def test_refined_motion_is_the_same_motion(by_name):
-    trial = by_name["isolated-standing"]
-    fine = simulate(growth.sampled(trial.scene, 800), history=False)
-    assert fine.peak_base_displacement == pytest.approx(trial.reference.peak_base_displacement, rel=1e-10)
-
-
-def test_a_run_grows_in_steps_and_not_in_memory(by_name):
-    cases = growth.growth_cases(by_name["isolated-standing"].scene, (), quick=True)[:4]
-    found = [growth.grown(case, case.run()) for case in cases]
-    ends, steps, memory = ([row[key] for row in found] for key in ("end", "steps", "traced_bytes"))
-    assert [case.tag["value"] for case in cases] == ends == [50, 100, 200, 400]
-    assert growth.fit(ends, steps)[0] == pytest.approx(1.0, abs=0.05)
-    assert max(memory) < 1.01 * min(memory)
-
-
 def test_fit_of_a_power():
     x = np.array([1.0, 2.0, 4.0, 8.0])
-    assert growth.fit(x, 5 * x**0.7) == pytest.approx((0.7, 0.0), abs=1e-12)
+    assert fit(x, 5 * x**0.7) == pytest.approx((0.7, 0.0), abs=1e-12)
     # residuals of log 1.1 at every other point: their squares add up to 4/5 of its square
     d = math.log(1.1) / math.log(2.0)
-    assert growth.fit(x, x * [1.0, 1.1, 1.0, 1.1]) == pytest.approx((1 + d / 5, d * math.sqrt(0.8 / 2 / 5)))
-
-
-def test_the_share_is_of_compiled_functions_without_what_they_call_back():
-    """Sorting counts where it compares by itself, not where it calls back."""
-    import _bisect  # a module's function, as those of engines are
-
-    def search():
-        for _ in range(20):
-            _bisect.bisect_left(range(2**62), 1, key=lambda value: sum(range(2000)))
-
-    def plainly():
-        for _ in range(20000):
-            _bisect.bisect_left(range(2**62), 1)
-
-    spent = [(seconds_inside("_bisect", run), seconds_inside("no_such", run)) for run in (search, plainly)]
-    assert all(none == 0 for _, none in spent) and 10 * spent[0][0] < spent[1][0]
-
-
-@pytest.mark.slow  # beside other work the profiled run and the plain one do not get the same machine
-def test_the_share_of_an_engine_is_a_part_of_its_run(free):
-    pytest.importorskip("pybullet")
-    case = Case(free.scene, "pybullet", "fixed-step", {"step": 1e-3, "history": False})
-    assert 0.2 < own_share(case, case.run())["cost"]["share"] < 1
+    assert fit(x, x * [1.0, 1.1, 1.0, 1.1]) == pytest.approx((1 + d / 5, d * math.sqrt(0.8 / 2 / 5)))
 
 
 def row(variant, cpu, error, **other):
@@ -370,17 +330,6 @@ def test_a_script_has_its_own_cost_and_error():
     assert "one level: 3000 ms with an error of 0.040 % (exudyn)." in STUDY.glance(result).says["cost"]
 
 
-def test_growth_is_a_power_with_its_memory():
-    rows = [
-        {"part": "growth", "engine": "analytic", "variant": "kernel", "against": "duration", "value": value,
-         "failure": None, "cpu_seconds": 1e-3 * value, "traced_bytes": 2.0**20, "resident_bytes": None}
-        for value in (1, 2, 4)
-    ]  # fmt: skip
-    (grown,) = cells(result_of(row("a", 1.0, 1e-4), *rows), "exponent [-]")
-    assert (grown["exponent [-]"], grown["exponent of the last two [-]"]) == ("1.00", "1.00")
-    assert (grown["allocated [MiB]"], grown["resident, increase [MiB]"]) == ("1.00, 1.00", "–, –")
-
-
 @pytest.fixture
 def studied(tmp_path_factory, near):
     """The results of a small study, made twice."""
@@ -389,7 +338,7 @@ def studied(tmp_path_factory, near):
         name = f"{entry.engine} {entry.variant}".strip()
         return name in ("analytic kernel", "time-stepping", "pybullet fixed-step")
 
-    given = dict(quick=True, progress=False, repeats=2, scenes=[near], keep=keep, grow=False)
+    given = dict(quick=True, progress=False, repeats=2, scenes=[near], keep=keep)
     folders = (tmp_path_factory.mktemp("speed-error") for _ in range(2))
     return [read_result(file) for folder in folders for file in compute(STUDY, folder, engines=("pybullet",), **given)]
 
@@ -420,26 +369,10 @@ def test_a_script_as_it_is_written_is_a_solver_with_errors_of_its_own(free, name
     assert found.pop("lost") == 0 and 0 < found["restitution"] < 1e-4 and values["cost"]["cpu_seconds"] > 0
 
 
-def test_a_first_run_has_the_outcome_of_a_later_one_and_a_cost(free):
-    case = Case(free.scene, tag={"code": cold.STORED})
-    response = case.run()
-    first = cold.first_run(case, response)
-    assert first["outcome"] == response.outcome and first["cost"]["cpu_seconds"] > 0
-
-
-@pytest.mark.slow  # compiles the model anew
-def test_a_first_run_costs_more_than_a_later_one_and_most_where_all_is_compiled(free):
-    cases = [Case(free.scene, tag={"code": code}) for code in (cold.STORED, cold.ANEW)]
-    response = cases[0].run()
-    stored, anew = (cold.first_run(case, response) for case in cases)
-    assert stored["outcome"] == anew["outcome"] == response.outcome
-    assert response.cpu_seconds < stored["cost"]["cpu_seconds"] < anew["cost"]["cpu_seconds"]
-
-
 def test_what_is_stored_of_a_run_of_an_integrator_has_all_its_errors(tmp_path):
     """Else a run that is done again differs from the one stored."""
     some = [trial for trial in problem_trials() if trial.name == "problem A"]
-    given = dict(quick=True, progress=False, repeats=1, scenes=some, grow=False)
+    given = dict(quick=True, progress=False, repeats=1, scenes=some)
     (path,) = compute(STUDY, tmp_path, engines=(), keep=lambda entry: entry.variant == "DOP853", **given)
     found = [run["values"]["errors"] for run in read_result(path).runs if run["values"].get("errors")]
     assert found and all("lost" in one and len(one) > 1 for one in found)
