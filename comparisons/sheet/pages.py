@@ -93,7 +93,7 @@ def _answers():
         for problem in PROBLEMS
         for one in problem.quantities
     ]
-    return "\n".join([f"# problem sheet, version {VERSION}", "scene,quantity,unit,answer,tolerance", *lines]) + "\n"
+    return "\n".join(["scene,quantity,unit,answer,tolerance", *lines]) + "\n"
 
 
 def _record():
