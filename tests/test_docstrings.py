@@ -16,7 +16,6 @@ import pytest
         "engines",
         "comparisons.showing.plots",
         "comparisons.sheet.pages",
-        "comparisons.sheet.score",
         pytest.param("comparisons.advice.choose", marks=pytest.mark.slow),
         pytest.param("comparisons.measuring.tolerances", marks=pytest.mark.slow),
         pytest.param("comparisons.report.study", marks=pytest.mark.slow),

@@ -49,15 +49,7 @@ BETTER = {
 }
 FORBIDDEN = [(re.compile(rf"\b(?:{pattern})(?!\w)", re.IGNORECASE), better) for pattern, better in BETTER.items()]
 # Stored values and keys, which are not renamed in stored results: strings that are these alone, or name one in quotes.
-STORED = (
-    "tier",
-    "on an edge",
-    "default settings",
-    "finer settings",
-    "impact lost",
-    "let go",
-    "direction turned by 30°",
-)
+STORED = ("tier", "on an edge", "default settings", "finer settings", "let go", "direction turned by 30°")
 NAMES = {  # {file: words} that are names there
     "comparisons/studies/rows.py": {"tier", "impacts lost"},  # lists of columns of stored rows
     "comparisons/studies/stability/study.py": {"tier"},  # a field that becomes such a column

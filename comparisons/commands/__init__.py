@@ -8,7 +8,7 @@ GROUPS = {
     "To run and compare": ("run", "compare", "engines", "script"),
     "To read and learn": ("report", "lessons"),
     "For advice on a scene": ("choose", "margin", "design"),
-    "For makers of engines and codes": ("verify", "sheet", "score"),
+    "For makers of engines and codes": ("verify", "sheet"),
     "For research": ("study",),
     "Input": ("record", "new"),
 }

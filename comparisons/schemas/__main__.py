@@ -6,28 +6,13 @@ from typing import Any
 from ..advice import Choice
 from ..running.files import write_all
 from ..running.provenance import PROJECT_FOLDER
-from ..sheet.score import Score
 from .advice import BearingSearch, Design, Margins
 from .form import schema_of
 from .runs import Comparison, New, Record, Report, Run, Sheet, Verification
 from .study import StudyResult
 
 FOLDER = PROJECT_FOLDER / "comparisons" / "schemas"
-FORMS = (
-    Choice,
-    Comparison,
-    Design,
-    Margins,
-    New,
-    Record,
-    Report,
-    Run,
-    Score,
-    Sheet,
-    StudyResult,
-    BearingSearch,
-    Verification,
-)
+FORMS = (Choice, Comparison, Design, Margins, New, Record, Report, Run, Sheet, StudyResult, BearingSearch, Verification)
 
 
 def schemas() -> dict[str, dict[str, Any]]:

@@ -191,12 +191,14 @@ class Verification(Form):
 
 
 class Asked(Part):
-    """A quantity asked for; scale: by what its error is divided, in its unit; 1 for a word."""
+    """A quantity asked for, and the reference answer. tolerance: by how much another code's answer may differ, in the
+    unit; null for a word, which must be the same."""
 
     quantity: str
     unit: str
     meaning: str
-    scale: float
+    answer: float | str
+    tolerance: float | None
 
 
 class Problem(Part):
@@ -210,7 +212,7 @@ class Problem(Part):
 class Sheet(Form):
     """A problem sheet written. sheet: its version."""
 
-    schema_: str = Field(default="rocking sheet 1", serialization_alias="schema")
+    schema_: str = Field(default="rocking sheet 2", serialization_alias="schema")
     sheet: int
     files: list[str]
     problems: list[Problem]

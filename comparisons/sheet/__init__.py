@@ -1,5 +1,4 @@
-"""The problem sheet for other codes: scenes stated as equations and numbers, and scores of answers.
+"""The problem sheet for other codes: scenes stated as equations and numbers, with reference answers.
 
-`problems` holds the scenes and what is asked of each, `pages` puts them into words, `variants` solves them here and
-computes what known mistakes would give, `score` reads a file of answers and compares.
+`problems` holds the scenes, what is asked of each and the answers; `pages` puts them into words.
 """

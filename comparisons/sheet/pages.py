@@ -1,4 +1,4 @@
-"""The sheet as files: a page a problem in Markdown and HTML, the record, and an empty file for the answers."""
+"""The sheet as files: a page a problem in Markdown and HTML, the record, and a table of all reference answers."""
 
 import re
 from html import escape
@@ -13,38 +13,35 @@ from analytic import SampledMotion
 from ..running.files import write_all
 from ..showing.parts import templates
 from ..showing.wording import indexed
-from .problems import COLUMNS, DAMPING, PERIOD, PROBLEMS, SCALES, UNITS, VERSION, Problem, record
+from .problems import DAMPING, PERIOD, PROBLEMS, SCALES, TOLERANCE, UNITS, VERSION, Problem, record
 
 TEMPLATES = templates(Path(__file__).parent / "templates")
 TITLE = "Rocking blocks: reference problems for other codes"
 POWER = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)e([-+]?)0*(\d+)(?!\w)")
-ANSWERS, RECORD_FILE = "answers.csv", "record.csv"
+ANSWERS, RECORD_FILE = "reference.csv", "record.csv"
 
 
 def write_sheet(folder: Path) -> list[Path]:
     """Write the sheet into `folder`; returns the paths written, the first to be read first.
 
-    Answers that are there already are kept.
-
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     [path.name for path in write_sheet(Path(folder))][:3]
-    ['index.md', 'index.html', 'answers.csv']
+    ['index.md', 'index.html', 'reference.csv']
     """
     index = {
-        kind: _text("index", kind=kind, title=TITLE, version=VERSION, problems=PROBLEMS) for kind in ("md", "html")
+        kind: _text("index", kind=kind, title=TITLE, version=VERSION, problems=PROBLEMS, answers=ANSWERS)
+        for kind in ("md", "html")
     }
     files = {
         "index.md": index["md"],
         "index.html": _html(TITLE, index["html"]),
-        ANSWERS: _empty_answers(),
+        ANSWERS: _answers(),
         f"inputs/{RECORD_FILE}": _record(),
     }
     for problem in PROBLEMS:
         text = markdown(problem)
         files |= {f"{problem.name}.md": text, f"{problem.name}.html": _html(problem.title, text)}
-    if (folder / ANSWERS).exists():
-        del files[ANSWERS]
     return write_all(folder, files)
 
 
@@ -59,6 +56,7 @@ def markdown(problem: Problem) -> str:
         damping=DAMPING,
         units=UNITS,
         scales=SCALES,
+        tolerance=TOLERANCE,
     )
 
 
@@ -89,10 +87,13 @@ MARKDOWN = MarkdownIt().enable("table")
 MARKDOWN.add_render_rule("code_block", _equations)
 
 
-def _empty_answers():
-    lines = [f"# problem sheet, version {VERSION}", ",".join(COLUMNS)]
-    lines += [f"{problem.name},{one.name}," for problem in PROBLEMS for one in problem.quantities]
-    return "\n".join(lines) + "\n"
+def _answers():
+    lines = [
+        f"{problem.name},{one.name},{UNITS[one.kind]},{problem.answers[one.name]},{problem.tolerance(one) or ''}"
+        for problem in PROBLEMS
+        for one in problem.quantities
+    ]
+    return "\n".join(["scene,quantity,unit,answer,tolerance", *lines]) + "\n"
 
 
 def _record():

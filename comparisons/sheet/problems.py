@@ -1,18 +1,35 @@
-"""The scenes of the sheet, and what is asked of each."""
+"""The scenes of the sheet, what is asked of each, and the reference answers."""
 
+import functools
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start, synthetic_motion
+import numpy as np
 
-COLUMNS = ("scene", "quantity", "value")
+from analytic import (
+    Base,
+    Bearings,
+    Block,
+    PulseMotion,
+    Response,
+    SampledMotion,
+    Scene,
+    Start,
+    simulate,
+    synthetic_motion,
+)
+
 VERSION = 1  # of the scenes and quantities: answers to another sheet are answers to other questions
+TIGHTEST = 1e-16  # tolerance of the model's run
+HISTORY_STEP = 1e-3  # s, of which every time asked for is a multiple
+DIGITS = 12  # of an answer; it is known to 1e-10 of its scale
+TOLERANCE = 1e-3  # of the scale: by so much may another code's answer differ
 RECORD_SAMPLES = 1601  # of the synthetic motion: its first 8 s
 DAMPING = 0.15  # of the linear bearings, as a share of critical damping
 PERIOD = 2.0  # s, of the linear bearings under block and base
-# By kind of quantity: its unit, and the scale of its error in symbols.
+# By kind of quantity: its unit, and its scale in symbols.
 UNITS = {"time": "s", "angle": "rad", "rate": "rad/s", "length": "m", "speed": "m/s", "force": "N", "outcome": "a word"}
 SCALES = {
     "time": "1/ω_r",
@@ -21,7 +38,7 @@ SCALES = {
     "length": "R γ",
     "speed": "R γ ω_r",
     "force": "(m + m_b) g γ",
-    "outcome": "1 if another",
+    "outcome": "–",
 }
 
 
@@ -51,31 +68,39 @@ class Problem:
     scene: Scene
     quantities: tuple[Quantity, ...]
 
-    @property
-    def times(self) -> tuple[float, ...]:
-        """Times [s] at which a state is asked for, in order."""
-        return tuple(sorted({one.index for one in self.quantities if one.source in STATE}))
+    @functools.cached_property
+    def answers(self) -> dict[str, float | str]:
+        """{quantity: reference answer, in its unit}: those of the analytic model, to `DIGITS` digits."""
+        response = simulate(self.scene, tolerance=TIGHTEST, output_step=HISTORY_STEP)
+        return {one.name: _shown(one, response) for one in self.quantities}
 
-    def when(self, quantity: Quantity, right: Mapping[str, Any]) -> float | None:
-        """Time [s] in the run to which an answer belongs, by the exact answers; None for one of the whole run."""
-        if quantity.source in STATE:
-            return quantity.index
-        if quantity.source in IMPACT:
-            return right.get(IMPACT["time"][0].format(quantity.index))
-        return right.get(quantity.name) if quantity.kind == "time" else None
-
-    def scale(self, quantity: Quantity) -> float:
-        """What an error of a quantity is divided by, in its unit; `SCALES` says the same in symbols."""
+    def tolerance(self, quantity: Quantity) -> float | None:
+        """By how much another code's answer may differ, in the quantity's unit: `TOLERANCE` of its scale, which
+        `SCALES` says in symbols; None for a word."""
         block, omega = self.scene.block, self.scene.rocking_frequency
-        return {
+        scales = {
             "time": 1 / omega,
             "angle": block.slenderness,
             "rate": block.slenderness * omega,
             "length": block.radius * block.slenderness,
             "speed": block.radius * block.slenderness * omega,
             "force": self.scene.total_mass * self.scene.gravity * block.slenderness,
-            "outcome": 1.0,
-        }[quantity.kind]
+        }
+        return TOLERANCE * scales[quantity.kind] if quantity.kind in scales else None
+
+
+def _shown(quantity: Quantity, response: Response) -> float | str:
+    """What a run with a history shows of a quantity: a word, or a number to `DIGITS` digits."""
+    found: Any
+    if quantity.source in STATE:
+        time, values = (getattr(response.history, name) for name in ("time", quantity.source))
+        found = np.interp(quantity.index, time, values)
+    elif quantity.source in IMPACT:
+        found = getattr(response.impacts[int(quantity.index) - 1], quantity.source)
+    else:
+        found = getattr(response, quantity.source)
+        found = found[0] if isinstance(found, tuple) else found  # of uplifts and rests, the first
+    return found if isinstance(found, str) else float(f"{found:.{DIGITS}g}")
 
 
 # By source: name, kind and words, of the impact of a number or the state at a time [s].

@@ -77,7 +77,6 @@ QUESTIONS = {
     ),
     "constants": "Each number that was chosen in an engine's variant, halved and doubled: what moves?",
     "mistakes": "Scripts of a rocking block in an engine's plain calls, each with one mistake: what does it cost?",
-    "sheet": "The problem sheet in every engine: what rocking score ranks other codes beside.",
 }
 BUILT_IN = tuple(QUESTIONS)
 # What a study.py may have beside its plan: {its name there: the field of `Study`}.

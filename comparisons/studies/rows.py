@@ -135,7 +135,6 @@ ROWS = {
         "run": """engine variant scene mistake? done? group? expected outcome reason? error? energy? graph?
             displacement? steps?"""
     },
-    "sheet": {"scene": "scene engine variant error? missing warnings failure?"},
 }
 
 

@@ -343,11 +343,6 @@ OWN: dict[str, dict[str, Explained]] = {
         "displacement": number("largest difference of the base displacement, as long", "peak of the model's"),
         "steps": whole("steps of the run"),
     },
-    "sheet": {
-        "error": number("largest of the scene's answers, over the scale of each"),
-        "missing": series("answers that the run does not give"),
-        "warnings": series("of the run"),
-    },
 }
 
 

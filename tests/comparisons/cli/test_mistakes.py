@@ -131,7 +131,7 @@ MISTAKES = {
 }
 READERS = (
     *(("run", "FILE"), ("compare", "FILE"), ("choose", "FILE"), ("margin", "FILE"), ("report", "FILE")),
-    *(("record", "FILE"), ("report", "--record", "FILE"), (*BUST, "--record", "FILE"), ("score", "FILE")),
+    *(("record", "FILE"), ("report", "--record", "FILE"), (*BUST, "--record", "FILE")),
     *(("study", "restitution", "--replot", "FILE"), ("study", "fragility", "--replot", "FILE")),
 )
 

@@ -28,7 +28,6 @@ COMMANDS = {
     "lessons": ("lessons",),
     "record": ("record", "records/made0_E.csv"),
     "verify": ("verify", "--engine", "exudyn"),
-    "score": ("score", "answers.csv"),
     "new": ("new", "new.toml", "--height", "1.9", "--width", "0.55", "--mass", "1000"),
 }
 SLIDES = """friction = 0.4
@@ -54,8 +53,6 @@ def place(tmp_path, monkeypatch):
     (tmp_path / "slides.toml").write_text(SLIDES)
     (tmp_path / "records").mkdir()
     pairs(tmp_path / "records", 1)
-    answer = "scene,quantity,value\nfree-rigid,outcome,rocks\nfree-rigid,impact_time_1,0.31\n"
-    (tmp_path / "answers.csv").write_text(answer)
     monkeypatch.setattr(tolerances, "TABLE", [row for row in tolerances.TABLE if row.engine == "exudyn"][:2])
     return tmp_path
 

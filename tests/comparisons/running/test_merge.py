@@ -197,7 +197,6 @@ SMALL: dict[str, dict[str, Any]] = {
     "fragility": {"scenes": {"free-standing": ("caryatid-rigid", (0.15, 0.3))}, "runs": (40, 3, 1)},
     "sensitivity": {"scenes": {"free-standing": ("caryatid-rigid", (0.2,))}, "motions": (8, 2, 1)},
     "autopsy": {},
-    "sheet": {},
     "mistakes": {},
 }
 OF_MOTIONS_OR_TOLERANCES = ("recorded", "tolerances")  # a row of an engine there is made of its own run alone

@@ -42,7 +42,6 @@ SHORT = {
     "fragility": {"scenes": {"free-standing": ("caryatid-rigid", (0.2, 0.3))}, "runs": (40, 6, 2)},
     "sensitivity": {"scenes": {"free-standing": ("caryatid-rigid", (0.2,))}, "motions": (3, 1, 1)},
     "autopsy": {},
-    "sheet": {},
     "random-scenes": {"seed": 1},
     "sliding": {"seed": 1, "scenes": 80},
     "stability": {"names": ("uplift 0.99", "critical pulse +0.01")},
@@ -88,11 +87,11 @@ def rows_with(section):
 def test_a_study_runs_and_shows_it(crude, tmp_path, name):
     study = get_study(name)
     more = {"scenes": [near_overturning("one-sine")]} if name == "speed-error" else {}
-    as_model = name in ("fragility", "sensitivity", "sheet")
-    run = by_model(history=name == "sheet") if as_model else by_runs(tmp_path)
+    as_model = name in ("fragility", "sensitivity")
+    run = by_model() if as_model else by_runs(tmp_path)
     found = answered(study.plan(ASK, **SHORT[name], **more), run)[-1]
     section = shown(study, found, tmp_path)
-    assert rows_with(section) and (name in ("stability", "sheet") or drawn(section))  # which show words alone
+    assert rows_with(section) and (name == "stability" or drawn(section))  # which shows words alone
     # the fake may blow up under scenes of any kind
     assert name in ("random-scenes", "sliding") or not [row for row in found.rows if row.get("failure")]
 
@@ -116,7 +115,7 @@ def failing(**options):
 def test_runs_of_it_that_fail_make_rows_that_are_declared_and_shown(crude, tmp_path, name):
     study = get_study(name)
     more = {"scenes": [near_overturning("one-sine")]} if name == "speed-error" else {}
-    found = answered(study.plan(ASK, **SHORT[name], **more), failing(history=name == "sheet"))[-1]
+    found = answered(study.plan(ASK, **SHORT[name], **more), failing())[-1]
     study.page(stored(tmp_path, name, found)).whole()
 
 
