@@ -19,7 +19,7 @@ from engines import get_engine, installed_engines
 RIGID = load_scene("free-rocking-rigid")
 GIVEN = RIGID.with_(block={"restitution": 0.7})
 STANDING = next(one.scene for one in PROBLEMS if one.name == "isolated-standing")
-ENGINE, VARIANT = "exudyn", "switched-joints"
+ENGINE, VARIANT = "pybullet", "fixed-step"
 
 
 def row(error, cpu=1.0, failure=None):
