@@ -28,6 +28,13 @@ if TYPE_CHECKING:
 # where (f - 1) b |phi'| exceeds g `acts`: at f = 1.02 e is off by up to .06, at 1.05 by up to .4.
 LEAST, MOST = 0.1, 1.0
 FRICTION = 5.0  # coefficient in every tuned variant where the scene gives none, at least: no sliding
+ALONE = "or run the analytic model, which takes any up to 1: `rocking run SCENE` without --engine"
+
+
+def reached(scene: Scene) -> bool:
+    """Whether a couple gives the restitution that a scene asks for, if it does."""
+    given, own = scene.block.restitution, momentum_restitution(scene)
+    return given is None or own > 0 and LEAST * own <= given <= MOST * own
 
 
 def share_of(scene: Scene) -> float | None:
@@ -41,13 +48,13 @@ def share_of(scene: Scene) -> float | None:
     given, own = scene.block.restitution, momentum_restitution(scene)
     if given is None:
         return None
-    if not (own > 0 and LEAST * own <= given <= MOST * own):
+    if not reached(scene):
         raise SceneError(
             "block.restitution",
             given,
             f"{'above' if given > MOST * own else 'below'} what a couple before each landing reaches, {LEAST:g} to "
             f"{MOST:g} times the {own:.6g} of eq. (7)",
-            "give one between, leave it out, or use the analytic model",
+            f"give one between, leave it out, {ALONE}",
         )
     return given / own
 

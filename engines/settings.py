@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from analytic.errors import SceneError, SettingError
 
+from .couple import ALONE, reached
+
 if TYPE_CHECKING:
     from analytic import Scene
 
@@ -47,11 +49,14 @@ def choose(engine: Engine, variant: str | None, changes: Mapping[str, Any]) -> t
 def refuse_restitution(engine: Engine, scene: Scene) -> None:
     """Raise `SceneError` where a scene gives the restitution and the engine computes the impact itself."""
     if scene.block.restitution is not None:
-        able = [name for name, variant in engine.variants.items() if variant.takes_restitution]
-        remedy = f"use the variant {able[0]}" if able else "use the analytic model"
+        able = [
+            name
+            for name, variant in engine.variants.items()
+            if variant.takes_restitution and (variant.applies_impact or reached(scene))
+        ]
         raise SceneError(
             "block.restitution",
             scene.block.restitution,
             "a contact engine computes the impact itself",
-            f"leave it out, or {remedy}",
+            f"leave it out, use the variant {able[0]}, {ALONE}" if able else f"leave it out, {ALONE}",
         )

@@ -12,9 +12,6 @@ from engines import ENGINES, get_engine
 
 PULSE = PulseMotion("one-sine", 6.0, 4.0)
 
-# Held to the analytic model beside the tuned default variants.
-ALSO_ACCURATE = {("exudyn", "switched-joints")}
-
 
 def cases(keep):
     """A pytest parameter (engine, variant) for each that `keep` takes; one that is skipped for an absent engine."""
@@ -36,10 +33,9 @@ default_variant = pytest.mark.parametrize(
 
 
 def accurate(name, variant):
-    """Whether a variant is held to the analytic model: a default one that is tuned, or one of `ALSO_ACCURATE`."""
+    """Whether a variant is held to the analytic model: a default one that is tuned."""
     engine = get_engine(name)
-    tuned = variant == engine.default_variant and engine.variants[variant].kind == "tuned"
-    return tuned or (name, variant) in ALSO_ACCURATE
+    return variant == engine.default_variant and engine.variants[variant].kind == "tuned"
 
 
 accurate_variant = pytest.mark.parametrize(

@@ -146,7 +146,7 @@ def rows(engine: str, variant: str | None = None) -> tuple[Tolerance, ...]:
 
     Examples
     --------
-    >>> row = rows("exudyn", "switched-joints")[0]
+    >>> row = rows("exudyn")[0]
     >>> row.check() <= row.bound
     True
     """

@@ -53,9 +53,7 @@ QUESTIONS = {
     "autopsy": "One impact in every engine and variant, taken apart: the parts of its error and their cause.",
     "overturning": "Overturning boundaries under pulses, on rigid ground and isolated, solver by solver.",
     "recorded": "Recorded motions: does an engine overturn the blocks that the analytic model overturns?",
-    "fragility": (
-        "Fragility over intensity: which measure tells most, does a lognormal curve fit, does the engine shift it?"
-    ),
+    "fragility": "Fragility over intensity: does a lognormal curve fit, and does the engine shift it?",
     "shake-table": "Blocks that were really shaken: what do the model, the engines and simpler measures predict?",
     "surface": "Probability of overturning over intensity and slenderness, from a million runs of the analytic model.",
     "sensitivity": (

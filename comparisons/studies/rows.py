@@ -49,7 +49,6 @@ ROWS = {
         "drawn edge": f"{EDGE} slenderness radius base_mass? law? period?",
         "shift": BOUNDARY,
         "drawn shift": BOUNDARY,
-        "held": BOUNDARY,
         "refinement": BOUNDARY,
         "confusion": """engine variant level ground region both_stand both_overturn only_a only_b kappa? kappa_low?
             kappa_high?""",
@@ -67,11 +66,11 @@ ROWS = {
     },
     "fragility": {
         "fit": """scene state measure size exceeded points median? dispersion? median_interval? dispersion_interval?
-            p_value? reason? best ratio_interval?""",
+            p_value? reason?""",
         "check": "scene engine variant runs undecided failed",
         "run": "scene engine variant seed comparable class quantities? model_overturns overturns?",
         "cost": "scene engine variant runs cpu_per_run?",
-        "effect": """scene engine variant state left_out measure? both_stand both_overturn only_a only_b p_value
+        "effect": """scene engine variant state left_out measure both_stand both_overturn only_a only_b p_value
             difference detectable_difference? median_shift? median_interval? dispersion_shift? dispersion_interval?
             detectable_shift? reason? p_holm""",
         "failure": "scene engine variant seed kind reason message",
@@ -97,7 +96,7 @@ ROWS = {
     "surface": {"half": "engine variant slenderness half? interval falls_by widest"},
     "sensitivity": {
         "change": f"scene engine variant change? failed to_overturning? p_value? tilt? displacement? {CHANGED}",
-        "vertical": f"scene faster ratio lifts_off sliding {CHANGED}",
+        "vertical": f"scene faster ratio lifts_off {CHANGED}",
     },
     "random-scenes": {"": "engine variant tier index class comparable | differences quantities"},
     "sliding": {

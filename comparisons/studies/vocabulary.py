@@ -80,8 +80,6 @@ OWN: dict[str, dict[str, Explained]] = {
         "median_interval": series(INTERVAL.format("the median, or of its shift"), "of the measure, or -"),
         "dispersion_interval": series(INTERVAL.format("the dispersion, or of its shift")),
         "p_value": number("of the curve's fit, or of McNemar's exact test of the outcomes"),
-        "best": flag("whether the measure has the least dispersion of its state"),
-        "ratio_interval": series(INTERVAL.format("the dispersion over that of the best measure")),
         "undecided": whole("runs that ended before their outcome was certain"),
         "cpu_per_run": number("CPU time: mean", "s"),
         "left_out": whole("runs that failed in one of the two"),
@@ -131,7 +129,6 @@ OWN: dict[str, dict[str, Explained]] = {
         "faster": whole("how many times as fast as the horizontal motion the vertical one is"),
         "ratio": number("peak vertical over peak horizontal acceleration"),
         "lifts_off": whole("runs in which N reaches zero"),
-        "sliding": table("{coefficient of friction: runs that need more}"),
     },
     "speed-error": {
         "model": word("how the engine's model stands for the scene"),

@@ -14,14 +14,13 @@ from analytic.response import Failure, State
 
 from ..checks import replay_bearing
 from ..contract import Variant
-from . import calls, corners, joints, native
+from . import calls, corners, native
 from .constants import CONSTANTS
 
 if TYPE_CHECKING:
     from analytic import Scene
 
     from ..contract import Run
-    from .joints import SwitchedJoints
     from .native import NativeContact
     from .sizing import CompliantCorners
 
@@ -30,8 +29,8 @@ REPLAY_LIMIT = 1e-9
 
 LOADS = "ground: its acceleration at the step's end"
 CHORD = "bearings: within a step a spring along the law's chord"
-_MODULES = {"compliant-corners": corners, "switched-joints": joints, "native-contact": native}
-TUNED, SWITCHED, NATIVE = corners.CompliantCorners(), joints.SwitchedJoints(), native.NativeContact()
+_MODULES = {"compliant-corners": corners, "native-contact": native}
+TUNED, NATIVE = corners.CompliantCorners(), native.NativeContact()
 # Such an impact lasts, and the block slides meanwhile; stiffer corners or shorter steps change nothing, a tenth of
 # `rebound` or `slip` leaves .3 to .9 of the error. Among 264 drawn scenes with vertical motion that slip by 1e-4 R or
 # more, the largest slip is off by 3e-5 in the median, by more than 2 % (and 1e-4 R) in 4.
@@ -64,17 +63,6 @@ VARIANTS = {
         "restitution given: a couple before each landing",
         faults=SLIDES_INTO_IMPACTS,
     ),
-    "switched-joints": Variant(
-        SWITCHED,
-        kind="assisted",
-        calls=calls.switched_joints(SWITCHED),
-        levels=(1.6e-2, 4e-3, 1e-3),
-        finer=({"step": 1e-4},),
-        takes_restitution=True,
-        computes="motion between events",
-        imposes=f"uplift, impact by eqs (7) and (8), rest; a plane; {LOADS}; {CHORD}",
-        faults="its corners are joints and never slide, whatever the friction of the scene",
-    ),
     "native-contact": Variant(
         NATIVE,
         kind="defaults",
@@ -93,7 +81,7 @@ def versions() -> dict[str, str]:
     return {"exudyn": version("exudyn"), "python": platform.python_version()}
 
 
-def run(scene: Scene, variant: str, settings: CompliantCorners | SwitchedJoints | NativeContact) -> Run:
+def run(scene: Scene, variant: str, settings: CompliantCorners | NativeContact) -> Run:
     """The `Run` of a scene.
 
     Raises

@@ -9,7 +9,6 @@ from . import phases
 from .sizing import MEASURED
 
 if TYPE_CHECKING:
-    from .joints import SwitchedJoints
     from .native import NativeContact
     from .sizing import CompliantCorners
 
@@ -28,13 +27,6 @@ BODIES = {
 QUICKER = {
     f"settings.timeIntegration.explicit.{name} = False": "a step takes less time"
     for name in ("useLieGroupIntegration", "eliminateConstraints", "computeEndOfStepAccelerations")
-}
-EQUAL = {
-    **QUICKER,
-    "settings.timeIntegration.solverType = DynamicSolverType.TrapezoidalIndex2": "",
-    "settings.timeIntegration.generalizedAlpha.useNewmark = True": "",
-    "settings.timeIntegration.generalizedAlpha.useIndex2Constraints = True": "",
-    "settings.timeIntegration.automaticStepSize = False": "",
 }
 
 
@@ -83,19 +75,6 @@ def compliant_corners(settings: CompliantCorners) -> dict[str, str]:
     }
 
 
-def switched_joints(settings: SwitchedJoints) -> dict[str, str]:
-    """Calls of switched-joints."""
-    return {
-        **BODIES,
-        "ObjectJointRevolute2D(activeConnector=on_it)": "of each corner, while the block is on it",
-        "ObjectConnectorCoordinate(activeConnector=stands)": "of the rotation and the ground, while the block stands",
-        **EQUAL,
-        "settings.timeIntegration.adaptiveStep = False": "",
-        f"settings.timeIntegration.numberOfSteps = ceil((end - start) / {settings.step:g})": "from one event to the "
-        "next; the adapter sets the velocities after each",
-    }
-
-
 def native_contact(settings: NativeContact) -> dict[str, str]:
     """Calls of native-contact."""
     return {
@@ -104,7 +83,11 @@ def native_contact(settings: NativeContact) -> dict[str, str]:
         f"{settings.stiffness:g}, contactDamping={2 * settings.damping:g} * sqrt({settings.stiffness:g} * m), "
         f"dynamicFriction={settings.friction:g}, frictionProportionalZone={settings.slip_speed:g})": "of each corner; "
         "mu of a scene that gives mu",
-        **EQUAL,
+        **QUICKER,
+        "settings.timeIntegration.solverType = DynamicSolverType.TrapezoidalIndex2": "",
+        "settings.timeIntegration.generalizedAlpha.useNewmark = True": "",
+        "settings.timeIntegration.generalizedAlpha.useIndex2Constraints = True": "",
+        "settings.timeIntegration.automaticStepSize = False": "",
         "settings.timeIntegration.newton.useModifiedNewton = False": "",
         f"settings.timeIntegration.numberOfSteps = ceil((end - start) / {settings.step:g})": "",
     }

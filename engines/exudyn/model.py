@@ -50,14 +50,10 @@ class Bearing:
         """Move the history to an accepted displacement; the hysteretic force there."""
         if self.law.unit.memory:
             ahead = x - self.x
-            self.restore(mbs, x, self.law.hysteretic(self.z, ahead), ahead)
+            self.x, self.z = x, self.law.hysteretic(self.z, ahead)
+            for name, value in self.spring(ahead or LEAST).items():
+                mbs.SetObjectParameter(self.connector, name, value)
         return self.z
-
-    def restore(self, mbs: exu.MainSystem, x: float, z: float, ahead: float = 0.0) -> None:
-        """Set the history to that of a step."""
-        self.x, self.z = x, z
-        for name, value in self.spring(ahead or LEAST).items():
-            mbs.SetObjectParameter(self.connector, name, value)
 
 
 def _strengths(kept: float) -> tuple[float, float]:

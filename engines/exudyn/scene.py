@@ -40,7 +40,7 @@ def standing_until(scene: Scene) -> float:
     return min(scene.motion.start, scene.duration) if scene.motion and scene.start == Start() else 0.0
 
 
-def build(scene: Scene, deflected: Sequence[float] = (0.0, 0.0, 0.0)) -> Model:
+def build(scene: Scene, deflected: Sequence[float]) -> Model:
     """The `Model` of a scene without contact. A standing block is `deflected` by what carries it [m, m, rad]."""
     start, (x, z, across, up) = scene.start, placement(scene)
     dx, dz, turn = deflected = (0.0, 0.0, 0.0) if start.tilt or start.tilt_rate else deflected

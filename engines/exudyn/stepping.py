@@ -24,7 +24,7 @@ from .scene import read_back
 if TYPE_CHECKING:
     from analytic import Scene
 
-    from .model import Bearing, Model
+    from .model import Model
 
 OVERTURNED = math.pi / 2
 
@@ -137,8 +137,7 @@ def step_through(
             "the run took too many steps",
             f"{limit} steps reached t = {steps.times[-1]:.9g} s of {scene.duration:.9g} s",
         )
-    q, v = np.split(np.asarray(steps.states).reshape(-1, 2 * steps.width), 2, axis=1)
-    trace = make_trace(scene, np.asarray(steps.times), q, v, steps.forces, model.bearing, contact_tilt, settle)
+    trace = _trace(model, steps, contact_tilt, settle)
     ended = "overturned" if trace is not None and abs(trace.tilt[-1]) >= OVERTURNED else None
     return Run(trace, len(steps.times) - 1, cpu, failure, ended)
 
@@ -218,22 +217,15 @@ def check(model: Model) -> None:
         raise Mismatch("; ".join(wrong))
 
 
-def make_trace(
-    scene: Scene,
-    t: np.ndarray,
-    q: np.ndarray,
-    v: np.ndarray,
-    z: array,
-    bearing: Bearing | None,
-    contact_tilt: float,
-    settle: float,
-) -> Trace | None:
+def _trace(model: Model, steps: Steps, contact_tilt: float, settle: float) -> Trace | None:
     """The `Trace` of the recorded steps, or None where there are fewer than two."""
+    t, z, bearing = np.asarray(steps.times), steps.forces, model.bearing
+    q, v = np.split(np.asarray(steps.states).reshape(-1, 2 * steps.width), 2, axis=1)
     if bearing:
         t, q, v = t[: len(z)], q[: len(z)], v[: len(z)]  # without a step whose history was not committed
     if len(t) < 2:
         return None
-    x, speed = (q[:, 3], v[:, 3]) if scene.base else (np.zeros_like(t), np.zeros_like(t))
+    x, speed = (q[:, 3], v[:, 3]) if model.scene.base else (np.zeros_like(t), np.zeros_like(t))
     force = bearing.law.force(x, np.asarray(z), speed) if bearing else np.zeros_like(t)
     centre = np.column_stack([q[:, :2], v[:, :2]])
     return Trace(t, -q[:, 2], -v[:, 2], x, speed, force, contact_tilt, settle, centre)

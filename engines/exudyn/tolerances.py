@@ -5,7 +5,6 @@ from ..tolerance_rows import HELD, READING, ROUNDING, ToleranceRow
 # A jump of the ground's acceleration errs as the others only where the block is at rest from the start until then; see
 # `sizing.CompliantCorners`.
 STIFFNESS = "contact stiffness; goes as its inverse"
-SQUARE = "step squared; the impact is the model's own"
 
 TOLERANCES = {
     "compliant-corners": (
@@ -35,13 +34,6 @@ TOLERANCES = {
         ToleranceRow("bearing impulse in the motion", "isolated Caryatid, synthetic motion", 8e-6, 4.11e-6, READING),
         ToleranceRow("corner lift at rest", "60 s of shaking below uplift, rigid ground", 2.8e-7, 1.40e-7, HELD),
         ToleranceRow("base drift at rest", "60 s of shaking below uplift, on bearings", 1.5e-6, 9.98e-7, HELD),
-    ),
-    "switched-joints": (
-        ToleranceRow("restitution, rms", "rigid ground, slenderness 0.2", 8e-10, 4.03e-10, SQUARE),
-        ToleranceRow("restitution, rms", "sliding base, slenderness 0.2", 4.6e-9, 2.35e-9, SQUARE),
-        ToleranceRow("base velocity jump, rms", "sliding base, slenderness 0.2", 4.3e-9, 2.19e-9, SQUARE),
-        ToleranceRow("bearing force replayed", "rocking on bearings, one-sine", 1e-9, 9.4e-14, ROUNDING),
-        ToleranceRow("bearing impulse in the motion", "rocking on bearings, one-sine", 1.2e-5, 6.37e-6, READING),
     ),
     "native-contact": (
         ToleranceRow(

@@ -34,10 +34,10 @@ def names_in(source):
     [
         'ENGINES = ("exudyn", "pybullet")',
         'if "mujoco" in engines: pass',
-        'JOINTS = "exudyn, switched-joints"',
+        'CORNERS = "exudyn, compliant-corners"',
         'TITLE = "Phase of the step (PyBullet)"',
         'words = f"in exudyn {number}"',
-        'apart = variant == "switched-joints"',
+        'apart = variant == "compliant-corners"',
         "from engines.pybullet import scene",
         "import mujoco",
     ],

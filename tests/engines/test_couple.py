@@ -9,7 +9,7 @@ from analytic import PulseMotion, load_scene, simulate
 from analytic.errors import SceneError
 from analytic.rocking import RockingModel, momentum_restitution
 from engines import ENGINES, get_engine
-from engines.couple import Couple, holding
+from engines.couple import ALONE, Couple, holding
 from engines.scripting import write_script
 
 # rms of e/given - 1 over impacts faster than .06 of the fastest
@@ -56,11 +56,19 @@ def test_what_a_couple_does_not_reach_is_refused_by_engine_and_script_alike(engi
     pytest.importorskip(engine)
     scene = released("isolated", 0.2, kept)
     given, own = scene.block.restitution, momentum_restitution(scene)
-    words = f"block.restitution = {given!r}: {why} what a couple .*, 0.1 to 1 times the {own:.6g} of eq"
+    words = f"block.restitution = {given!r}: {why} what a couple .*, 0.1 to 1 times the {own:.6g} of eq.*{ALONE}"
     for run in (get_engine(engine).simulate, lambda scene: write_script(ENGINES["exudyn"], scene)):
         with pytest.raises(SceneError, match=words):
             run(scene)
     assert simulate(scene).outcome == "rocks"  # the model takes any
+
+
+@pytest.mark.parametrize("kept, remedy", [(0.9, f"use the variant impact-aware, {ALONE}"), (1.01, ALONE)])
+def test_a_variant_that_takes_none_names_one_that_does_where_there_is_one(kept, remedy):
+    pytest.importorskip("pybullet")
+    with pytest.raises(SceneError) as caught:
+        get_engine("pybullet").simulate(released("rigid", 0.2, kept), variant="fixed-step")
+    assert str(caught.value).endswith(f"the impact itself; leave it out, {remedy}")
 
 
 @every_engine

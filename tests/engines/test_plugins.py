@@ -11,6 +11,7 @@ from installed_package import FAKE_ENGINE, install, install_fake_engine
 import engines
 from analytic import load_scene
 from analytic.errors import EngineBroken, EngineNotInstalled
+from analytic.rocking import momentum_restitution
 from engines.guard import raised
 from engines.plugins import find_engines
 from engines.simulating import Simulator
@@ -71,6 +72,15 @@ if __name__ == "__main__":
 """)
     done = python(folder, program)
     assert done.returncode == 0, done.stderr
+
+
+def test_an_assisted_variant_takes_a_restitution_that_no_couple_reaches(folder, monkeypatch):
+    monkeypatch.syspath_prepend(folder)
+    engine = Simulator.of(find_engines(engines.BUILT_IN)[0]["crude"])
+    scene = load_scene("free-rocking-rigid").with_(duration=2.0)
+    for given in (0.5 * momentum_restitution(scene), 0.5 + 0.5 * momentum_restitution(scene)):
+        first = engine.simulate(scene.with_(block={"restitution": given})).impacts[0]
+        assert first.rate_after / first.rate_before == pytest.approx(given, abs=1e-3)
 
 
 def test_the_commands_know_it(folder):

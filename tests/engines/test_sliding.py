@@ -113,15 +113,6 @@ def test_an_impact_may_turn_the_energy_of_the_slip_into_rotation(engine, room):
     assert run.impacts[0].rate_after == pytest.approx(model.rate_after, rel=room)
 
 
-def test_a_block_on_joints_is_said_not_to_slide_and_does_not():
-    needs("exudyn")
-    engine = get_engine("exudyn")
-    run = engine.simulate(SLIDES, variant="switched-joints")
-    assert run.sliding.peak == 0 and run.outcome != "slides"
-    assert "outcome" in [one.quantity for one in run.differences]
-    assert "never slide" in engine.variants["switched-joints"].faults
-
-
 def test_what_mujoco_is_said_to_get_wrong_it_gets_wrong():
     """A block with friction .2 and tan(gamma) .2027 can only slide; and the impact of `LOST`, into which it slides."""
     needs("mujoco")

@@ -9,7 +9,7 @@ from engine_cases import impact_errors, needs
 
 from analytic import simulate
 from analytic.bearing import BearingLaw
-from analytic.rocking import RockingModel, base_jump_length_as_printed, restitution
+from analytic.rocking import base_jump_length_as_printed, restitution
 from comparisons.measuring import agreement
 from comparisons.measuring import errors as errors_of
 from comparisons.measuring.tolerances import TABLE
@@ -43,8 +43,7 @@ def run_otherwise(monkeypatch, change=lambda scene: scene, **settings):
     monkeypatch.setattr(agreement, "traced", traced)
 
 
-# Impact law. What an engine does at an impact is its own: the model it is held against is changed instead, and in
-# switched-joints, where the adapter applies the law, the adapter.
+# Impact law. What an engine does at an impact is its own: the model it is held against is changed instead.
 
 
 def each(*rows):
@@ -100,19 +99,6 @@ def test_eq_8_as_printed_fails(monkeypatch, engine, variant):
     monkeypatch.setattr(agreement, "FREE_ROCKING", {"sliding base": (agreement.BASE, (0.2,))})
     monkeypatch.setattr(errors_of, "base_jump_error", against_printed)
     assert_caught([row("base velocity jump, rms", engine, variant, "sliding base")])
-
-
-@pytest.mark.parametrize(
-    "quantity, scenes, factors",
-    [
-        ("base velocity jump, rms", "sliding base, slenderness 0.2", (1.0, 1.0884 * math.cos(0.2))),  # (8) as printed
-        ("restitution, rms", "rigid ground, slenderness 0.2", (1.0001, 0.0)),
-    ],
-)
-def test_switched_joints_with_another_impact_fail(monkeypatch, quantity, scenes, factors):
-    impact, one = RockingModel.impact, row(quantity, "exudyn", "switched-joints", scenes)
-    monkeypatch.setattr(RockingModel, "impact", lambda self, rate: tuple(np.multiply(impact(self, rate), factors)))
-    assert_caught([one])
 
 
 # Bearing law.
@@ -201,7 +187,6 @@ def test_the_share_of_a_penetration_that_bullet_takes_back_does_not_matter(monke
             "corner lift at rest",
             "60 s of shaking below uplift, rigid ground",
         ),
-        ("exudyn", "switched-joints", {"step": 4e-3}, "restitution, rms", "rigid ground, slenderness 0.2"),
         ("pybullet", "impact-aware", {"largest_step": 5e-3}, "impact times", "rigid ground"),
         (
             "pybullet",

@@ -1,5 +1,6 @@
-"""Fragility curves: of the analytic model in every intensity measure, and what an engine makes of them."""
+"""Fragility curves: of the analytic model, and what an engine makes of them."""
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,92 +13,87 @@ PAIRED_DRAWS = 500
 SHIFTS = ("median_shift", "median_interval", "dispersion_shift", "dispersion_interval", "detectable_shift")
 
 
-def exceeds(values: dict[str, np.ndarray], state: tuple[str, float]) -> np.ndarray:
-    """1 where a run exceeds the limit state, 0 where not, NaN where it failed; shape (n,)."""
-    key, limit = state
-    return np.where(np.isnan(values[key]), np.nan, values[key] > limit)
+@dataclass(frozen=True)
+class State:
+    """A limit state: exceeded where a run's value of this key is above the limit; measure: of its curve's intensity."""
+
+    key: str
+    limit: float
+    measure: str
+
+    def exceeded(self, values: dict[str, np.ndarray]) -> np.ndarray:
+        """1 where a run exceeds it, 0 where not, NaN where it failed; shape (n,)."""
+        found = values[self.key]
+        return np.where(np.isnan(found), np.nan, found > self.limit)
 
 
 def fits(
-    measures: dict[str, np.ndarray], states: dict[str, tuple[str, float]], values: dict[str, np.ndarray]
+    measures: dict[str, np.ndarray], states: dict[str, State], values: dict[str, np.ndarray]
 ) -> list[dict[str, Any]]:
-    """A row per limit state and measure.
+    """A row per limit state.
 
-    median, dispersion and their intervals (bootstrap over runs); p_value of the curve's fit; best: of the least
-    dispersion of this state; ratio_interval: of its dispersion over the best one's, over the same bootstrap samples;
-    points: shares with Wilson intervals. reason: why there is no curve, or None.
+    median, dispersion and their intervals (bootstrap over runs); p_value of the curve's fit; points: shares with Wilson
+    intervals. reason: why there is no curve, or None.
     """
-    return [row for name, state in states.items() for row in _of_state(name, exceeds(values, state), measures)]
-
-
-def _of_state(name, exceeded, measures):
-    sound = ~np.isnan(exceeded)
-    exceeded, weights = exceeded[sound], draws(DRAWS, int(sound.sum()))
-    rows, spreads = [], {}
-    for measure, intensity in measures.items():
-        intensity = intensity[sound]
-        row = {"part": "fit", "state": name, "measure": measure, "size": len(exceeded), "exceeded": int(exceeded.sum())}
-        row["points"] = points(intensity, exceeded, POINTS)
-        rows.append(row)
-        try:
-            curve = fit_fragility(intensity, exceeded)
-        except ValueError as error:
-            row |= dict.fromkeys(("median", "dispersion", "median_interval", "dispersion_interval", "p_value"))
-            row["reason"] = str(error)
-            continue
-        medians, spreads[measure] = resampled(intensity, exceeded, weights)
-        row |= {
-            "median": curve.median,
-            "dispersion": curve.dispersion,
-            "median_interval": interval(curve.median, medians),
-            "dispersion_interval": interval(curve.dispersion, spreads[measure]),
-            "p_value": goodness(intensity, exceeded, curve),
-            "reason": None,
-        }
-    fitted = {row["measure"]: row["dispersion"] for row in rows if row["dispersion"] is not None}
-    best = min(fitted, key=fitted.get, default=None)
-    for row in rows:
-        measure = row["measure"]
-        row["best"] = measure == best
-        row["ratio_interval"] = None
-        if measure in fitted and measure != best:
-            row["ratio_interval"] = interval(fitted[measure] / fitted[best], spreads[measure] / spreads[best])
+    rows = []
+    for name, state in states.items():
+        exceeded = state.exceeded(values)
+        sound = ~np.isnan(exceeded)
+        row = {"part": "fit", "state": name, "measure": state.measure, "size": int(sound.sum())}
+        row["exceeded"] = int(exceeded[sound].sum())
+        rows.append(row | _curve(measures[state.measure][sound], exceeded[sound]))
     return rows
+
+
+def _curve(intensity, exceeded):
+    found = {"points": points(intensity, exceeded, POINTS)}
+    try:
+        curve = fit_fragility(intensity, exceeded)
+    except ValueError as error:
+        lost = dict.fromkeys(("median", "dispersion", "median_interval", "dispersion_interval", "p_value"))
+        return {**found, **lost, "reason": str(error)}
+    medians, spreads = resampled(intensity, exceeded, draws(DRAWS, len(exceeded)))
+    return {
+        **found,
+        "median": curve.median,
+        "dispersion": curve.dispersion,
+        "median_interval": interval(curve.median, medians),
+        "dispersion_interval": interval(curve.dispersion, spreads),
+        "p_value": goodness(intensity, exceeded, curve),
+        "reason": None,
+    }
 
 
 def effects(
     measures: dict[str, np.ndarray],
     chosen: np.ndarray,
-    states: dict[str, tuple[str, float]],
+    states: dict[str, State],
     values: tuple[dict[str, np.ndarray], dict[str, np.ndarray]],
-    curves: list[dict[str, Any]],
     pair: tuple[str, str],
 ) -> list[dict[str, Any]]:
     """A row per limit state: `compare` of the two on the runs that failed in neither, and what it makes of the curve.
 
-    median_shift and dispersion_shift: the engine's median and dispersion over the model's, in the measure of least
-    dispersion in `curves`, with intervals by paired bootstrap over runs; detectable_shift: the ratio of medians whose
+    median_shift and dispersion_shift: the engine's median and dispersion over the model's, with intervals by paired
+    bootstrap over runs; detectable_shift: the ratio of medians whose
     difference of probability the test would have found with 80 % probability. p_holm: p adjusted over limit states.
 
     Parameters
     ----------
     measures : {name: (n,)}
     chosen : indices of the runs compared, shape (k,)
-    states : {name: (value, limit)}
+    states : {name: `State`}
     values : of the model and of the engine, arrays of shape (k,)
-    curves : rows of `fits`
     pair : engine and variant
     """
-    best = {curve["state"]: curve["measure"] for curve in curves if curve["best"]}
     rows: list[dict[str, Any]] = []
     for name, state in states.items():
-        ours, theirs = (exceeds(side, state) for side in values)
+        ours, theirs = map(state.exceeded, values)
         sound = ~np.isnan(ours) & ~np.isnan(theirs)
         if sound.any():
             row: dict[str, Any] = {"part": "effect", "engine": pair[0], "variant": pair[1], "state": name}
-            row |= {"left_out": int((~sound).sum()), "measure": best.get(name)}
+            row |= {"left_out": int((~sound).sum()), "measure": state.measure}
             row |= compare(ours[sound] == 1, theirs[sound] == 1)
-            intensity = measures[row["measure"]][chosen[sound]] if row["measure"] else None
+            intensity = measures[state.measure][chosen[sound]]
             rows.append(row | _shift(intensity, ours[sound], theirs[sound], row["detectable_difference"]))
     adjusted = holm([row["p_value"] for row in rows]) if rows else []
     return [row | {"p_holm": float(p_value)} for row, p_value in zip(rows, adjusted, strict=True)]
@@ -106,8 +102,6 @@ def effects(
 def _shift(intensity, ours, theirs, detectable):
     """Ratios of the two fits; None, with the reason, where one of them does not exist."""
     found = dict.fromkeys(SHIFTS)
-    if intensity is None:
-        return {**found, "reason": "no measure has a curve"}
     try:
         model, engine = (fit_fragility(intensity, exceeded) for exceeded in (ours, theirs))
     except ValueError as error:

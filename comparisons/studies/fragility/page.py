@@ -9,28 +9,27 @@ from engines.comparison import FALL
 
 from ...running.provenance import Result
 from ...showing.charts import REFERENCE, Axis, Chart, figure
-from ...showing.figures import as_it_comes, beside, leading, ranks, shades, subject
+from ...showing.figures import as_it_comes, beside, leading, ranks, subject
 from ...showing.glance import Glance, counted
 from ...showing.parts import NAME, Column, Head, Judgement, Page, grouped, number, percent, short, table, where
 from ...showing.wording import ends, ends_in_words, equal_mark, least_shown, left_out, tally
 
 LEVEL = 0.05  # of the test between an engine and the model, and least p of a curve that is shown
 OVERTURNING = "overturning"
-UNITS = {"PGA": "g", "PGV": "m/s", "Sa": "g"}
+UNITS = {"PGV": "m/s"}
 TONES = ("var(--faint)", "var(--soft)", "var(--accent)", "var(--ink)", "var(--ghost)")
 MARKS = ("o", "s", "^", "o", "D")  # of the limit states; that of overturning is small, to lie on others
 TICKS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)
 OUTCOMES = ("both_stand", "both_overturn", "only_a", "only_b")
 RATIOS = (0.5, 0.7, 1.0, 1.4, 2.0)  # of medians, as ticks
-BOUNDS = (0.2, 0.4, 0.6, 0.8, 1.0)
 
 SCENE, STATE = (
     Column("scene", "scene"),
     Column("limit state", lambda row: row["state"].replace("displacement", "displ.")),
 )
-MEASURE = Column("intensity measure", lambda row: row["measure"].replace("_r", "ᵣ"))
-WITH_UNIT = Column(MEASURE.head, lambda row: f"{MEASURE.of(row)} [{UNITS.get(row['measure'], '-')}]")
-DISPERSION = Column("dispersion [-]", "dispersion", within="dispersion_interval")
+MEASURE = Column(
+    "intensity measure", lambda row: f"{row['measure'].replace('_r', 'ᵣ')} [{UNITS.get(row['measure'], '-')}]"
+)
 MEDIAN_SHIFT = Column("median over the model's [-]", "median_shift", digits=3, within="median_interval")
 COMPARED = Column("runs compared [-]", lambda row: sum(row[key] for key in OUTCOMES))
 EFFECT = (
@@ -48,8 +47,8 @@ EFFECT = (
 def page(result: Result) -> Page:
     fits, effects = where(result.rows, part="fit"), where(result.rows, part="effect")
     costs = {(row["scene"], NAME.of(row)): row["cpu_per_run"] for row in where(result.rows, part="cost")}
-    best = {row["scene"]: row["measure"] for row in where(fits, state=OVERTURNING, best=True)}
-    chosen = [row for row in fits if row["measure"] == best.get(row["scene"], "PGA")]
+    measures = {row["scene"]: row["measure"] for row in where(fits, state=OVERTURNING)}
+    chosen = [row for row in fits if row["measure"] == measures[row["scene"]]]
     tones = dict(zip(dict.fromkeys(row["state"] for row in fits), TONES, strict=False))
     found = tallies(result)
     return Page(
@@ -66,8 +65,8 @@ def page(result: Result) -> Page:
                     chosen,
                     tones,
                     "Left: share of runs of the analytic model that exceed each limit state, with 95 % Wilson "
-                    "intervals, over the measure of least dispersion for overturning. A lognormal curve is drawn where "
-                    f"it fits (p ≥ {LEVEL:g}). Small marks: overturning.",
+                    "intervals, over the intensity measure of overturning. A lognormal curve is drawn where it fits "
+                    f"(p ≥ {LEVEL:g}). Small marks: overturning.",
                 ),
                 _differing(found),
             ),
@@ -109,31 +108,19 @@ def page(result: Result) -> Page:
                 STATE,
                 *EFFECT,
             ),
-            Head("Intensity measures"),
-            shades(
-                fits,
-                STATE,
-                MEASURE,
-                Column(DISPERSION.head, "dispersion"),
-                "Dispersion of the lognormal curve of the analytic model: smaller is more informative.",
-                bounds=BOUNDS,
-                panel="scene",
-            ),
+            Head("The analytic model"),
             _shares(
-                [row for row in fits if row["best"] and row not in chosen],
-                tones,
-                "The other limit states over their own measure of least dispersion.",
+                [row for row in fits if row not in chosen], tones, "The other limit states over their own measure."
             ),
             table(
                 "Lognormal curves of the analytic model; 95 % intervals by bootstrap over runs",
                 fits,
                 SCENE,
                 STATE,
-                WITH_UNIT,
+                MEASURE,
                 Column("exceeded [-]", "{exceeded} of {size}"),
                 Column("median", "median", within="median_interval"),
-                DISPERSION,
-                Column("over the least [-]", lambda row: "least" if row["best"] else _reach(row["ratio_interval"])),
+                Column("dispersion [-]", "dispersion", within="dispersion_interval"),
                 Column("p of the fit [-]", "p_value"),
                 Column("fits", lambda row: "no curve" if row["median"] is None else "yes" if _fits(row) else "no"),
             ),
@@ -206,14 +193,10 @@ def _fits(row):
     return row["p_value"] is not None and row["p_value"] >= LEVEL
 
 
-def _reach(interval):
-    return "–" if interval is None else " to ".join(number(limit, 2) for limit in interval)
-
-
 def _shares(rows, tones, caption):
     """Shares of runs over intensity, a panel for each scene and measure; tones: {limit state: its colour}."""
     charts = []
-    for (scene, measure), members in grouped(rows, "scene", WITH_UNIT.of).items():
+    for (scene, measure), members in grouped(rows, "scene", MEASURE.of).items():
         places = [point["intensity"] for row in members for point in row["points"]]
         low, high = 0.95 * min(places), 1.05 * max(places)
         chart = Chart(
@@ -237,7 +220,7 @@ def _shares(rows, tones, caption):
                 chart.line(fine, norm.cdf(np.log(fine / row["median"]) / row["dispersion"]), tone=tone)
             chart.label(ys[-1], STATE.of(row), tone=tone)
         charts.append(chart)
-    return figure(charts, caption) if charts else None
+    return figure(charts, caption)
 
 
 def _how(settings):
@@ -252,9 +235,9 @@ def _how(settings):
         f"{peak[0]:g} to {peak[1]:g} g, and a block of its own, radius {radius[0]:g} to {radius[1]:g} m, all evenly "
         "over the logarithm. Motions are stretched because all synthetic motions have nearly the same spectrum.",
         f"Sa: spectral acceleration at the isolation period, {settings['period']:.2f} s (secant at "
-        f"{settings['x_max']:g} m), at {percent(settings['damping'])} damping; spectral velocity and displacement have "
-        "the same dispersion. g tan γ: uplift acceleration; ωᵣ: rocking frequency. The curve P = Φ(ln(x/median)"
-        "/dispersion) is that of greatest likelihood, p that of Pearson's test of its fit.",
+        f"{settings['x_max']:g} m), at {percent(settings['damping'])} damping. g tan γ: uplift acceleration; ωᵣ: "
+        "rocking frequency. The curve P = Φ(ln(x/median)/dispersion) is that of greatest likelihood, p that of "
+        "Pearson's test of its fit.",
         "Left out, of all engines alike: N falls to 0, the friction demand is more than any contact provides, or the "
         "scene is near an outcome boundary: with a change by 10⁻⁴ the block ends otherwise in the model. Scenes share "
         "their motions: the interval takes the runs under one motion as one.",

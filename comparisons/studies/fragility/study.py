@@ -1,8 +1,7 @@
 """The fragility study: a cloud of runs of the analytic model, the first of it in every engine, and curves of both.
 
 Blocks and motions of the cloud are random. No two runs share a motion, a block or an intensity, so that runs are
-independent. Accelerations are evenly spread over the logarithm, far below and far above what matters: then no intensity
-sees another choice of motions than the next.
+independent. Accelerations are evenly spread over the logarithm, far below and far above what matters.
 """
 
 import math
@@ -25,7 +24,7 @@ from ...measuring.statistics import class_of
 from ...running.cases import Case
 from ...running.plan import Batch, Computed, Plan, Request
 from ...running.sweep import Row
-from .fits import effects, fits
+from .fits import State, effects, fits
 
 X_MAX = 0.30  # m, what the bearings are built for: Table 1(a) of the paper
 PERIOD = properties(BEARINGS, MASS + BASE.mass, X_MAX).period  # s, of isolation, secant at X_MAX
@@ -37,14 +36,13 @@ PEAKS = (0.08, 3.0)  # g
 SCENES = {"free-standing": ("caryatid-rigid", (0.12, 0.32)), "isolated": ("caryatid-isolated", (0.1, 0.25))}
 DRAWN = ("stretch", "radius", "slenderness", "peak")
 
-# PGA and Sa in g, PGV in m/s; g tan(slenderness) is the uplift acceleration, omega_r the rocking frequency
-MEASURES = ("PGA", "PGV", "Sa", "PGA/(g tan γ)", "ω_r PGV/(g tan γ)", "Sa/(g tan γ)")
-UPLIFT = "PGA/(g tan γ)"
+# intensity measures; g tan(slenderness) is the uplift acceleration, omega_r the rocking frequency
+UPLIFT, ROCKING, ISOLATED, STROKE = "PGA/(g tan γ)", "ω_r PGV/(g tan γ)", "Sa/(g tan γ)", "PGV"
 
 
 @dataclass(frozen=True, eq=False)
 class Cloud:
-    """scenes: of n runs. drawn: {what was drawn: (n,)}. measures: {name of `MEASURES`: (n,)}."""
+    """scenes: of n runs. drawn: {what was drawn: (n,)}. measures: {name: (n,)}, see `measures`."""
 
     scenes: tuple[Scene, ...]
     drawn: dict[str, np.ndarray]
@@ -75,16 +73,18 @@ def cloud(shipped: str, slendernesses: tuple[float, float], count: int) -> Cloud
 
 
 def measures(scenes: list[Scene]) -> dict[str, np.ndarray]:
-    """{name of `MEASURES`: (n,)} of scenes with sampled motions."""
+    """{name: (n,)} of scenes with sampled motions: those of their limit states; PGV [m/s]; on bearings Sa [g]."""
     gravity = np.array([scene.gravity for scene in scenes])
     steepness = np.tan([scene.block.slenderness for scene in scenes])
     peak = np.array([scene.motion.peak for scene in scenes]) / gravity
     speed = np.array([peak_velocity(scene.motion) for scene in scenes])
+    rocking = np.array([scene.rocking_frequency for scene in scenes])
+    found = {UPLIFT: peak / steepness, STROKE: speed, ROCKING: rocking * speed / (gravity * steepness)}
+    if scenes[0].bearings is None:
+        return found
     displacement = np.array([displacement_spectrum(scene.motion, [PERIOD], [DAMPING])[0, 0] for scene in scenes])
     spectral = displacement * (2 * math.pi / PERIOD) ** 2 / gravity
-    rocking = np.array([scene.rocking_frequency for scene in scenes])
-    values = (peak, speed, spectral, peak / steepness, rocking * speed / (gravity * steepness), spectral / steepness)
-    return dict(zip(MEASURES, values, strict=True))
+    return {**found, "Sa": spectral, ISOLATED: spectral / steepness}
 
 
 def peak_velocity(motion: Motion) -> float:
@@ -100,7 +100,9 @@ TIME_LIMIT = 60.0  # s, of an engine's run; a stiff corner that hardly lifts may
 # runs: of the analytic model, of the engines' main variants (with 73 motions or more, no difference shows equality),
 # of the kind "defaults" (a few runs show large errors)
 FULL, QUICK = (2000, 80, 20), (200, 6, 2)
-TILTS = (0.1, 0.5, 1.0)  # limit states of |tilt|/slenderness
+# {limit state of |tilt|/slenderness: measure}; on bearings `ISOLATED` throughout. Of PGA, PGV and Sa, as they are and
+# over g tan γ, these had the curves of least dispersion: a small tilt is an uplift, which PGA alone decides.
+TILTS = {0.1: UPLIFT, 0.5: ROCKING, 1.0: ROCKING}
 KEPT = ("overturns", "tilt", "displacement")
 
 
@@ -138,8 +140,8 @@ def plan(request: Request, scenes: dict[str, Any] | None = None, runs: tuple[int
 
     Rows by "part": "fit" and "effect" (see `comparisons.studies.fragility.fits`), "run" (an engine's, its class by how
     the block ends), "cost" (CPU seconds per run), "check" and "failure". The model with its restitution changed by
-    `CHANGE` is the variant "perturbed" of "analytic". Arrays, float32: ``<scene>/<drawn>``, of all runs, with PGV and
-    Sa; ``<scene>/<engine>, <variant>/tilt`` and ``/displacement`` of the first in ``<scene>/near``
+    `CHANGE` is the variant "perturbed" of "analytic". Arrays, float32: ``<scene>/<drawn>``, of all runs, with PGV and,
+    on bearings, Sa; ``<scene>/<engine>, <variant>/tilt`` and ``/displacement`` of the first in ``<scene>/near``
     (``<scene>/analytic/``: of all): NaN where a run failed, the tilt infinite where it overturned.
 
     Parameters
@@ -156,19 +158,26 @@ def plan(request: Request, scenes: dict[str, Any] | None = None, runs: tuple[int
         near, states = drawn.near(*NEAR)[: counts[1]], states_of(drawn)
         whole = yield Batch(_cases(enumerate(drawn.scenes), *MODEL), measure, f"{name}: analytic model")
         model = values_of(whole)
-        curves = fits(drawn.measures, states, model)
         undecided = sum(not row.values["decided"] for row in whole if not row.failed)
         failed = sum(row.failed for row in whole)
         ends = {int(seed): Reference.of(drawn.scenes[seed]).end_comparable for seed in near}
         check = {"runs": len(whole), "undecided": undecided, "failed": failed}
-        found = [*curves, {"part": "check", "engine": "analytic", "variant": "", **check}, *_runs(MODEL, whole)]
-        made = {**drawn.drawn, **{key: drawn.measures[key] for key in ("PGV", "Sa")}, **_kept("analytic", model)}
+        found = [
+            *fits(drawn.measures, states, model),
+            {"part": "check", "engine": "analytic", "variant": "", **check},
+            *_runs(MODEL, whole),
+        ]
+        made = {
+            **drawn.drawn,
+            **{key: drawn.measures[key] for key in ("PGV", "Sa") if key in drawn.measures},
+            **_kept("analytic", model),
+        }
         for pair, cases in _compared(drawn, near, counts[2], variants):
             label = ", ".join(filter(None, pair))
             run = yield Batch(cases, measure if pair == PERTURBED else beside_model, f"{name}: {label}", TIME_LIMIT)
             few, theirs = near[: len(cases)], values_of(run)
             ours = {key: array[few] for key, array in model.items()}
-            found += effects(drawn.measures, few, states, (ours, theirs), curves, pair)
+            found += effects(drawn.measures, few, states, (ours, theirs), pair)
             found += _runs(pair, run)
             if pair != PERTURBED:
                 found += [_run_row(pair, row, ends, falls) for row, falls in zip(run, ours["overturns"], strict=True)]
@@ -182,12 +191,14 @@ def plan(request: Request, scenes: dict[str, Any] | None = None, runs: tuple[int
     return answer
 
 
-def states_of(drawn: Cloud) -> dict[str, tuple[str, float]]:
-    """Limit states {name: (value of a run, limit)}: exceeded where the value is above the limit."""
-    tilts = {f"|φ|/γ > {limit:g}": ("tilt", limit) for limit in TILTS}
-    states = {**tilts, "overturning": ("overturns", 0.5)}
-    if (bearings := drawn.scenes[0].bearings) is not None:
-        states[f"displacement > {bearings.x_max:g} m"] = ("displacement", bearings.x_max)
+def states_of(drawn: Cloud) -> dict[str, State]:
+    """Limit states by name."""
+    bearings = drawn.scenes[0].bearings
+    tilts = TILTS if bearings is None else dict.fromkeys(TILTS, ISOLATED)
+    states = {f"|φ|/γ > {limit:g}": State("tilt", limit, measure) for limit, measure in tilts.items()}
+    states["overturning"] = State("overturns", 0.5, tilts[1.0])
+    if bearings is not None:
+        states[f"displacement > {bearings.x_max:g} m"] = State("displacement", bearings.x_max, STROKE)
     return states
 
 

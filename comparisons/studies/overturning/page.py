@@ -45,7 +45,7 @@ LARGEST = Column("largest shift [%]", lambda row: row["largest"] and 100 * row["
 
 def page(result: Result) -> Page:
     s = result.settings
-    edges, shifts, held, drawn = (where(result.rows, part=part) for part in ("edge", "shift", "held", "drawn edge"))
+    edges, shifts, drawn = (where(result.rows, part=part) for part in ("edge", "shift", "drawn edge"))
     sound = pressed(result)
     known = [row for row in shifts if place(row) in sound]
     rated = list(_rated(result))
@@ -120,7 +120,7 @@ def page(result: Result) -> Page:
             ),
             *_sliding(s),
             Head("Where the analytic model holds the corner down"),
-            *_held_down(edges, shifts, held),
+            *_held_down(edges, shifts),
             Head("Outcomes between the boundaries"),
             _confusions(result, band),
             table(
@@ -295,15 +295,14 @@ def _sliding(settings):
                 )
 
 
-def _held_down(edges, shifts, held):
+def _held_down(edges, shifts):
     pulled = [edge for edge in edges if edge["min_normal"] < 0]
     if pulled:
         yield (
             "Here the normal force of the analytic model becomes negative. A block in contact would slide or leave its "
-            "base, as it does in the engines, so these boundaries say nothing about the engines. Variants whose "
-            "adapter holds the corner down, as the model does, show whether contact or integration shifts them."
+            "base, as it does in the engines, so these boundaries say nothing about the engines."
         )
-    yield _boundaries("Boundaries at which the analytic model holds the corner down", pulled, [*shifts, *held])
+    yield _boundaries("Boundaries at which the analytic model holds the corner down", pulled, shifts)
 
 
 def _drawn(edges, shifts):

@@ -97,8 +97,8 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
 
     Rows by "part": "edge" (a boundary of the analytic model), "shift" (an engine's beside it, of its main variant and
     the kind "defaults"), "scan" (their outcomes over a coarse scan), "drawn edge" and "drawn shift" (of blocks drawn at
-    random), "held" (with the corner held down, where the model's N < 0), "refinement" (other levels), "confusion"
-    (counts of outcomes), "disagreement" (an outcome that differs outside the band) and "failure".
+    random), "refinement" (other levels), "confusion" (counts of outcomes), "disagreement" (an outcome that differs
+    outside the band) and "failure".
 
     Arrays: frequency, amplitude; ``<ground>/<shape>``: int16, shape (amplitudes, frequencies), impacts before
     overturning in the analytic model, -1 where it does not overturn. ``points``: shape (n, 8): ground, shape, engine
@@ -124,12 +124,6 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
         for name, variant, spec in variants
         if variant == get_engine(name).default_variant
     ]
-    held = [
-        Setting(name, variant, settings.get(spec.accuracy_parameter, spec.default), settings)
-        for name, variant, spec in variants
-        if spec.applies_impact
-        for settings in (spec.finer[0] if spec.finer else {},)
-    ]
     first_scripts = [
         Setting(name, variant, spec.default) for name, variant, spec in variants if spec.kind == "defaults"
     ]
@@ -147,8 +141,6 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
     others = _Runs({edge.ground: scene for scene, edge in drawn})
     for settings_of, *how in ((default, DISTANCES, TOLERANCE), (coarser, LEVEL_DISTANCES, LEVEL_TOLERANCE)):
         rows += yield from others.search("drawn shift", settings_of, [edge for _, edge in drawn], *how)
-    pulled = [edge for edge in found if edge.min_normal < 0]
-    rows += yield from runs.search("held", held, pulled, DISTANCES, TOLERANCE)
     records = _compared(runs.outcomes, default, grounds, found)
     arrays["points"] = _indexed(records, grid, request.engines)
     rows += [*_confusions(records, default, grounds), *_disagreements(records)]

@@ -80,14 +80,12 @@ def page(result: Result) -> Page:
                 panel="scene",
             ),
             table(
-                "Vertical motion: outcomes changed, friction needed, and runs in which N reaches zero, where the model "
-                "ends",
+                "Vertical motion: outcomes changed, and runs in which N reaches zero, where the model ends",
                 vertical,
                 SCENE,
                 RATIO,
                 FASTER,
                 SHARE,
-                *(_share(f"friction above {mu} needed", mu) for mu in (vertical[0]["sliding"] if vertical else ())),
                 Column("N reaches zero", lambda row: row["lifts_off"] / row["runs"], percent=True),
                 RUNS,
             ),
@@ -98,10 +96,6 @@ def page(result: Result) -> Page:
 
 def _ranked(rows):
     return sorted(rows, key=lambda row: (-(SHARE.of(row) or 0), not row["runs"], WHAT.of(row)))
-
-
-def _share(head, mu):
-    return Column(head, lambda row: row["sliding"][mu] / row["runs"], percent=True)
 
 
 def _most(rows):

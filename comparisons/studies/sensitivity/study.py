@@ -111,16 +111,14 @@ LIFTING = 1.3  # least peak over g tan γ of the engines' motions: a stiff corne
 TIME_LIMIT = 60.0  # s, of an engine's run
 RATIOS = (0.3, 0.5, 0.7, 0.9, 1.1, 1.3, 1.5)  # V/H: peak vertical over peak horizontal acceleration
 FASTER = (1, 2, 4)  # how many times as fast as the horizontal motion: vertical ones hold higher frequencies
-FRICTIONS = (0.3, 0.5, 0.7)  # coefficients that the demand is compared with
 
 
 def measure(case: Case, response: Response) -> dict[str, Any]:
-    """What is kept of a run; demand: infinite (not finite) where the contact was lost."""
+    """What is kept of a run."""
     return {
         "overturns": response.outcome == "overturns",
         "tilt": response.peak_tilt_ratio,
         "displacement": response.peak_base_displacement,
-        "demand": response.friction_demand,
         "normal": response.min_normal_ratio,
     }
 
@@ -134,7 +132,7 @@ def plan(request: Request, scenes: dict[str, Any] | None = None, motions: tuple[
       (`change` None). outcomes_changed, and to_overturning among them; p_value: McNemar's; tilt, displacement: median
       relative change of the peaks of blocks that stay upright in both.
     - "vertical": one for each V/H (`ratio`) and speed (`faster`), and one of V/H 0, without vertical motion. lifts_off:
-      runs in which N reaches zero, where the model ends; sliding: {friction: runs that need more}.
+      runs in which N reaches zero, where the model ends.
 
     Parameters
     ----------
@@ -303,12 +301,10 @@ def _vertical_rows(usual, raised):
     without = [(before, before) for before, _ in next(filter(None, found.values()), [])]
     for (faster, ratio), pairs in {(1, 0.0): without, **found}.items():
         if pairs:
-            demands = [np.inf if after["demand"] is None else after["demand"] for _, after in pairs]
             yield {
                 "part": "vertical",
                 "faster": faster,
                 "ratio": ratio,
                 **_outcomes(pairs)[1],
                 "lifts_off": sum(after["normal"] <= 0 for _, after in pairs),
-                "sliding": {f"{limit:g}": sum(demand > limit for demand in demands) for limit in FRICTIONS},
             }

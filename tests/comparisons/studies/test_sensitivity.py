@@ -101,7 +101,7 @@ def test_a_vertical_motion_is_as_strong_and_as_fast_as_asked_for():
     assert frequency(fast) == pytest.approx(4 * frequency(usual), rel=0.03)
 
 
-def test_outcomes_changed_by_vertical_motions_and_what_the_contact_bears_are_those_of_single_runs(found):
+def test_outcomes_changed_by_vertical_motions_and_lost_contacts_are_those_of_single_runs(found):
     rows = where(found.rows, part="vertical")
     assert [(row["faster"], row["ratio"]) for row in rows] == [(1, 0.0), *((f, r) for f in FASTER for r in RATIOS)]
     scenes = scenes_of(found)[: COUNT // 3]
@@ -115,9 +115,8 @@ def test_outcomes_changed_by_vertical_motions_and_what_the_contact_bears_are_tho
             before.outcome != after.outcome and "overturns" in (before.outcome, after.outcome)
             for before, after in zip(level, runs, strict=True)
         )
-        sliding, lifting = ([run.friction_demand > 0.5 for run in runs], [run.min_normal_ratio <= 0 for run in runs])
-        assert (row["runs"], row["outcomes_changed"]) == (len(runs), changed)
-        assert (row["sliding"]["0.5"], row["lifts_off"]) == (sum(sliding), sum(lifting))
+        lifting = sum(run.min_normal_ratio <= 0 for run in runs)
+        assert (row["runs"], row["outcomes_changed"], row["lifts_off"]) == (len(runs), changed, lifting)
 
 
 def made_up(change, changed, runs=100, engine="analytic", variant=""):

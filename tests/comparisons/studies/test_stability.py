@@ -215,7 +215,7 @@ def test_only_solvers_that_know_friction_are_asked_cases_with_it():
     found = {(case.solver, case.variant) for case in asked}
     able = {("analytic", None), ("pybullet", "impact-aware"), ("exudyn", "compliant-corners")}
     assert {one for one in able if one[0] in ("analytic", *installed_engines())} <= found
-    assert not found & {("twin", None), ("time-stepping", None), ("exudyn", "switched-joints")}
+    assert not found & {("twin", None), ("time-stepping", None)}
     assert {CASES[name].oracle for name in SLIPPERY} == {SLIDING}
     assert all(case.oracle != SLIDING for name, case in CASES.items() if name not in SLIPPERY)
 
