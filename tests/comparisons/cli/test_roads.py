@@ -430,6 +430,7 @@ def test_a_scene_that_the_model_refuses_is_named_with_its_remedy(road, kind, com
 def test_the_scans_of_a_user_are_fine():
     assert USUAL == {"margin": (400, 14), "design": (0.01, 0.005), "report": (margins.STEP, 0.01, margins.STEP)}
     assert (margins.SPAN, margins.STEP) == (0.2, 5e-4)
+    assert (bearing_scan.PERIODS, bearing_scan.DAMPINGS, bearing_scan.COARSE) == ((0.3, 5.0), (0.02, 0.5), 4)
 
 
 def test_a_friction_beside_that_of_the_scene_is_refused(rocking, tmp_path):
