@@ -57,7 +57,6 @@ QUESTIONS = {
         "Fragility over intensity: which measure tells most, does a lognormal curve fit, does the engine shift it?"
     ),
     "shake-table": "Blocks that were really shaken: what do the model, the engines and simpler measures predict?",
-    "surface": "Probability of overturning over intensity and slenderness, from a million runs of the analytic model.",
     "sensitivity": (
         "What changes the outcome more often than the choice of the engine: vertical motion, a per cent of slenderness?"
     ),
@@ -82,7 +81,6 @@ QUESTIONS = {
 BUILT_IN = tuple(QUESTIONS)
 # What a study.py may have beside its plan: {its name there: the field of `Study`}.
 OWN = {"problems": "problems", "WHOLE": "whole", "INDEXED": "indexed"}
-ALONE = ("surface",)  # of the analytic model, where no engine is asked for
 
 
 class StudyBroken(SettingError):
@@ -110,7 +108,7 @@ def get_study(name: str) -> Study:
         package = f"{PACKAGE}.{name.replace('-', '_')}"
         found = import_module(f"{package}.study")
         own = {field: getattr(found, given) for given, field in OWN.items() if hasattr(found, given)}
-        return Study(name, QUESTIONS[name], found.plan, f"{package}.page", all_engines=name not in ALONE, **own)
+        return Study(name, QUESTIONS[name], found.plan, f"{package}.page", **own)
     entries = list(entry_points(group=GROUP, name=name))
     if not entries:
         raise KeyError(f"unknown study {name!r}: choose one of {', '.join(study_names())}")

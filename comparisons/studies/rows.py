@@ -94,7 +94,6 @@ ROWS = {
         "failure": "engine variant specimen test kind reason message",
         "absent": "engine variant reason",
     },
-    "surface": {"half": "engine variant slenderness half? interval falls_by widest"},
     "sensitivity": {
         "change": f"scene engine variant change? failed to_overturning? p_value? tilt? displacement? {CHANGED}",
         "vertical": f"scene faster ratio lifts_off sliding {CHANGED}",

@@ -200,12 +200,6 @@ OWN: dict[str, dict[str, Explained]] = {
         "equal": word("whether the engine ends as the model does, as comparisons.measuring.statistics.equality says"),
         "tilt": number("peak tilt over the model's where both rock and stay upright: median over tests"),
     },
-    "surface": {
-        "half": number("peak ground acceleration at which half of the motions overturn the block", "g"),
-        "interval": series("95 % interval of it: [low, high]", "g"),
-        "falls_by": number("by how much the share that overturns falls again above a lower intensity, at most"),
-        "widest": number("width of the share's 95 % Wilson interval, at most"),
-    },
     "random-scenes": {},
     "sliding": {
         "support": word("what the block's base is: rigid ground, or isolated"),

@@ -12,11 +12,12 @@ import sys
 import pytest
 
 from comparisons.running.provenance import RESULTS, read_result
+from engines import installed_engines
 
 COMMANDS = {
     "sheet": "sheet",
     "check": "study autopsy --check 1 --seed 3 --write --workers 1",
-    "study": "study surface --quick --workers 1",
+    "study": f"study fragility --quick --engine {installed_engines()[-1]} --workers 1",
     "report": "report free-rocking-rigid --engine analytic --studies studies",
     "lessons": "lessons export",
 }
@@ -51,7 +52,7 @@ def folders(tmp_path_factory):
     """Makes a folder with what a command has written there before: pages with other words, results as they are."""
     root = tmp_path_factory.mktemp("disk")
     (root / "studies").mkdir()
-    for file in RESULTS.glob("surface.*"):
+    for file in RESULTS.glob("sensitivity.*"):
         shutil.copy(file, root / "studies")
 
     def made(name, number):

@@ -75,8 +75,8 @@ def test_a_report_goes_on_beside_damaged_results(copy_of, studies, tmp_path):
     cut = folder / "restitution.json"
     cut.write_bytes(cut.read_bytes()[:-1000])
     (folder / "sensitivity.npz").write_bytes(b"")
-    shutil.copy(RESULTS / "surface.json", folder / "autopsy.json")
-    shutil.copy(RESULTS / "surface.npz", folder / "autopsy.npz")
+    shutil.copy(RESULTS / "mistakes.json", folder / "sliding.json")
+    shutil.copy(RESULTS / "mistakes.npz", folder / "sliding.npz")
     shutil.copy(RESULTS / "tolerances.json", folder)
     edit(folder / "tolerances.json", lambda content: content["settings"].clear())
     write_page(shown, folder)
@@ -88,7 +88,7 @@ def test_a_report_goes_on_beside_damaged_results(copy_of, studies, tmp_path):
     for name, words in {
         "restitution": "not JSON",
         "sensitivity": "sensitivity.npz: missing or not the one sensitivity.json was written with",
-        "autopsy": "a result of surface; call it surface.json",
+        "sliding": "a result of mistakes; call it mistakes.json",
         "tolerances": "its page fails (KeyError(",
     }.items():
         assert f"{name}.json cannot be shown: {words}" in pages[name]

@@ -66,8 +66,8 @@ def test_a_row_without_numbers_says_why_and_needs_no_more():
 def test_a_result_of_another_study_is_refused_by_name_and_a_foreign_one_is_not_looked_at(tmp_path):
     path = write_result(tmp_path / "r.json", "swings", {}, [{"height": "high"}], modules=["analytic.errors"])
     assert read_study(path).rows == [{"height": "high"}] and read_study(path, "swings").kind == "swings"
-    with pytest.raises(ResultError, match=r"r\.json: a result of swings; give one that rocking study surface wrote"):
-        read_study(path, "surface")
+    with pytest.raises(ResultError, match=r"r\.json: a result of swings; give one that rocking study sliding wrote"):
+        read_study(path, "sliding")
 
 
 def test_a_number_changed_in_a_stored_result_is_seen(tmp_path):
