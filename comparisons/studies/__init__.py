@@ -48,9 +48,8 @@ PACKAGE = "comparisons.studies"
 # name: its question; in the order of the report and of the rows of its first table
 QUESTIONS = {
     "restitution": (
-        "Error of restitution and base velocity jump over slenderness, base mass and level, with its cost."
+        "Error of restitution and base velocity jump over slenderness, base mass and level; cost, and why engines err."
     ),
-    "autopsy": "One impact in every engine and variant, taken apart: the parts of its error and their cause.",
     "overturning": "Overturning boundaries under pulses, on rigid ground and isolated, solver by solver.",
     "recorded": "Recorded motions: does an engine overturn the blocks that the analytic model overturns?",
     "fragility": (
@@ -74,7 +73,6 @@ QUESTIONS = {
     "tolerances": (
         "How far each engine is from the analytic model, beside what it is held to. Status 1: a row does not hold."
     ),
-    "constants": "Each number that was chosen in an engine's variant, halved and doubled: what moves?",
     "mistakes": "Scripts of a rocking block in an engine's plain calls, each with one mistake: what does it cost?",
     "sheet": "The problem sheet in every engine: what rocking score ranks other codes beside.",
 }

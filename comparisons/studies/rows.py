@@ -40,9 +40,7 @@ ROWS = {
         "phase": "engine variant step runs bias rms explained? least most",
         "flight damping": "engine variant friction? level slenderness friction_needed predicted measured",
         "failure": "engine variant reason count message tag",
-    },
-    "autopsy": {
-        "impact": "engine variant ground failure? | tier best placed error cause? words? parts steps energy_lost frames"
+        "why": "engine variant ground failure? | tier best placed error cause? words? parts steps energy_lost frames",
     },
     "overturning": {
         "edge": EDGE,
@@ -130,10 +128,6 @@ ROWS = {
         "cost": "integrator what ratio? ratio_low? ratio_high? ratios errors cpu_seconds at_errors",
     },
     "tolerances": {"tolerance": "quantity engine variant scenes bound? unit measured? source found? holds failure?"},
-    "constants": {
-        "constant": """engine variant change constant? what? value? runs failed reason? outcomes_changed moved rms?
-            peak_median? peak_worst? steps cpu_seconds cpu_ratio?"""
-    },
     "mistakes": {
         "run": """engine variant scene mistake? done? group? expected outcome reason? error? energy? graph?
             displacement? steps?"""

@@ -42,6 +42,7 @@ from .columns import (
     WORST_STATE,
     ground,
 )
+from .contact import contact
 
 BOUNDS = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1)
 
@@ -60,6 +61,7 @@ def page(result: Result) -> Page:
     ranked = sorted(
         (row for row in ratings.values() if not row["applies_impact"]), key=lambda row: row["rms_state"] or 1e9
     )
+    why = contact(result)
     return Page(
         _title(ranked),
         (
@@ -70,6 +72,7 @@ def page(result: Result) -> Page:
             "The error is measured by states: the tilt rate after over that before, at the impact, minus eq. (7), as "
             "root mean square over impacts. By swings, from the energy of the swings before and after, it includes "
             "what built-in damping dissipates in flight. Of both measures and grounds the worse one rates a variant.",
+            *why.lead,
         ),
         first=(
             _over_slenderness(cells, result.settings["default_variants"]),
@@ -85,8 +88,11 @@ def page(result: Result) -> Page:
                 FAILED,
                 LOST,
             ),
+            Head(why.title),
+            *why.first,
         ),
         more=(
+            *why.more,
             Head("Slenderness and base mass"),
             *_maps(cells),
             table(
@@ -122,13 +128,16 @@ def page(result: Result) -> Page:
             Head("Eq. (8), corrected and as printed"),
             *equation_8(result, cells, ratings),
         ),
-        how=_how(result.settings),
-        evidence=tuple(
-            (
-                f"{row['engine']}, {row['variant']}: {row['reason']} ({row['count']} runs)",
-                f"{row['message']}\n\nfirst seen: {row['tag']}\nlast finite state: {row['last_state']}",
-            )
-            for row in where(result.rows, part="failure")
+        how=(*_how(result.settings), *why.how),
+        evidence=(
+            *(
+                (
+                    f"{row['engine']}, {row['variant']}: {row['reason']} ({row['count']} runs)",
+                    f"{row['message']}\n\nfirst seen: {row['tag']}\nlast finite state: {row['last_state']}",
+                )
+                for row in where(result.rows, part="failure")
+            ),
+            *why.evidence,
         ),
     )
 

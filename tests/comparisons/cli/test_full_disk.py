@@ -16,7 +16,7 @@ from engines import installed_engines
 
 COMMANDS = {
     "sheet": "sheet",
-    "check": "study autopsy --check 1 --seed 3 --write --workers 1",
+    "check": "study restitution --check 1 --seed 3 --write --workers 1",
     "study": f"study fragility --quick --engine {installed_engines()[-1]} --workers 1",
     "report": "report free-rocking-rigid --engine analytic --studies studies",
     "lessons": "lessons export",
@@ -59,7 +59,7 @@ def folders(tmp_path_factory):
         first, folder = root / name, root / f"{name}-{number}"
         if not first.exists() and name == "check":
             first.mkdir()
-            for file in RESULTS.glob("autopsy.*"):
+            for file in RESULTS.glob("restitution.*"):
                 shutil.copy(file, first)
         elif not first.exists():
             assert run(name, first).returncode == 0

@@ -191,12 +191,10 @@ SMALL: dict[str, dict[str, Any]] = {
     "restitution": {},
     "random-scenes": {},
     "sliding": {"scenes": 80},
-    "constants": {},
     "stability": {"names": ("zeno",)},
     "overturning": {"grid": GRID},
     "fragility": {"scenes": {"free-standing": ("caryatid-rigid", (0.15, 0.3))}, "runs": (40, 3, 1)},
     "sensitivity": {"scenes": {"free-standing": ("caryatid-rigid", (0.2,))}, "motions": (8, 2, 1)},
-    "autopsy": {},
     "sheet": {},
     "mistakes": {},
 }

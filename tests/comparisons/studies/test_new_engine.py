@@ -42,7 +42,6 @@ SHORT = {
     "restitution": {"grid": Grid((0.2,), (None, CARYATID_BASE), (0.6,), ((0.2, None),), 4, ((0.25,), (1.0,), (2.0,)))},
     "fragility": {"scenes": {"free-standing": ("caryatid-rigid", (0.2, 0.3))}, "runs": (40, 6, 2)},
     "sensitivity": {"scenes": {"free-standing": ("caryatid-rigid", (0.2,))}, "motions": (3, 1, 1)},
-    "autopsy": {},
     "sheet": {},
     "random-scenes": {"seed": 1},
     "sliding": {"seed": 1, "scenes": 80},
@@ -179,8 +178,8 @@ def test_the_growth_of_cost_and_the_report_run_it(crude):
 
 
 def test_every_study_of_this_project_is_covered():
-    # recorded, shake-table: below; and test_constants, test_mistakes
-    own_tests = {"overturning", "caryatid", "tolerances", "recorded", "constants", "mistakes", "shake-table"}
+    # recorded, shake-table: below; and test_mistakes
+    own_tests = {"overturning", "caryatid", "tolerances", "recorded", "mistakes", "shake-table"}
     assert set(BUILT_IN) == SHORT.keys() | own_tests
 
 

@@ -15,7 +15,7 @@ from comparisons.studies.vocabulary import OWN, columns_of
 from engines import installed_engines
 
 # Of no stored result: an impact about which nothing can be determined.
-UNSEEN = {"autopsy": {"why_not"}}
+UNSEEN = {"restitution": {"why_not"}}
 FAILED = {"kind": "solver", "reason": "the solver gave up", "message": "no convergence"}
 UNSEEN_OF_ANY = {"exit_code", "time_limit"}  # of failures that no stored run had
 
