@@ -70,13 +70,11 @@ QUESTIONS = {
     ),
     "speed-error": "Error and CPU time of the same runs: kernel, scipy, time stepping, Bouc-Wen, engines and variants.",
     "caryatid": "The Caryatid paper: every equation, figure and table reproduced or corrected, and what it leaves out.",
-    "tolerances": (
-        "How far each engine is from the analytic model, beside what it is held to. Status 1: a row does not hold."
-    ),
     "mistakes": "Scripts of a rocking block in an engine's plain calls, each with one mistake: what does it cost?",
     "sheet": "The problem sheet in every engine: what rocking score ranks other codes beside.",
 }
 BUILT_IN = tuple(QUESTIONS)
+TOLERANCES = "tolerances"  # a result that is shown as a study's, and computed by rocking verify
 # What a study.py may have beside its plan: {its name there: the field of `Study`}.
 OWN = {"problems": "problems", "WHOLE": "whole", "INDEXED": "indexed"}
 
@@ -107,6 +105,8 @@ def get_study(name: str) -> Study:
         found = import_module(f"{package}.study")
         own = {field: getattr(found, given) for given, field in OWN.items() if hasattr(found, given)}
         return Study(name, QUESTIONS[name], found.plan, f"{package}.page", **own)
+    if name == TOLERANCES:
+        return Study(name, "", _verified, f"{PACKAGE}.{name}")
     entries = list(entry_points(group=GROUP, name=name))
     if not entries:
         raise KeyError(f"unknown study {name!r}: choose one of {', '.join(study_names())}")
@@ -120,6 +120,10 @@ def get_study(name: str) -> Study:
     if not isinstance(study, Study) or study.name != name:
         raise StudyBroken(f"{who}: it is no comparisons.running.plan.Study called {name!r}")
     return study
+
+
+def _verified(request):
+    raise SettingError(f"study {TOLERANCES}: rocking verify --output DIR measures and writes it")
 
 
 def _distribution(entry):

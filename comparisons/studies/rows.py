@@ -127,7 +127,7 @@ ROWS = {
             'both overturn' 'only the isolated one does, within 0.30 m' 'isolated lifts' 'beyond x_max'""",
         "cost": "integrator what ratio? ratio_low? ratio_high? ratios errors cpu_seconds at_errors",
     },
-    "tolerances": {"tolerance": "quantity engine variant scenes bound? unit measured? source found? holds failure?"},
+    "tolerances": {"tolerance": "quantity engine variant scenes bound? unit measured? source found? holds? failure?"},
     "mistakes": {
         "run": """engine variant scene mistake? done? group? expected outcome reason? error? energy? graph?
             displacement? steps?"""

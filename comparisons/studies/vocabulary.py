@@ -307,11 +307,11 @@ OWN: dict[str, dict[str, Explained]] = {
     "tolerances": {
         "quantity": word("whose error is bounded"),
         "scenes": word("on which it is measured"),
-        "bound": number("largest error allowed", "see unit"),
+        "bound": number("largest error allowed; null: none is stated", "see unit"),
         "unit": word("of error and bound"),
         "measured": number("error when the bound was set", "see unit"),
         "found": number("error now", "see unit"),
-        "holds": flag("whether the error now is within the bound"),
+        "holds": flag("whether the error now is within the bound; null: no bound is stated"),
         "source": word("where the error comes from"),
         "failure": word("why nothing was found; null where something was"),
     },

@@ -163,12 +163,6 @@ def test_the_study_of_the_paper_runs_and_shows_it(crude, tmp_path):
     assert len(ends) >= 6 and ends["isolated Caryatid"] == "stands" and drawn(section)
 
 
-def test_the_tolerances_say_that_it_states_none(crude, tmp_path):
-    study = get_study("tolerances")
-    section = shown(study, *answered(study.plan(ASK), None), tmp_path)
-    assert "crude states no tolerances, so none is measured." in section.text
-
-
 def test_the_growth_of_cost_and_the_report_run_it(crude):
     scenes = {trial.name: trial.scene for trial in trials()}
     grown = growth.growth_cases(scenes["isolated-standing"], ASK.engines, True)
@@ -179,7 +173,7 @@ def test_the_growth_of_cost_and_the_report_run_it(crude):
 
 def test_every_study_of_this_project_is_covered():
     # recorded, shake-table: below; and test_mistakes
-    own_tests = {"overturning", "caryatid", "tolerances", "recorded", "mistakes", "shake-table"}
+    own_tests = {"overturning", "caryatid", "recorded", "mistakes", "shake-table"}
     assert set(BUILT_IN) == SHORT.keys() | own_tests
 
 
