@@ -139,7 +139,7 @@ def test_a_constant_halved_or_doubled_changes_as_much_as_is_listed(engine, varia
         assert ended == outcomes
         ratios = others[1] / errors
         found.append(None if others[0] == bits else float(max(*ratios, *(1 / ratios))))
-    listed = MOVES[engine].get(constant, (None, None))
+    listed = MOVES.get(engine, {}).get(constant, (None, None))
     print(f"{engine}, {constant}: {found}, listed {listed}")
     assert found == [one and pytest.approx(one, rel=ALMOST) for one in listed]
 

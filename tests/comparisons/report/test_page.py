@@ -38,6 +38,15 @@ def test_a_section_that_is_old_says_so_in_its_closed_heading_and_in_the_index(pa
     assert [anchor for anchor, words in links.items() if "(older than the code)" in words] == [OLD]
 
 
+def test_every_entry_of_the_index_leads_to_its_place_and_why_engines_err_stands_in_the_impact(page):
+    index = re.search(r'<nav aria-label="Contents">(.*?)</nav>', page, re.DOTALL)[1]
+    links = re.findall(r'<a href="#([\w-]+)">\s*(.*?)\s*</a>', index, re.DOTALL)
+    assert all(page.count(f' id="{anchor}"') == 1 for anchor, _ in links)
+    assert ("autopsy", "Why engines err") in links  # the place that it had as a study of its own
+    impact = re.search(r'<section id="impact">(.*?)</section>', page, re.DOTALL)[1]
+    assert 'id="autopsy"' in impact and "First impact on rigid ground." in impact and "Why engines err: " in impact
+
+
 def test_every_cell_of_the_first_tables_has_its_sign_and_the_legend_says_what_it_means(page):
     legend = html.unescape(re.sub("<[^>]*>", "", re.search(r'<p class="legend">(.*?)</p>', page)[1]))
     cells = [
