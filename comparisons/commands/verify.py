@@ -53,7 +53,7 @@ def command(
         raise SettingError(f"--variant {variant}: belongs to one engine; name it with --engine")
     results: list[dict[str, Any]] = []
     for name in named_engines(engine or installed_engines()):
-        for one in [variant] if variant else [*get_engine(name).tolerance_rows()] or [None]:
+        for one in [variant] if variant else get_engine(name).tolerance_rows() or [None]:
             results += _verified(name, rows(name, one), time_limit)
     if output is not None:
         _write(Path(output), results)

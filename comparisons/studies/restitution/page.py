@@ -72,7 +72,6 @@ def page(result: Result) -> Page:
             "The error is measured by states: the tilt rate after over that before, at the impact, minus eq. (7), as "
             "root mean square over impacts. By swings, from the energy of the swings before and after, it includes "
             "what built-in damping dissipates in flight. Of both measures and grounds the worse one rates a variant.",
-            *why.lead,
         ),
         first=(
             _over_slenderness(cells, result.settings["default_variants"]),
@@ -88,11 +87,8 @@ def page(result: Result) -> Page:
                 FAILED,
                 LOST,
             ),
-            Head(why.title),
-            *why.first,
         ),
         more=(
-            *why.more,
             Head("Slenderness and base mass"),
             *_maps(cells),
             table(
@@ -123,6 +119,10 @@ def page(result: Result) -> Page:
             *_on_bearings(result),
             Head("Levels"),
             *_refinement(levels),
+            Head(why.title, "why"),  # the report's first page leads to it
+            *why.lead,
+            *why.first,
+            *why.more,
             Head("Causes, one at a time"),
             *causes(result, variants),
             Head("Eq. (8), corrected and as printed"),

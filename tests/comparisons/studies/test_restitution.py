@@ -11,7 +11,7 @@ from analytic.rocking import restitution
 from comparisons.report.detail import write_study
 from comparisons.running.provenance import RESULTS, read_result
 from comparisons.running.study import compute
-from comparisons.showing.parts import RESTITUTION, Figure, Head, Table, number, where
+from comparisons.showing.parts import RESTITUTION, Figure, Table, number, where
 from comparisons.studies import get_study
 from comparisons.studies.restitution.cases import (
     CARYATID_BASE,
@@ -112,14 +112,14 @@ def test_a_small_study_finds_what_is_known(small):
 def test_the_page_comes_from_the_result_alone(small):
     page = STUDY.page(read_result(small))
     opening, whole = page.opening(), page.whole()
-    assert whole.parts[:5] == opening.parts and list(map(type, opening.parts)) == [Figure, Table, Head, Figure, Table]
+    assert whole.parts[:2] == opening.parts and list(map(type, opening.parts)) == [Figure, Table]
     aware, first = "pybullet, impact-aware", "pybullet, first-script"
     ratings = {row[0]: row[1] for row in opening.tables[0].rows}
     assert ratings[aware] == "trusted" and ratings[first] == "not to be trusted"
     (variants,) = [table for table in whole.tables if table.caption.startswith("All variants")]
     settings = {row[0]: row[3] for row in variants.rows}
     assert settings[first] == "step = 0.00417 s"
-    # first; why; both maps; on bearings; levels and cost; step phase; damping; eq. (8): no setting to change alone
+    # first; both maps; on bearings; levels and cost; why; step phase; damping; eq. (8): no setting to change alone
     assert len(whole.figures) == 9 and all(figure.alt and figure.caption for figure in whole.figures)
 
 
@@ -142,7 +142,7 @@ def test_the_error_of_the_first_screen_is_the_one_by_states_in_the_section():
     """Of both grounds the worse, as the stored rows have it; the other measure has its own name and column."""
     result, study = read_result(RESULTS / "restitution.json"), get_study("restitution")
     opening = study.page(result).opening()
-    table, _ = opening.tables
+    (table,) = opening.tables
     marks = next(one for one in study.judgements(result) if one.key == RESTITUTION).marks
     assert "without slip" in opening.title and "by states" in opening.figures[0].caption
     for row in table.rows:

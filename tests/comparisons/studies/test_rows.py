@@ -4,7 +4,7 @@ import pytest
 from answered import edit
 
 from comparisons.running.provenance import RESULTS, ResultError, read_result, write_result
-from comparisons.studies import BUILT_IN, get_study
+from comparisons.studies import BUILT_IN, TOLERANCES, get_study
 from comparisons.studies.explained import TYPES, Explained
 from comparisons.studies.rows import ROWS, _columns, read_study, wrong_with
 from comparisons.studies.vocabulary import columns_of
@@ -20,7 +20,7 @@ def test_rows_of_every_stored_result_are_those_of_its_study(file):
 
 
 def test_every_study_declares_rows_of_columns_that_are_explained():
-    assert ROWS.keys() == set(BUILT_IN)
+    assert ROWS.keys() == {*BUILT_IN, TOLERANCES}
     for kind, parts in ROWS.items():
         known = columns_of(kind)
         for part in parts:
