@@ -67,7 +67,7 @@ EXPERIMENT_RATIOS = (None, CARYATID_BASE)
 PHASE_STEPS = (4e-3, 1e-3, 2.5e-4)  # s
 SCALES = (0.25, 1.0, 4.0)  # of the block, to tell (8) from (8) as printed
 
-# Of the block whose first impact is taken apart: tilt over slenderness, and seconds past the swing after that impact.
+# Of the block whose first impact is taken apart: tilt over slenderness; duration [s], past the swing after that impact.
 IMPACT_START, IMPACT_SECONDS = 0.6, 1.6
 GROUNDS = {"rigid ground": None, "sliding base": Base(mass=BASE.mass)}
 
