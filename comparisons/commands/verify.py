@@ -1,5 +1,6 @@
 """``rocking verify``: whether the engines installed here meet the tolerances."""
 
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -15,7 +16,15 @@ def command(
     engine: Annotated[
         list[str] | None, typer.Option(help="An engine to verify; may be repeated. Default: all that are installed.")
     ] = None,
-    variant: Annotated[str | None, typer.Option(help="Variant of the one engine. Default: its main one.")] = None,
+    variant: Annotated[
+        str | None, typer.Option(help="Variant of the one engine. Default: all that state tolerances.")
+    ] = None,
+    output: Annotated[
+        str | None,
+        typer.Option(
+            metavar="DIR", help="Write the rows as DIR/tolerances.json, too, which rocking report --studies DIR shows."
+        ),
+    ] = None,
     json_file: Annotated[
         str | None, typer.Option("--json", metavar="FILE", help="Write the rows; - prints them.")
     ] = None,
@@ -33,16 +42,21 @@ def command(
     from engines import get_engine, installed_engines
 
     from ..measuring.tolerances import rows
-    from ..running.files import check_writable
+    from ..running.files import check_folder, check_writable
     from ..schemas.runs import Tolerance, Verification
 
     check_time_limit(time_limit)
     check_writable([json_file])
+    if output is not None:
+        check_folder(output)
     if variant is not None and len(engine or ()) != 1:
         raise SettingError(f"--variant {variant}: belongs to one engine; name it with --engine")
     results: list[dict[str, Any]] = []
     for name in named_engines(engine or installed_engines()):
-        results += _verified(name, rows(name, variant), time_limit)
+        for one in [variant] if variant else get_engine(name).tolerance_rows() or [None]:
+            results += _verified(name, rows(name, one), time_limit)
+    if output is not None:
+        _write(Path(output), results)
     versions = {name: get_engine(name).versions() for name in dict.fromkeys(row["engine"] for row in results)}
     form = Verification(versions=versions, rows=[Tolerance(**row) for row in results])
     write_output({json_file: form}, lambda: _show(results))
@@ -64,6 +78,20 @@ def _verified(name, table, time_limit):
         return found
     say(f"{name}: {failure.reason}. {failure.message.partition(chr(10))[0]}")
     return [row.result(None, failure.reason) for row in table]
+
+
+def _write(folder, results):
+    """The rows as a result file, beside those of the studies."""
+    from engines import ENGINES
+
+    from ..running.provenance import write_result
+    from ..studies import TOLERANCES
+
+    engines = [ENGINES[name] for name in dict.fromkeys(row["engine"] for row in results)]
+    code = ["comparisons.measuring.tolerances:measure_all", *(engine.adapter for engine in engines)]
+    code += [f"{engine.tolerances}:TOLERANCES" for engine in engines if engine.tolerances]
+    rows = [{"part": "tolerance", **row} for row in results]
+    write_result(folder / f"{TOLERANCES}.json", TOLERANCES, {}, rows, modules=code)
 
 
 def _show(results):

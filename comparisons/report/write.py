@@ -41,7 +41,6 @@ CONTACT_OURS = "contact law: ours"  # so begins what such an adapter imposes
 SHORT = {
     "restitution": "One impact",
     "random-scenes": "Random statues",
-    "autopsy": "Why engines err",
     "overturning": "Many pulses",
     "recorded": "Recorded motions",
     "shake-table": "Shake table",
@@ -104,7 +103,6 @@ def write_page(
             cards=_cards(scenes, calls or {}),
             motion=scenes.settings["motion"]["label"] if scenes.settings["motion"] else "no motion",
             contents=_contents(scenes, stored),
-            explained="autopsy" if any(one.name == "autopsy" for one in stored) else "impact",
             equations=equations.EQUATIONS,
             drawings=[diagrams.rocking(), diagrams.impact(), diagrams.isolated()],
             frames=equations.frames(),
@@ -236,8 +234,8 @@ def _contents(scenes: Result, stored: list[Stored]) -> list[Part]:
         anchor = "impact" if name == "restitution" else name
         short, page = SHORT.get(name, one.section.title), f"{PAGES}/{name}.html"
         parts.append(Part(anchor, short, one.finding, made(one.origin), page, name in FOLDED))
-        if name == ("autopsy" if "autopsy" in order else "restitution"):
-            parts.append(own)
+        if name == "restitution":
+            parts += [Part("autopsy", "Why engines err", None), own]
     if own not in parts:
         parts.insert(1, own)
     return [*parts, Part("method", "Method and words", None)]

@@ -1,6 +1,5 @@
 """One run of a study: scene, solver, variant and settings; and all that its result depends on."""
 
-import contextlib
 import functools
 import hashlib
 import json
@@ -9,7 +8,6 @@ import platform
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any
-from unittest.mock import patch
 
 from analytic import Block, Response, Scene, Start
 from engines import ENGINES, get_engine
@@ -32,8 +30,7 @@ class Case:
     scene: what is simulated. solver: "analytic", "twin", "time-stepping", the name of an engine, or
     "module:function". variant: None takes the solver's default. settings: keyword arguments, JSON values
     only; {"history": False} saves time if the measure uses no history. tag: whatever the measure and the
-    study want to know of it (JSON values). constants: {"module:NAME": value} of numbers in the solver's code that are
-    others during this run.
+    study want to know of it (JSON values).
     """
 
     scene: Scene
@@ -41,15 +38,13 @@ class Case:
     variant: str | None = None
     settings: dict = field(default_factory=dict)
     tag: dict = field(default_factory=dict)
-    constants: dict = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "settings", dict(self.settings))
         object.__setattr__(self, "tag", dict(self.tag))
 
     def key(self, measure: Callable[..., Any]) -> str:
-        """Hash of all that the row depends on: scene, solver, variant, settings, tag, measure, versions, sources, and
-        constants where there are any."""
+        """Hash of all that the row depends on: scene, solver, variant, settings, tag, measure, versions, sources."""
         content = (
             self.scene.digest(),
             self.solver,
@@ -58,7 +53,6 @@ class Case:
             self.tag,
             name_of(measure),
             fingerprint(self.solver, name_of(measure)),
-            *([self.constants] if self.constants else ()),
         )
         return hashlib.sha256(json.dumps(content, sort_keys=True, allow_nan=False).encode()).hexdigest()[:32]
 
@@ -67,11 +61,7 @@ class Case:
         options: dict[str, Any] = {} if self.variant is None else {"variant": self.variant}
         if self.solver in ENGINES:
             options["compare"] = False  # a study measures by itself; one that wants it sets it
-        simulate = solver(self.solver)
-        with contextlib.ExitStack() as others:
-            for name, value in self.constants.items():
-                others.enter_context(patch(today(name).replace(":", "."), value))  # the worker goes on to other cases
-            return simulate(self.scene, **{**options, **self.settings})
+        return solver(self.solver)(self.scene, **{**options, **self.settings})
 
 
 def solver(name: str) -> Callable:

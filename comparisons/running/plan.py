@@ -94,10 +94,9 @@ class Study:
     are options of the command. shown_by: the module that shows it, imported only there: its ``page(result)`` gives the
     `comparisons.showing.parts.Page`; its ``judgements(result)``, if it has them, rows of the report's first table, and
     its ``glance(result)`` what stands above them.
-    problems: result -> sentences that end the command with status 1. all_engines: whether all that are installed
-    take part where none is asked for. whole: why one engine's rows cannot be computed anew by themselves (`merge`); ""
-    where they can. indexed: {array: its column that says of which engine a row is, by the place in the settings'
-    "engines"}; other arrays of an engine bear its name.
+    problems: result -> sentences that end the command with status 1. whole: why one engine's rows cannot be computed
+    anew by themselves (`merge`); "" where they can. indexed: {array: its column that says of which engine a row is, by
+    the place in the settings' "engines"}; other arrays of an engine bear its name.
     """
 
     name: str
@@ -105,7 +104,6 @@ class Study:
     plan: Callable[..., Plan]
     shown_by: str = ""
     problems: Callable[[Result], list] = lambda result: []
-    all_engines: bool = True
     whole: str = ""
     indexed: Mapping[str, int] = field(default_factory=dict)
 

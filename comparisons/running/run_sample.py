@@ -53,7 +53,7 @@ def case_of(run: Mapping[str, Any]) -> Case:
         It is no scene today.
     """
     scene = Scene(**{**run["scene"], "motion": _motion(run["scene"]["motion"])})
-    return Case(scene, run["engine"], run["variant"], run["settings"], run["tag"], run.get("constants", {}))
+    return Case(scene, run["engine"], run["variant"], run["settings"], run["tag"])
 
 
 def outcome_of(row: Row) -> dict[str, Any]:
@@ -69,7 +69,6 @@ def _run_table(batch, row, motion):
     return {
         "engine": case.solver,
         **{name: getattr(case, name) for name in ("variant", "settings", "tag")},
-        **({"constants": case.constants} if case.constants else {}),
         "measure": name_of(batch.measure),
         "time_limit": batch.time_limit,
         **outcome_of(row),

@@ -29,7 +29,10 @@ DIGITS = 8  # of a digest that is kept: of a thousand definitions one collides b
 
 
 # {a name by which stored results call code: where that stands today}, of what was moved since
-ALIASES: dict[str, str] = {}
+ALIASES: dict[str, str] = {
+    "comparisons.studies.autopsy.study:measure": "comparisons.studies.restitution.study:taken_apart",
+    "comparisons.studies.tolerances.study:plan": "comparisons.measuring.tolerances:measure_all",
+}
 
 
 def source_digests(roots: Iterable[str]) -> dict[str, str]:

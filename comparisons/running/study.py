@@ -53,7 +53,7 @@ def compute(
     folder : path
         Made if it does not exist. Runs already found there are not repeated.
     engines : iterable of str or None
-        Those to compare; None: all that are installed, or none (`Study.all_engines`).
+        Those to compare; None: all that are installed.
     quick : bool
         A first look.
     workers : int or None
@@ -92,10 +92,8 @@ def compute(
         stack.callback(_leave_nothing_empty, folder)
         _stored = store.path
         with spinner(f"{study.name}: engines and code") if progress else contextlib.nullcontext():
-            if engines is None:  # loads engines: after what is wrong with the place was found
-                asked = installed_engines() if study.all_engines else ()
-            else:
-                asked = named_engines(engines)
+            # loads engines: after what is wrong with the place was found
+            asked = installed_engines() if engines is None else named_engines(engines)
             roots = (name_of(study.plan), *(engine.adapter for engine in ENGINES.values()))
             code = digests_of_all(map(package_of, roots))
         solvers = ("analytic", *asked)

@@ -129,9 +129,10 @@ class Section:
 
 @dataclass(frozen=True)
 class Head:
-    """A heading between the parts of a page."""
+    """A heading between the parts of a page. id: of the place, where another page leads to it."""
 
     words: str
+    id: str = field(default="", repr=False)  # a place, nothing that is said
 
 
 @dataclass(frozen=True)

@@ -40,9 +40,7 @@ ROWS = {
         "phase": "engine variant step runs bias rms explained? least most",
         "flight damping": "engine variant friction? level slenderness friction_needed predicted measured",
         "failure": "engine variant reason count message tag",
-    },
-    "autopsy": {
-        "impact": "engine variant ground failure? | tier best placed error cause? words? parts steps energy_lost frames"
+        "why": "engine variant ground failure? | tier best placed error cause? words? parts steps energy_lost frames",
     },
     "overturning": {
         "edge": EDGE,
@@ -93,7 +91,6 @@ ROWS = {
         "failure": "engine variant specimen test kind reason message",
         "absent": "engine variant reason",
     },
-    "surface": {"half": "engine variant slenderness half? interval falls_by widest"},
     "sensitivity": {
         "change": f"scene engine variant change? failed to_overturning? p_value? tilt? displacement? {CHANGED}",
         "vertical": f"scene faster ratio lifts_off {CHANGED}",
@@ -125,11 +122,7 @@ ROWS = {
         "benefit": """motion cells 'both stay upright' 'only the isolated one does' 'only the free-standing one does'
             'both overturn' 'only the isolated one does, within 0.30 m' 'isolated lifts' 'beyond x_max'""",
     },
-    "tolerances": {"tolerance": "quantity engine variant scenes bound? unit measured? source found? holds failure?"},
-    "constants": {
-        "constant": """engine variant change constant? what? value? runs failed reason? outcomes_changed moved rms?
-            peak_median? peak_worst? steps cpu_seconds cpu_ratio?"""
-    },
+    "tolerances": {"tolerance": "quantity engine variant scenes bound? unit measured? source found? holds? failure?"},
     "mistakes": {
         "run": """engine variant scene mistake? done? group? expected outcome reason? error? energy? graph?
             displacement? steps?"""

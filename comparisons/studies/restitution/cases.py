@@ -1,11 +1,12 @@
 """The runs of the restitution study: blocks released from rest, in every engine, variant and level.
 
-Three parts: the grid (slenderness x base x level), blocks on bearings, released or under a pulse (slenderness x base x
-isolation period, laws in turn), and experiments that change one suspected cause of error at a time.
+Four parts: the grid (slenderness x base x level), blocks on bearings, released or under a pulse (slenderness x base x
+isolation period, laws in turn), experiments that change one suspected cause of error at a time, and the first impact of
+a block, to be taken apart.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -66,6 +67,10 @@ EXPERIMENT_RATIOS = (None, CARYATID_BASE)
 PHASE_STEPS = (4e-3, 1e-3, 2.5e-4)  # s
 SCALES = (0.25, 1.0, 4.0)  # of the block, to tell (8) from (8) as printed
 
+# Of the block whose first impact is taken apart: tilt over slenderness; duration [s], past the swing after that impact.
+IMPACT_START, IMPACT_SECONDS = 0.6, 1.6
+GROUNDS = {"rigid ground": None, "sliding base": Base(mass=BASE.mass)}
+
 
 def free_scene(slenderness: float, ratio: float | None, start: float, scale: float = 1.0) -> Scene:
     """A block on rigid ground (ratio None) or on a freely sliding base of ratio times its mass, tilted and released.
@@ -123,6 +128,18 @@ def bearing_cases(grid: Grid, engines: Sequence[str]) -> Iterator[Case]:
             place = {"slenderness": slenderness, "ratio": ratio, "period": period, "law": law}
             for engine, variant, _ in variants_of(engines):
                 yield Case(scene, engine, variant, {}, {"part": "bearings", **place, "excitation": excitation})
+
+
+def impact_scene(ground: str) -> Scene:
+    """The block whose first impact is taken apart, released on a ground of `GROUNDS`."""
+    scene = free_scene(EXPERIMENT_SLENDERNESS, None, IMPACT_START)
+    return scene.with_(name="one impact", base=GROUNDS[ground], duration=IMPACT_SECONDS)
+
+
+def impact_cases(engines: Sequence[str], grounds: Iterable[str]) -> Iterator[Case]:
+    """That block in every variant, tagged with the ground."""
+    for (engine, variant, _), ground in product(variants_of(engines), grounds):
+        yield Case(impact_scene(ground), engine, variant, tag={"ground": ground})
 
 
 def variants_of(engines: Sequence[str]) -> list[tuple[str, str, Variant]]:

@@ -42,6 +42,7 @@ from .columns import (
     WORST_STATE,
     ground,
 )
+from .contact import contact
 
 BOUNDS = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1)
 
@@ -60,6 +61,7 @@ def page(result: Result) -> Page:
     ranked = sorted(
         (row for row in ratings.values() if not row["applies_impact"]), key=lambda row: row["rms_state"] or 1e9
     )
+    why = contact(result)
     return Page(
         _title(ranked),
         (
@@ -117,18 +119,25 @@ def page(result: Result) -> Page:
             *_on_bearings(result),
             Head("Levels"),
             *_refinement(levels),
+            Head(why.title, "why"),  # the report's first page leads to it
+            *why.lead,
+            *why.first,
+            *why.more,
             Head("Causes, one at a time"),
             *causes(result, variants),
             Head("Eq. (8), corrected and as printed"),
             *equation_8(result, cells, ratings),
         ),
-        how=_how(result.settings),
-        evidence=tuple(
-            (
-                f"{row['engine']}, {row['variant']}: {row['reason']} ({row['count']} runs)",
-                f"{row['message']}\n\nfirst seen: {row['tag']}\nlast finite state: {row['last_state']}",
-            )
-            for row in where(result.rows, part="failure")
+        how=(*_how(result.settings), *why.how),
+        evidence=(
+            *(
+                (
+                    f"{row['engine']}, {row['variant']}: {row['reason']} ({row['count']} runs)",
+                    f"{row['message']}\n\nfirst seen: {row['tag']}\nlast finite state: {row['last_state']}",
+                )
+                for row in where(result.rows, part="failure")
+            ),
+            *why.evidence,
         ),
     )
 

@@ -19,6 +19,7 @@ from analytic.rocking import (
 from analytic.twin.run import Event
 from engines import get_engine
 
+from ...measuring.autopsy import CAUSES, LEAST, diagnosis
 from ...measuring.errors import SLOWEST_IMPACT, impact_errors, lost_impacts, rms, strong_impacts, worst
 from ...running.cases import Case, variant_settings
 from ...running.plan import Batch, Computed, Plan, Request
@@ -27,6 +28,8 @@ from .cases import (
     CARYATID_BASE,
     EXPERIMENT_SLENDERNESS,
     FULL,
+    GROUNDS,
+    IMPACT_START,
     IMPACTS,
     QUICK,
     Grid,
@@ -35,10 +38,10 @@ from .cases import (
     experiments_of,
     free_scene,
     grid_cases,
+    impact_cases,
     variants_of,
 )
 
-GROUNDS = ("rigid ground", "sliding base")
 FACTORS = ("slenderness", "ratio", "period", "law", "excitation")  # of blocks on bearings
 DIGITS = 4
 EXACT = ("level", "value", "ratio", "slenderness", "step", "tag", "last_state")  # not rounded
@@ -63,8 +66,16 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
     }
 
 
+def taken_apart(case: Case, response: Response) -> dict[str, Any]:
+    """The `diagnosis` of the first impact; the run is made once more, for its steps."""
+    return diagnosis(case.solver, case.variant, case.scene)
+
+
 def plan(request: Request, grid: Grid | None = None) -> Plan:
-    """The plan of the study; grid: what to cover, in place of FULL or QUICK."""
+    """The plan of the study; grid: what to cover, in place of FULL or QUICK; quick: impacts apart on rigid ground only.
+
+    Rows of the part "why": `diagnosis`, or the failure, with the ground.
+    """
     grid = grid or (QUICK if request.quick else FULL)
     cases = [
         *grid_cases(grid, request.engines),
@@ -72,6 +83,8 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
         *experiment_cases(grid, request.engines),
     ]
     runs = yield Batch(cases, measure, "restitution", time_limit=60.0)
+    grounds = list(GROUNDS)[: 1 if request.quick else None]
+    impacts = yield Batch([*impact_cases(request.engines, grounds)], taken_apart, "one impact", time_limit=60.0)
     cells = _grouped(runs, "grid", "level", "ratio", "slenderness")
     experiments = _grouped(runs, "experiment", "experiment", "ratio", "value")
     phases = {key: members for key, members in experiments.items() if key[2] == "phase"}
@@ -89,7 +102,15 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
         *_flight_damping(cells),
         *_failures(runs),
     ]
-    return Computed({"quick": request.quick, **_settings(grid, request.engines)}, [_short(row) for row in rows], arrays)
+    settings = {"quick": request.quick, **_settings(grid, request.engines)}
+    return Computed(settings, [*map(_short, rows), *map(_why, impacts)], arrays)
+
+
+def _why(run):
+    """The row of an impact that was taken apart."""
+    found = {} if run.failed else run.values
+    own = {"part": "why", "engine": run.case.solver, "variant": run.case.variant}
+    return {**own, **run.case.tag, "failure": run.failure, **found}
 
 
 def _grouped(runs, part, *tags):
@@ -121,6 +142,7 @@ def _settings(grid, engines):
         "default_variants": {engine: get_engine(engine).default_variant for engine in engines},
         "experiments": [_named(one[1:4], "setting") | {"experiment": one[0]} for one in experiments_of(engines)],
         "experiment_slenderness": EXPERIMENT_SLENDERNESS,
+        "why": {"slenderness": EXPERIMENT_SLENDERNESS, "start": IMPACT_START, "least": LEAST, "causes": CAUSES},
         "bearings": dict(zip(("slendernesses", "ratios", "periods"), grid.bearings, strict=True)),
         "friction_needed": {
             ground: friction_needed(free_scene(EXPERIMENT_SLENDERNESS, ratio, 0.6))
@@ -193,7 +215,7 @@ def _summaries(cells, engines, grid):
             own = {
                 (level, gamma, ratio): runs
                 for (*pair, level, ratio, gamma), runs in cells.items()
-                if pair == [engine, variant] and (ratio is None) == (ground == GROUNDS[0])
+                if pair == [engine, variant] and (ratio is None) == (GROUNDS[ground] is None)
             }
             everywhere = [run for (level, *_), runs in own.items() if level == kind.default for run in runs]
             if everywhere:

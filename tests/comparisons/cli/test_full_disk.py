@@ -12,11 +12,12 @@ import sys
 import pytest
 
 from comparisons.running.provenance import RESULTS, read_result
+from engines import installed_engines
 
 COMMANDS = {
     "sheet": "sheet",
-    "check": "study autopsy --check 1 --seed 3 --write --workers 1",
-    "study": "study surface --quick --workers 1",
+    "check": "study restitution --check 1 --seed 3 --write --workers 1",
+    "study": f"study fragility --quick --engine {installed_engines()[-1]} --workers 1",
     "report": "report free-rocking-rigid --engine analytic --studies studies",
     "lessons": "lessons export",
 }
@@ -51,14 +52,14 @@ def folders(tmp_path_factory):
     """Makes a folder with what a command has written there before: pages with other words, results as they are."""
     root = tmp_path_factory.mktemp("disk")
     (root / "studies").mkdir()
-    for file in RESULTS.glob("surface.*"):
+    for file in RESULTS.glob("sensitivity.*"):
         shutil.copy(file, root / "studies")
 
     def made(name, number):
         first, folder = root / name, root / f"{name}-{number}"
         if not first.exists() and name == "check":
             first.mkdir()
-            for file in RESULTS.glob("autopsy.*"):
+            for file in RESULTS.glob("restitution.*"):
                 shutil.copy(file, first)
         elif not first.exists():
             assert run(name, first).returncode == 0

@@ -160,7 +160,7 @@ def test_an_interrupted_study_says_what_is_kept(tmp_path):
 
 def test_an_interrupted_report_says_what_is_kept_and_goes_on_from_there(tmp_path):
     (tmp_path / "studies").mkdir()
-    for file in RESULTS.glob("surface.*"):
+    for file in RESULTS.glob("sensitivity.*"):
         shutil.copy(file, tmp_path / "studies")
     store, one = tmp_path / "page" / UNFINISHED / "runs.jsonl", ("--engine", installed_engines()[0])
     (tmp_path / "stands.toml").write_text(STANDS)  # no run but those of the scene itself

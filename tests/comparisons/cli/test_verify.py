@@ -4,6 +4,8 @@ import dataclasses
 import json
 
 from comparisons.measuring import agreement, tolerances
+from comparisons.report.answer import stored_studies
+from comparisons.studies.rows import read_study
 from engines import get_engine
 
 ROW = next(
@@ -17,7 +19,8 @@ WRONG = dataclasses.replace(ROW, quantity="peak tilt, held to nothing", bound=1e
 def test_verify_measures_each_row_and_names_the_one_that_fails(rocking, monkeypatch, tmp_path):
     monkeypatch.setattr(tolerances, "TABLE", (ROW, WRONG))
     file = tmp_path / "verify.json"
-    status, out, _ = rocking("verify", "--engine", "exudyn", "--json", file)
+    words = ("verify", "--engine", "exudyn", "--json", file, "--output", tmp_path / "studies")
+    status, out, _ = rocking(*words)
     assert status == 1 and "1 of 2 tolerances hold" in out
     (line,) = [line for line in out.splitlines() if "FAILS" in line]
     assert "held to nothing" in line
@@ -25,18 +28,25 @@ def test_verify_measures_each_row_and_names_the_one_that_fails(rocking, monkeypa
     assert content["schema"] == "rocking verify 3" and "exudyn" in content["versions"]["exudyn"]
     assert [row["holds"] for row in content["rows"]] == [True, False]
     assert content["rows"][0]["found"] == content["rows"][1]["found"] > 0
+    assert read_study(tmp_path / "studies" / "tolerances.json").rows == [
+        {"part": "tolerance", **row} for row in content["rows"]
+    ]
+    (shown,) = stored_studies(tmp_path / "studies")
+    assert shown.section.title == "Agreement tolerances: 1 of 2 do not hold" and shown.section.age is None
 
 
 def test_without_a_bound_nothing_holds_or_fails_and_what_was_found_is_said(rocking, monkeypatch, tmp_path):
     free = dataclasses.replace(ROW, bound=None, measured=None)
     lost = dataclasses.replace(free, measure=lambda *_: raised(agreement.Unmeasurable("no impact")))
+    words = ("verify", "--engine", "exudyn", "--variant", ROW.variant)
     for rows, status in (((free,), 0), ((free, lost), 1)):
         monkeypatch.setattr(tolerances, "rows", lambda engine, variant, rows=rows: rows)
-        ended, out, _ = rocking("verify", "--engine", "exudyn", "--json", tmp_path / "verify.json")
+        ended, out, _ = rocking(*words, "--json", tmp_path / "verify.json", "--output", tmp_path)
         assert ended == status and " hold." not in out and "FAILS" not in out
         assert f"no bound stated, so nothing holds or fails; 1 of {len(rows)} quantities measured." in out
         told = json.loads((tmp_path / "verify.json").read_text())["rows"]
         assert [row["holds"] for row in told] == [None] * len(rows) and told[0]["found"] > 0
+        assert [row["holds"] for row in read_study(tmp_path / "tolerances.json").rows] == [None] * len(rows)
     assert free.check({}) == told[0]["found"]
 
 

@@ -75,10 +75,11 @@ def test_a_report_goes_on_beside_damaged_results(copy_of, studies, tmp_path):
     cut = folder / "restitution.json"
     cut.write_bytes(cut.read_bytes()[:-1000])
     (folder / "sensitivity.npz").write_bytes(b"")
-    shutil.copy(RESULTS / "surface.json", folder / "autopsy.json")
-    shutil.copy(RESULTS / "surface.npz", folder / "autopsy.npz")
-    shutil.copy(RESULTS / "tolerances.json", folder)
-    edit(folder / "tolerances.json", lambda content: content["settings"].clear())
+    shutil.copy(RESULTS / "mistakes.json", folder / "sliding.json")
+    shutil.copy(RESULTS / "mistakes.npz", folder / "sliding.npz")
+    for end in ("json", "npz"):
+        shutil.copy(RESULTS / f"mistakes.{end}", folder)
+    edit(folder / "mistakes.json", lambda content: content["settings"].clear())
     write_page(shown, folder)
     pages = {
         file.stem: unescape(re.sub("<[^>]*>", "", file.read_text(encoding="utf-8")))
@@ -88,8 +89,8 @@ def test_a_report_goes_on_beside_damaged_results(copy_of, studies, tmp_path):
     for name, words in {
         "restitution": "not JSON",
         "sensitivity": "sensitivity.npz: missing or not the one sensitivity.json was written with",
-        "autopsy": "a result of surface; call it surface.json",
-        "tolerances": "its page fails (KeyError(",
+        "sliding": "a result of mistakes; call it mistakes.json",
+        "mistakes": "its page fails (KeyError(",
     }.items():
         assert f"{name}.json cannot be shown: {words}" in pages[name]
         assert f"Missing here: {name}.json cannot be shown: {words}" in opening
@@ -98,14 +99,14 @@ def test_a_report_goes_on_beside_damaged_results(copy_of, studies, tmp_path):
 
 def test_a_page_that_fails_on_a_result_of_the_code_of_today_is_no_damage(tmp_path, monkeypatch):
     """Nobody is told to mend a result where the page itself is wrong."""
-    path = Path(shutil.copy(RESULTS / "tolerances.json", tmp_path))
+    path, _ = (Path(shutil.copy(RESULTS / f"mistakes.{end}", tmp_path)) for end in ("json", "npz"))
     edit(path, lambda content: content["settings"].clear())
     monkeypatch.setattr("comparisons.report.detail.age", lambda result: "older than the code")
     words = (
-        r"tolerances\.json: its page cannot be drawn \(KeyError\(.*\); it is older than the code; run rocking study tol"
+        r"mistakes\.json: its page cannot be drawn \(KeyError\(.*\); it is older than the code; run rocking study mis"
     )
     with pytest.raises(ResultError, match=words):
-        write_study(get_study("tolerances"), path, tmp_path)
+        write_study(get_study("mistakes"), path, tmp_path)
     monkeypatch.setattr("comparisons.report.detail.age", lambda result: None)
     with pytest.raises(KeyError):
-        write_study(get_study("tolerances"), path, tmp_path)
+        write_study(get_study("mistakes"), path, tmp_path)

@@ -27,7 +27,7 @@ def _plan(ask):
     return Computed({}, [row.values for row in rows])
 
 
-STUDY = Study("tilts", "How far?", _plan, all_engines=False)
+STUDY = Study("tilts", "How far?", _plan)
 
 
 def sampled(*which):
@@ -39,7 +39,7 @@ def sampled(*which):
 
 @pytest.fixture
 def result(tmp_path):
-    (path,) = compute(STUDY, tmp_path, workers=1, progress=False)
+    (path,) = compute(STUDY, tmp_path, engines=(), workers=1, progress=False)
     return path
 
 

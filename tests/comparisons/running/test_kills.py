@@ -23,7 +23,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.timeout(1400), pytest.mark.xdist_gro
 
 # study: what it is given so that it stays short, and how often it is killed; 20 times in all
 ENGINE = ("--engine", installed_engines()[-1])
-STUDIES = {"surface": ((), 7), "restitution": (ENGINE, 7), "stability": (ENGINE, 6)}
+STUDIES = {"fragility": (ENGINE, 7), "restitution": (ENGINE, 7), "stability": (ENGINE, 6)}
 COSTS = ("cpu", "seconds", "steps_per_second")  # names of what differs from run to run
 
 
@@ -81,10 +81,10 @@ def test_a_study_killed_again_and_again_ends_with_the_same_results(tmp_path, who
 
 
 def test_a_study_on_a_full_disk_says_so_and_resumes_when_there_is_room(tmp_path, whole):
-    expected, _ = whole("surface")
+    expected, _ = whole("fragility")
     room = 5_000  # bytes in a file, for the disk: more than what a place is tried with, less than all rows take
     process = start(
-        "surface",
+        "fragility",
         tmp_path,
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (room, resource.RLIM_INFINITY)),
     )
@@ -93,4 +93,4 @@ def test_a_study_on_a_full_disk_says_so_and_resumes_when_there_is_room(tmp_path,
     assert "the rows so far are kept: make room and run again" in words
     with Store(tmp_path / "runs.jsonl") as store:
         assert 0 < len(store.rows) < len(expected[1])
-    assert finished("surface", tmp_path) == expected
+    assert finished("fragility", tmp_path) == expected

@@ -116,10 +116,11 @@ def test_the_page_comes_from_the_result_alone(small):
     aware, first = "pybullet, impact-aware", "pybullet, first-script"
     ratings = {row[0]: row[1] for row in opening.tables[0].rows}
     assert ratings[aware] == "trusted" and ratings[first] == "not to be trusted"
-    settings = {row[0]: row[3] for row in whole.tables[1].rows}
+    (variants,) = [table for table in whole.tables if table.caption.startswith("All variants")]
+    settings = {row[0]: row[3] for row in variants.rows}
     assert settings[first] == "step = 0.00417 s"
-    # first; both maps; on bearings; levels and cost; step phase; damping; eq. (8): no setting to change alone
-    assert len(whole.figures) == 8 and all(figure.alt and figure.caption for figure in whole.figures)
+    # first; both maps; on bearings; levels and cost; why; step phase; damping; eq. (8): no setting to change alone
+    assert len(whole.figures) == 9 and all(figure.alt and figure.caption for figure in whole.figures)
 
 
 def test_no_worst_error_is_less_than_the_root_mean_square_beside_it(small):

@@ -4,7 +4,7 @@ import pytest
 from answered import edit
 
 from comparisons.running.provenance import RESULTS, ResultError, read_result, write_result
-from comparisons.studies import BUILT_IN, get_study
+from comparisons.studies import BUILT_IN, TOLERANCES, get_study
 from comparisons.studies.explained import TYPES, Explained
 from comparisons.studies.rows import ROWS, _columns, read_study, wrong_with
 from comparisons.studies.vocabulary import columns_of
@@ -20,7 +20,7 @@ def test_rows_of_every_stored_result_are_those_of_its_study(file):
 
 
 def test_every_study_declares_rows_of_columns_that_are_explained():
-    assert ROWS.keys() == set(BUILT_IN)
+    assert ROWS.keys() == {*BUILT_IN, TOLERANCES}
     for kind, parts in ROWS.items():
         known = columns_of(kind)
         for part in parts:
@@ -66,8 +66,8 @@ def test_a_row_without_numbers_says_why_and_needs_no_more():
 def test_a_result_of_another_study_is_refused_by_name_and_a_foreign_one_is_not_looked_at(tmp_path):
     path = write_result(tmp_path / "r.json", "swings", {}, [{"height": "high"}], modules=["analytic.errors"])
     assert read_study(path).rows == [{"height": "high"}] and read_study(path, "swings").kind == "swings"
-    with pytest.raises(ResultError, match=r"r\.json: a result of swings; give one that rocking study surface wrote"):
-        read_study(path, "surface")
+    with pytest.raises(ResultError, match=r"r\.json: a result of swings; give one that rocking study sliding wrote"):
+        read_study(path, "sliding")
 
 
 def test_a_number_changed_in_a_stored_result_is_seen(tmp_path):

@@ -9,13 +9,13 @@ from table_tests import published
 
 from comparisons.running.plan import Request
 from comparisons.running.provenance import RESULTS, read_result
-from comparisons.studies import BUILT_IN, get_study
+from comparisons.studies import BUILT_IN, TOLERANCES, get_study
 from comparisons.studies.explained import SHARED
 from comparisons.studies.vocabulary import OWN, columns_of
 from engines import installed_engines
 
 # Of no stored result: an impact about which nothing can be determined.
-UNSEEN = {"autopsy": {"why_not"}}
+UNSEEN = {"restitution": {"why_not"}}
 FAILED = {"kind": "solver", "reason": "the solver gave up", "message": "no convergence"}
 UNSEEN_OF_ANY = {"exit_code", "time_limit"}  # of failures that no stored run had
 
@@ -42,7 +42,7 @@ def test_every_column_is_explained(columns):
 
 
 def test_every_explained_column_is_one(columns):
-    assert set(BUILT_IN) == set(OWN)
+    assert {*BUILT_IN, TOLERANCES} == set(OWN)
     for kind, own in OWN.items():
         assert own.keys() - columns[kind] == UNSEEN.get(kind, set()), kind
     uses = Counter(column for found in columns.values() for column in found)

@@ -1,4 +1,4 @@
-"""What is shown of the autopsy study."""
+"""What is shown of why engines err: the first impact of a block released, taken apart."""
 
 import numpy as np
 
@@ -20,9 +20,10 @@ FRAMES = {
 ERROR = Column("error of restitution [-]", "error")
 
 
-def page(result: Result) -> Page:
-    settings = result.settings
-    told = [row for row in result.rows if row["failure"] is None and "why_not" not in row]
+def contact(result: Result) -> Page:
+    """The parts of the study's page that say why, as if they were a page of their own."""
+    settings, rows = result.settings["why"], where(result.rows, part="why")
+    told = [row for row in rows if row["failure"] is None and "why_not" not in row]
     ranked = sorted(told, key=lambda row: -abs(row["error"]))
     wrong, best = [row for row in ranked if row["cause"]], where(ranked, best=True)
     sound = where(best, cause=None)
@@ -69,7 +70,7 @@ def page(result: Result) -> Page:
         ),
         evidence=tuple(
             (f"{NAME.of(row)}, {row['ground']}", row.get("why_not") or row["failure"]["reason"])
-            for row in result.rows
+            for row in rows
             if row["failure"] is not None or "why_not" in row
         ),
     )

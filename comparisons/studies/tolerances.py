@@ -1,21 +1,16 @@
-"""What is shown of the tolerances study."""
+"""What is shown of the tolerances, a result of no study: ``rocking verify --output DIR`` measures and writes it."""
 
-from ...running.provenance import Result
-from ...showing.parts import NAME, Column, Page, table, where
+from ..running.provenance import Result
+from ..showing.parts import NAME, Column, Page, table, where
 
 
 def page(result: Result) -> Page:
-    broken = len(where(result.rows, holds=False))
+    broken, bounded = where(result.rows, holds=False), where(result.rows, holds={True, False})
     return Page(
-        f"Agreement tolerances: {f'{broken} of {len(result.rows)} do not hold' if broken else 'all hold'}",
+        f"Agreement tolerances: {f'{len(broken)} of {len(bounded)} do not hold' if broken else 'all hold'}",
         (
-            f"{len(result.rows)} tolerances, each the assertion of a test. A bound is at most twice the worst error "
+            f"{len(bounded)} tolerances, each the assertion of a test. A bound is at most twice the worst error "
             "measured when it was set, but for round-off.",
-            *(
-                f"{engine} states no tolerances, so none is measured."
-                for engine in result.settings["engines"]
-                if not where(result.rows, engine=engine)
-            ),
         ),
         more=(
             table(
@@ -28,7 +23,7 @@ def page(result: Result) -> Page:
                 Column("measured when set", "measured", digits=3),
                 Column("measured now", lambda row: row["failure"] or row["found"], digits=3),
                 Column("unit", "unit"),
-                Column("holds", lambda row: "yes" if row["holds"] else "no"),
+                Column("holds", lambda row: {True: "yes", False: "no"}.get(row["holds"], "no bound stated")),
                 Column("where the error comes from", "source"),
             ),
         ),

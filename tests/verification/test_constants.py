@@ -1,0 +1,148 @@
+"""Every number chosen in an engine's tuned variant, halved and doubled alone: it changes no run, or as much as listed.
+
+Blocks released on three grounds, random statues that stay upright, pulses close to an outcome boundary, and the
+Caryatid under the synthetic motion: 21 runs for each value.
+"""
+
+import itertools
+from functools import cache, partial
+from pkgutil import resolve_name
+
+import numpy as np
+import pytest
+
+from analytic import Base, Start, load_scene, simulate
+from analytic.caryatid import BASE, MASS, caryatid_block
+from comparisons.measuring.errors import impact_errors, rms
+from comparisons.studies.random_scenes.study import random_scene
+from comparisons.studies.restitution.cases import free_scene, variants_of
+from comparisons.studies.stability.cases import hard_cases
+from engines import ENGINES, get_engine, installed_engines
+from engines.statue_range import RANGE
+
+pytestmark = pytest.mark.timeout(1400)
+
+LEAST = 1e-5  # of the slenderness: errors of a peak tilt below it are taken as it
+MOST_IMPACTS = 1000  # a run of so many costs as much as the rest of the sample
+ALMOST = 0.02  # of a factor
+# {engine: {constant: by what factor an error (of restitution rms, of peak tilts in the median and at worst) moves at
+# most, either way, where it is halved and where it is doubled}}; those not listed change no run, bit for bit. Large
+# effects are listed, not tuned away: stiffness and largest_step are the accuracy parameters.
+MOVES = {
+    "exudyn": {
+        "stiffness": (3.422, 14.381),
+        "rebound": (2.251, 1.357),
+        "friction": (1.302, 1.567),
+        "sticking": (1.926, 1.875),
+        "damping": (1.014, 1.013),
+        "slip": (1.014, 1.082),
+        "tolerance": (1.003, 1.005),
+        "longest_step": (1.022, 1.019),
+        "pivoting_step": (2.567, 1.831),
+        "engines.exudyn.corners:RELAX": (1.741, 1.055),
+        "engines.exudyn.phases:AHEAD": (1.023, 1.040),
+        "engines.exudyn.phases:PUSHED": (1.014, 1.008),
+        "engines.exudyn.phases:CARRIES": (1.003, 1.010),
+        "engines.exudyn.phases:WORTHWHILE": (1.000, 1.020),
+        "engines.exudyn.phases:SMOOTH": (1.033, 1.122),
+        "engines.exudyn.phases:FIRST": (1.022, 1.019),
+        "engines.exudyn.phases:RESIDUAL": (1.027, 1.036),
+        "engines.exudyn.phases:DIFFERENCE": (1.009, 1.045),
+        "engines.vibration:VIBRATION": (1.035, 1.173),
+    },
+    "pybullet": {
+        "largest_step": (3.409, 3.542),
+        "engines.stepping:SMALLEST_STEP": (1.703, 1.826),
+        "engines.step_size:SHARE": (1.031, 1.098),
+        "engines.step_size:GROWTH": (1.191, 1.203),
+        "engines.step_size:HOLD": (1.000, 1.000),
+        "engines.step_size:NEAR": (1.000, 1.001),
+        "engines.stepping:LANDING": (1.000, 1.001),
+        "engines.stepping:SMEARED": (1.000, 1.000),
+        "engines.vibration:STIFF": (1.000, 1.010),
+        "engines.pybullet.scene:FRICTION": (1.000, None),
+        "engines.pybullet.scene:CORNER_RADIUS": (1.009, 1.037),
+        "engines.pybullet.scene:ROCKING_REST": (1.000, 1.000),
+        "engines.pybullet.scene:STANDING_REST": (1.000, 1.003),
+    },
+}
+VARIANTS = {(engine, name): variant for engine, name, variant in variants_of(installed_engines()) if variant.constants}
+DECLARED = [(*one, constant) for one, variant in VARIANTS.items() for constant in variant.constants]
+
+
+@cache
+def sample():
+    """([scenes whose impacts are judged], [statues whose peak tilts are], [scenes whose outcomes are])."""
+    isolated = load_scene("free-rocking-isolated").with_(duration=4.0)
+    heavy = {"base": Base(mass=MASS), "block": caryatid_block(0.2), "start": Start(tilt=0.12)}
+    released = [free_scene(*one, 0.6) for one in itertools.product((0.15, 0.45), (None, BASE.mass / MASS))]
+    drawn = (scene for index in itertools.count() if (scene := random_scene(0, index)).motion and _stays(scene))
+    near = [hard_cases()[f"critical pulse {sign}0.001"].scene for sign in "-+"]
+    statues = list(itertools.islice(drawn, 12))
+    return [*released, isolated, isolated.with_(**heavy)], statues, [load_scene("caryatid-rigid"), *near]
+
+
+def _stays(scene):
+    """Whether a block rocks, but never beyond its unstable point: there the least change may be another outcome."""
+    run = simulate(scene, history=False)
+    return RANGE["tilt"][0] <= run.peak_tilt_ratio < 1 and len(run.impacts) < MOST_IMPACTS
+
+
+def ran(engine, variant, **settings):
+    """Outcomes of the runs; all else that may move; errors of restitution, and of peak tilts, median and worst."""
+    released, statues, others = sample()
+    scenes = [*released, *statues, *others]
+    solve = partial(get_engine(engine).simulate, variant=variant, history=False, compare=False, **settings)
+    runs = [solve(scene) for scene in scenes]
+    impacts = [impact_errors(scene, run)["state"].tolist() for scene, run in zip(scenes, runs, strict=True)]
+    peaks = [
+        abs(run.peak_tilt_ratio - simulate(scene, history=False).peak_tilt_ratio)
+        for scene, run in zip(statues, runs[len(released) :], strict=False)
+    ]
+    bits = repr([(run.peak_tilt_ratio, run.steps, some) for run, some in zip(runs, impacts, strict=True)])
+    errors = rms(sum(impacts[: len(released)], [])), *np.maximum((np.median(peaks), max(peaks)), LEAST)
+    return [run.outcome for run in runs], bits, np.array(errors)
+
+
+as_it_is = cache(ran)
+
+
+def changed(engine, variant, constant, factor, monkeypatch):
+    """The settings with which a run has a constant times a factor, which in the code is changed here; whole numbers
+    remain so."""
+    if ":" not in constant:
+        return {constant: scaled(getattr(VARIANTS[engine, variant].settings, constant), factor)}
+    monkeypatch.setattr(constant.replace(":", "."), scaled(resolve_name(constant), factor))
+    return {}
+
+
+def scaled(value, factor):
+    return type(value)(factor * value)
+
+
+@pytest.mark.parametrize("engine, variant, constant", DECLARED)
+def test_every_constant_declared_is_a_number_that_is_there(engine, variant, constant, monkeypatch):
+    given = changed(engine, variant, constant, 2.0, monkeypatch)
+    assert (given[constant] if given else resolve_name(constant)) > 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("engine, variant, constant", DECLARED)
+def test_a_constant_halved_or_doubled_changes_as_much_as_is_listed(engine, variant, constant, monkeypatch):
+    outcomes, bits, errors = as_it_is(engine, variant)
+    found = []
+    for factor in (0.5, 2.0):
+        with monkeypatch.context() as patch:
+            ended, *others = ran(engine, variant, **changed(engine, variant, constant, factor, patch))
+        assert ended == outcomes
+        ratios = others[1] / errors
+        found.append(None if others[0] == bits else float(max(*ratios, *(1 / ratios))))
+    listed = MOVES.get(engine, {}).get(constant, (None, None))
+    print(f"{engine}, {constant}: {found}, listed {listed}")
+    assert found == [one and pytest.approx(one, rel=ALMOST) for one in listed]
+
+
+def test_no_constant_is_listed_that_is_none():
+    declared = {(engine, constant) for engine, _, constant in DECLARED}
+    listed = {(engine, constant) for engine, constants in MOVES.items() for constant in constants}
+    assert {one for one in listed if one[0] in installed_engines()} <= declared and MOVES.keys() <= ENGINES.keys()
