@@ -91,7 +91,7 @@ def _value(kind, text, place):
 MATCHING = 1e-5  # largest error of answers against those of the mistake they come from
 WRONG = 1e-3  # error from which a cause is looked for: far beyond what `MATCHING` allows for
 TELLING = 2  # numbers at least that must be wrong before a cause is named
-STORED = "sheet.json"
+STORED = "sheet"
 
 
 class SceneScore(Part):
@@ -175,7 +175,7 @@ def stored_errors() -> tuple[dict[str, list[tuple[float, str]]], str]:
     for row in result.rows:
         if row["error"] is not None:
             table.setdefault(row["scene"], []).append((row["error"], f"{row['engine']}, {row['variant']}"))
-    when = f"{STORED}, computed on {by_engine(result.provenance, date_of)}"
+    when = f"{STORED}, computed on {by_engine(result, date_of)}"
     return {name: sorted(rows) for name, rows in table.items()}, when
 
 

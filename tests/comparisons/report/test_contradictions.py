@@ -53,7 +53,7 @@ def decision(studies):
 
 def shown(name):
     """(page, judgements) of a study's stored result."""
-    study, result = get_study(name), read_result(RESULTS / f"{name}.json")
+    study, result = get_study(name), read(RESULTS / f"{name}")
     return study.page(result).whole(), study.judgements(result)
 
 
@@ -91,7 +91,7 @@ def test_every_number_of_a_title_is_one_of_its_tables(name):
 
 def test_the_rating_of_restitution_is_the_same_on_the_first_screen_and_on_its_page(decision):
     words = {"good": "may be trusted", "fair": "is usable", "bad": "is not to be trusted"}
-    rows = rated(read_result(RESULTS / "restitution.json"))
+    rows = rated(read(RESULTS / "restitution"))
     page, judgements = shown("restitution")
     (heading,) = (one.heading for one in judgements if one.key == RESTITUTION)
     table = page.tables[0]
@@ -130,7 +130,7 @@ def test_cost_is_one_number_in_title_table_and_first_screen(studies, decision):
     advised = [one for one in study.glance.advice if one.engine]
     costs = {f"{number(1e3 * one.cost, 2)} ms ({one.engine})" for one in advised if one.accuracy == 1e-3}
     assert len(costs) == 2 and all(cost in words for cost in costs)  # one number in the line and in the recommendation
-    rows = where(read_result(RESULTS / "speed-error.json").rows, scene="isolated-rocking", variant="script")
+    rows = where(read(RESULTS / "speed-error").rows, scene="isolated-rocking", variant="script")
     assert len(rows) == 2 == len(re.findall(r" ms with an error of ", script))
     for row in rows:
         cost = number(1e3 * row["cpu_per_second"] * row["cpu_low"] / row["cpu_seconds"], 2)

@@ -183,7 +183,7 @@ def test_only_a_duzce_record_has_to_meet_what_the_paper_prints(short):
     duzce = SampledMotion(short.dt, short.samples, "RSN1605_DUZCE_DZC270.AT2")
     assert is_papers_motion(duzce) and not is_papers_motion(short)
     assert not is_papers_motion(synthetic_motion()) and "duzce" in synthetic_motion().label
-    rows = read_result(RESULTS / "caryatid-under-rsn1605-duzce-dzc270.json").rows
+    rows = read(RESULTS / "caryatid-under-rsn1605-duzce-dzc270").rows
     for values in (where(rows, part="value"), list(motion_values(where(rows, part="run"), duzce, 0.2))):
         assert {row["paper"] for row in where(values, status=REPRODUCED)} <= {"overturns", "stands", "yes", 4.0}
         assert len(where(values, status=REPRODUCED)) >= 21 and len(where(values, status=NOT_CHECKABLE)) == 7

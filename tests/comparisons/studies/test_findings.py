@@ -10,7 +10,7 @@ from page_numbers import number_in
 
 from comparisons.report.write import SHORT
 from comparisons.running.cases import name_of
-from comparisons.running.provenance import RESULTS, read_result
+from comparisons.running.provenance import RESULTS
 from comparisons.running.sources import source_digests
 from comparisons.showing.parts import NAME, Head, where
 from comparisons.showing.wording import ENDS, FALL, TURNED
@@ -20,7 +20,7 @@ from engines import ENGINES, get_engine
 
 
 def stored(name):
-    return read_result(RESULTS / f"{name}.json")
+    return read(RESULTS / f"{name}")
 
 
 SUBJECTS = [name for name, engine in ENGINES.items() if engine.subject]

@@ -139,7 +139,7 @@ def test_its_own_page_needs_no_other_file(small, tmp_path):
 
 def test_the_error_of_the_first_screen_is_the_one_by_states_in_the_section():
     """Of both grounds the worse, as the stored rows have it; the other measure has its own name and column."""
-    result, study = read_result(RESULTS / "restitution.json"), get_study("restitution")
+    result, study = read(RESULTS / "restitution"), get_study("restitution")
     opening = study.page(result).opening()
     (table,) = opening.tables
     marks = next(one for one in study.judgements(result) if one.key == RESTITUTION).marks

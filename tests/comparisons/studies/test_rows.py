@@ -12,7 +12,7 @@ from comparisons.studies.vocabulary import columns_of
 CELL = {**{"part": "order", "engine": "exudyn", "variant": "step", "ground": "rigid ground"}, "order": 2.0}
 
 
-@pytest.mark.parametrize("file", sorted(RESULTS.glob("*.json")), ids=lambda file: file.stem)
+@pytest.mark.parametrize("file", results_in(RESULTS), ids=lambda path: path.name)
 def test_rows_of_every_stored_result_are_those_of_its_study(file):
     result = read_study(file)
     assert result.rows == read_result(file).rows and result.kind in ROWS
@@ -75,7 +75,7 @@ def test_a_number_changed_in_a_stored_result_is_seen(tmp_path):
     text = (RESULTS / "restitution.json").read_text()
     path = tmp_path / "restitution.json"
     (tmp_path / "restitution.npz").write_bytes((RESULTS / "restitution.npz").read_bytes())
-    rms = read_result(RESULTS / "restitution.json").rows[0]["rms"]
+    rms = read(RESULTS / "restitution").rows[0]["rms"]
     assert f'"rms": {rms},' in text
     path.write_text(text.replace(f'"rms": {rms},', f'"rms": {rms * 1.001:.5g},', 1))
     with pytest.raises(ResultError, match=r"restitution\.json: damaged"):

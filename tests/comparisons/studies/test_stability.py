@@ -338,7 +338,7 @@ def test_the_study_tries_finer_settings_and_resumes_and_its_page_shows_what_they
 
 
 def test_committed_result_has_the_kernel_right_in_every_case():
-    result = read_result(RESULTS / "stability.json")
+    result = read(RESULTS / "stability")
     assert not result.settings["quick"]
     kernel = where(result.rows, engine="analytic")
     assert {row["case"] for row in kernel} == set(result.settings["cases"]) == set(CASES)
