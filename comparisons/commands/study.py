@@ -9,7 +9,6 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from click.core import ParameterSource
 from typer.core import TyperGroup
 
 from analytic.errors import SettingError
@@ -45,7 +44,6 @@ Scheduler = Annotated[
     ),
 ]
 EVERY = "all"
-DEFAULT = ParameterSource.DEFAULT
 Replot = Annotated[str | None, typer.Option(metavar="DIR", help="Run nothing, show this result again.")]
 
 Check = Annotated[
@@ -109,10 +107,8 @@ def command_of(study: Study) -> Callable[..., None]:
         problems = []
         if scheduler is not None and workers is not None:
             raise SettingError("--workers: a scheduler has its own workers; give --workers or --scheduler")
-        # a default is not meant to contradict the result that is there
-        given = {name: one for name, one in options.items() if context.get_parameter_source(name) is not DEFAULT}
-        place: dict[str, Any] = {"workers": workers, "scheduler": scheduler}
-        for path in compute(study, folder, engines=engine or None, quick=quick, **place, **given):
+        place: dict[str, Any] = {"workers": workers, "scheduler": scheduler, **_given(context, options)}
+        for path in compute(study, folder, engines=engine or None, quick=quick, **place):
             with spinner(f"{path.name}: page"):
                 file, page = write_study(study, path)
             print(path, file, sep="\n")
@@ -130,6 +126,11 @@ def command_of(study: Study) -> Callable[..., None]:
     command.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
     command.__doc__ = f"{study.question}\n\nExample: rocking study {study.name} --quick"
     return command
+
+
+def _given(context, options):
+    """Of the plan's options those that the user gives: a default is not meant to contradict the result that is there."""
+    return {name: value for name, value in options.items() if context.get_parameter_source(name).name != "DEFAULT"}
 
 
 def _check(name, output, number, seed, write, workers):

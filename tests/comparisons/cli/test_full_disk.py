@@ -50,16 +50,12 @@ def each(*commands):
 def folders(tmp_path_factory):
     """Makes a folder with what a command has written there before: pages with other words, results as they are."""
     root = tmp_path_factory.mktemp("disk")
-    (root / "studies").mkdir()
-    for file in RESULTS.glob("surface.*"):
-        shutil.copy(file, root / "studies")
+    shutil.copytree(RESULTS / "surface", root / "studies" / "surface")
 
     def made(name, number):
         first, folder = root / name, root / f"{name}-{number}"
         if not first.exists() and name == "check":
-            first.mkdir()
-            for file in RESULTS.glob("autopsy.*"):
-                shutil.copy(file, first)
+            shutil.copytree(RESULTS / "autopsy", first / "autopsy")
         elif not first.exists():
             assert run(name, first).returncode == 0
         shutil.copytree(first, folder)
@@ -89,7 +85,7 @@ def assert_whole(folder, before, first):
     for name in [name for name in before if after[name] not in (before[name], first[name])]:
         whole = after[name].rstrip().endswith((b"</html>", b"</svg>", b"IEND\xaeB`\x82"))
         assert whole or name.endswith((".json", ".npz", ".jsonl")), name
-    for file in folder.glob("*.json"):
+    for file in folder.rglob("*.json"):
         read_result(file)
 
 

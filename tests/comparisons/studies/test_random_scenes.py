@@ -8,6 +8,7 @@ from page_numbers import number_in
 
 from analytic import Block, PulseMotion, Scene
 from analytic.response import COMPARED, EDGE
+from comparisons.running.by_solver import read
 from comparisons.running.plan import Request
 from comparisons.running.provenance import RESULTS
 from comparisons.running.sweep import Row

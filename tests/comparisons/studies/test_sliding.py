@@ -9,6 +9,7 @@ from answered import answered, by_model, stored
 from sliding_scenes import LOST, SAVED, SLIDES, scene_of
 
 from analytic import SceneError, Start, simulate, synthetic_motion
+from comparisons.running.by_solver import read
 from comparisons.running.cases import Case
 from comparisons.running.plan import Request
 from comparisons.running.provenance import RESULTS
