@@ -129,7 +129,7 @@ def command_of(study: Study) -> Callable[..., None]:
 
 
 def _given(context, options):
-    """Of the plan's options those that the user gives: a default is not meant to contradict the result that is there."""
+    """Of the plan's options those that the user gives: a default is not meant to contradict a stored result."""
     return {name: value for name, value in options.items() if context.get_parameter_source(name).name != "DEFAULT"}
 
 

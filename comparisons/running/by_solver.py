@@ -22,6 +22,7 @@ from engines import ENGINES
 
 from .cases import root_of
 from .provenance import Result, ResultError, read_result, save
+from .readable import readable
 from .sources import kept_digests
 
 if TYPE_CHECKING:
@@ -168,6 +169,9 @@ def read(path: str | PathLike[str]) -> Result:
         return joined({file.stem: read_result(file) for file in files})
     except ResultError as error:
         raise ResultError(f"{path.name}/{error}" if files else f"{path.name}: {error}") from None
+    except (AttributeError, KeyError, TypeError) as error:  # whoever changed a file made its digest anew
+        why = f"settings or rows of its files are of a wrong type ({readable(repr(error))})"
+        raise ResultError(f"{path.name}: {why}; run the study again") from error
 
 
 def results_in(folder: str | PathLike[str]) -> list[Path]:

@@ -82,7 +82,7 @@ def compute(
     workers, folder = number_of(workers), Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     place, old = folder / study.name, None
-    if engines is not None and not study.whole and (place / f"{MODEL}.json").exists():
+    if engines and not study.whole and (place / f"{MODEL}.json").exists():
         engines = named_engines(engines)
         old, quick, options = opened(study, place, engines, quick, options)
     with ExitStack() as stack:

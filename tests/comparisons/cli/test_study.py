@@ -14,6 +14,7 @@ from comparisons.running.by_solver import read
 from comparisons.running.check import Check
 from comparisons.running.plan import Computed, Study
 from comparisons.running.provenance import RESULTS, read_result
+from comparisons.running.study import compute
 from comparisons.showing.parts import Page
 
 
@@ -93,6 +94,24 @@ def test_an_engine_is_run_alone_with_the_options_of_the_result_that_is_there(roc
     ):
         status, _, err = rocking(*words, "exudyn", *more)
         assert status == 2 and err.startswith(f"Error: {message}")
+
+
+def test_where_no_engine_is_to_be_compared_all_is_computed_anew(tmp_path):
+    needs("exudyn")
+    weighs = Study("weighs", "Asks?", _weighing, __name__)
+    for engines, mass in ((("exudyn",), 2.0), ((), 3.0)):
+        (path,) = compute(weighs, tmp_path, engines=engines, mass=mass, progress=False)
+        assert (read(path).settings["mass"], len(read(path).rows)) == (mass, len(engines))
+    assert [file.name for file in path.iterdir()] == ["analytic.json"]
+
+
+def test_the_folder_one_is_in_is_shown_by_its_name(rocking, monkeypatch, tmp_path):
+    monkeypatch.chdir(shutil.copytree(RESULTS / "surface", tmp_path / "surface"))
+    assert rocking("study", "surface", "--replot", ".", "--output", "page")[:2] == (0, "page/surface.html\n")
+    assert rocking("study", "surface", "--replot", "..")[::2] == (
+        2,
+        f"Error: {tmp_path.name}: no such result; run the study that writes it\n",
+    )
 
 
 def page(result):

@@ -68,6 +68,13 @@ def test_one_whose_digest_is_made_anew_is_shown_or_one_line(tmp_path, name):
     assert sum(found) > 0.4 * RESEALED  # a digit changed so cannot be seen
 
 
+@pytest.mark.parametrize("change", [{"variants": 3}, {"variants": ["step"]}, {"variants": [{"variant": []}]}])
+def test_settings_of_a_wrong_type_are_one_line(tmp_path, change):
+    path = shutil.copytree(RESULTS / "restitution", tmp_path / "restitution")
+    edit(path / "exudyn.json", lambda content: content["settings"].update(change))
+    assert refused("restitution", path, tmp_path / "pages")
+
+
 def without_settings(folder):
     """The result of tolerances in a folder, its files without their settings."""
     path = shutil.copytree(RESULTS / "tolerances", folder / "tolerances")
