@@ -60,7 +60,7 @@ def command(
     studies: Annotated[
         str | None,
         typer.Option(
-            metavar="DIR", help="Folder of the studies' result files, as of rocking study all. Default: those shipped."
+            metavar="DIR", help="Folder of the studies' results, as of rocking study all. Default: those shipped."
         ),
     ] = None,
     json_file: Annotated[

@@ -56,8 +56,7 @@ Check = Annotated[
     ),
 ]
 Write = Annotated[
-    bool,
-    typer.Option("--write", help="With --check: write date, commit and outcome of the check into the result file."),
+    bool, typer.Option("--write", help="With --check: write date, commit and outcome of the check into the result.")
 ]
 Seed = Annotated[
     int | None, typer.Option(min=0, max=2**63, help="Seed of the random draw of --check. Default: a new one each time.")
@@ -205,7 +204,7 @@ app = typer.Typer(cls=_Studies, add_completion=False, rich_markup_mode=None, no_
 
 @app.callback()
 def _about():
-    """Compute one study's result file and its page; after an interruption the same command resumes.
+    """Compute one study's result and its page; after an interruption the same command resumes.
 
     Example: rocking study restitution --quick
     """
