@@ -33,6 +33,7 @@ NOT_COMPARED = ("traced_bytes", "resident_bytes", "versions")  # costs, and what
 CPU = "cpu_"  # and all that begins so
 MODEL = "analytic"  # its file's name
 EDITED = "changed_while_running"  # of the settings: definitions edited meanwhile
+SCRIPT = "script"  # what stands for the variant in rows of a script
 SHOWN = 3  # changes that an error names
 
 
@@ -111,7 +112,7 @@ def joined(parts: Mapping[str, Result]) -> Result:
         rows=[row for one in whole for row in one.rows],
         arrays={key: array for one in whole for key, array in one.arrays.items()},
         runs=[run for one in whole for run in one.runs],
-        run_count=sum(one.run_count or 0 for one in whole),
+        run_count=None if model.run_count is None else sum(one.run_count or 0 for one in whole),
         provenance=origin,
     )
 
@@ -130,9 +131,10 @@ def _unlike(name, part, model, engines):
     if found:
         where, then, now = found[0]
         return f"asked otherwise than {MODEL}.json ({where}: {short(then)} there, {short(now)} here)"
-    listed = {one["variant"] for one in part.settings.get("variants", ())}
-    if without := listed - {row.get("variant") for row in part.rows}:
-        return f"no row of a variant that its settings list: {', '.join(sorted(without))}"
+    listed = {one.get("variant") for one in part.settings.get("variants", ())}
+    others = {row["variant"] for row in part.rows if row.get("variant")} - listed - {SCRIPT}
+    if listed and others:
+        return f"has rows of a variant that its settings do not list: {', '.join(sorted(others))}"
     return None
 
 

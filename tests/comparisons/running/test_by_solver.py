@@ -1,4 +1,5 @@
-"""An engine computed anew into a stored result: as if all had been computed at once, or nothing is written."""
+"""A result as one file for each solver: an engine by itself is as if all had been computed at once, or nothing is
+written."""
 
 import json
 import shutil
@@ -7,15 +8,15 @@ from typing import Any
 import numpy as np
 import pytest
 from answered import answered, by_model, edit
-from comparisons.running.merge import _joined, engine_of, merged, opened
 from fake_study import MADE
 
 from analytic.errors import SettingError
 from comparisons.report.answer import origin_of
 from comparisons.report.gallery import origins
 from comparisons.running.age import age
+from comparisons.running.by_solver import MODEL, check_same, differences, joined, opened, read, results_in, split
 from comparisons.running.cases import name_of
-from comparisons.running.check import check, differences
+from comparisons.running.check import check
 from comparisons.running.plan import Request, Study
 from comparisons.running.provenance import RESULTS, ResultError, made_here, read_result, save
 from comparisons.running.sources import source_digests
@@ -25,7 +26,7 @@ from comparisons.studies.overturning import study as overturning
 from engines import ENGINES
 
 FIRST, SECOND = "pybullet", "exudyn"
-MADE_ONCE = pytest.mark.xdist_group("merge")  # what several tests need
+MADE_ONCE = pytest.mark.xdist_group("by-solver")  # what several tests need
 
 
 def computed(folder, *engines, **options):
@@ -33,48 +34,68 @@ def computed(folder, *engines, **options):
     return path
 
 
-def ordered(array):
-    return array[np.lexsort(array.T)]
-
-
 @pytest.fixture(scope="module")
 def one(tmp_path_factory):
-    """The result of the first engine alone, of blocks of 2 kg."""
+    """The result of the first engine alone, of blocks of 2 kg; its folder keeps the runs."""
     return computed(tmp_path_factory.mktemp("one") / "runs", FIRST, mass=2.0)
 
 
 @pytest.fixture
-def both(one, tmp_path):
-    """Into a copy of it, the second engine; its folder keeps the runs."""
-    path = save(tmp_path / "made.json", read_result(one))
-    return computed(one.parent, SECOND, into=path)
+def copy(one, tmp_path):
+    """A copy of it, and of its runs."""
+    return shutil.copytree(one.parent, tmp_path / "runs") / one.name
+
+
+@pytest.fixture
+def both(copy):
+    """Beside it, the second engine."""
+    return computed(copy.parent, SECOND)
 
 
 @MADE_ONCE
-def test_one_engine_then_another_is_both_at_once(one, both, tmp_path):
+def test_one_engine_then_another_is_both_at_once(both, tmp_path):
     (tmp_path / "whole").mkdir()
-    shutil.copy(one.with_name(RUNS), tmp_path / "whole")  # runs of both by now
-    whole, found = read_result(computed(tmp_path / "whole", FIRST, SECOND, mass=2.0)), read_result(both)
+    shutil.copy(both.with_name(RUNS), tmp_path / "whole")  # runs of both by now
+    whole, found = read(computed(tmp_path / "whole", FIRST, SECOND, mass=2.0)), read(both)
+    assert {file.name for file in both.glob("*.json")} == {"analytic.json", f"{FIRST}.json", f"{SECOND}.json"}
     assert not list(differences("rows", whole.rows, found.rows))
-    assert whole.settings == found.settings and whole.settings["engines"] == [FIRST, SECOND]
+    assert whole.settings == found.settings and set(whole.settings["engines"]) == {FIRST, SECOND}
     assert whole.arrays.keys() == found.arrays.keys()
     for name, array in whole.arrays.items():
-        np.testing.assert_array_equal(
-            *map(ordered, (array, found.arrays[name])) if name == "points" else (array, found.arrays[name])
-        )
+        np.testing.assert_array_equal(array, found.arrays[name])
     assert (found.run_count, len(found.runs)) == (whole.run_count, len(whole.runs)) == (6, 6)
     assert check(both, 30, 1, workers=1, progress=False).held == 6
-    assert read_result(one).rows == [row for row in found.rows if row.get("engine") != SECOND]
 
 
 @MADE_ONCE
-def test_the_engine_says_where_it_comes_from_and_is_judged_by_that(one, both):
-    before, found = read_result(one), read_result(both)
-    rest, (own,) = found.provenance, found.provenance["engines"].values()
-    assert rest["time"] == before.provenance["time"] and own["time"] >= rest["time"] and age(found) is None
+def test_the_files_of_others_stay_byte_for_byte(copy, both):
+    kept = {file: file.read_bytes() for file in both.iterdir() if file.stem != SECOND}
+    edit(both / f"{SECOND}.json", lambda content: content["rows"].pop())
+    computed(both.parent, SECOND)
+    assert {file: file.read_bytes() for file in both.iterdir() if file.stem != SECOND} == kept
+    assert len(read_result(both / f"{SECOND}.json").rows) == 3 and all(
+        row["engine"] == SECOND for row in read_result(both / f"{SECOND}.json").rows
+    )
+
+
+@MADE_ONCE
+def test_without_engines_all_is_computed_and_files_of_others_go(both):
+    compute(MADE, both.parent, engines=None, workers=1, progress=False)  # of 1 kg, of all that are installed
+    assert read(both).settings["mass"] == 1.0 and len(list(both.glob("*.json"))) > 3
+    stale = save(both / "gone.json", read_result(both / f"{SECOND}.json"))
+    compute(MADE, both.parent, engines=None, workers=1, progress=False)
+    assert not stale.exists() and (both / f"{SECOND}.json").exists()
+
+
+@MADE_ONCE
+def test_each_file_says_where_it_comes_from_and_is_judged_by_that(both):
+    found = read(both)
     plan, first, second = name_of(MADE.plan), ENGINES[FIRST].adapter, ENGINES[SECOND].adapter
-    assert first in rest["sources"] and second not in rest["sources"] and [*own["sources"]] == [plan, second]
-    assert own["packages"].keys() == {"numpy", "scipy", "numba", SECOND} and SECOND not in rest["packages"]
+    own, other = (found.provenance["engines"][name] for name in (SECOND, FIRST))
+    assert [*own["sources"]] == [plan, second] and [*other["sources"]] == [plan, first] and age(found) is None
+    assert not {first, second} & found.provenance["sources"].keys()
+    assert own["packages"].keys() == {"numpy", "scipy", "numba", SECOND}
+    assert found.provenance["packages"].keys() == {"numpy", "scipy", "numba"}
     own |= {"time": "2030-02-03T00:00:00+00:00", "commit": "f" * 40, "dirty": False}
     assert f"; {SECOND}: 2030-02-03, commit ffffffffffff, " in origin_of(found)
     assert f"; {SECOND}: 2030-02-03 | " in origins({"made": found})
@@ -84,105 +105,103 @@ def test_the_engine_says_where_it_comes_from_and_is_judged_by_that(one, both):
         f"in the rows of {SECOND} older than the code: computed on 2030-02-03 at commit fffffff; since then changed: "
         f"{second}.VARIANTS"
     )
-    rest["packages"]["numpy"] = "1.0"
-    assert age(found).startswith(f"apart from the rows of {SECOND} computed with other versions than those here: numpy")
-
-
-@MADE_ONCE
-def test_rows_of_an_engine_are_put_right_and_others_stay_byte_for_byte(one, both):
-    right = both.read_text().splitlines()
-
-    def spoil(content):
-        for row in content["rows"]:
-            row |= {"tilt": 9.0} if row.get("engine") == FIRST else {}
-        content["rows"].insert(2, {"part": "swing", "engine": FIRST, "start": 0.07, "tilt": 1.0})
-
-    edit(both, spoil)
-    assert both.read_text() != "\n".join(right)
-    computed(one.parent, FIRST, into=both)
-    found = both.read_text().splitlines()
-    begin = right.index(' "rows": [')
-    assert [json.loads(line.strip(" ,")) for line in found[-len(right) + begin + 1 : -2]] == read_result(both).rows
-    rows = [
-        [line for line in lines[lines.index(' "rows": [') :] if f'"{FIRST}"' not in line] for lines in (right, found)
-    ]
-    assert rows[0] == rows[1]
-    assert found[found.index(' "rows": [') :] == right[begin:]  # its own too: runs are kept, with what they took
-    assert read_result(both).provenance["engines"].keys() == {FIRST, SECOND}
+    found.provenance["packages"]["numpy"] = "1.0"
+    assert "; computed with other versions than those here: numpy" in age(found)
 
 
 @MADE_ONCE
 @pytest.mark.parametrize(
     "spoil, words",
     [
-        (lambda found: found["rows"][1].update(tilt=9.0), r"rows, 2 \(swing, analytic\)\.tilt: stored 9, now 0\.05"),
-        (lambda found: found["rows"][0].update(starts=[1.0]), r"rows, 1 \(starts\)\.starts\[0\]: stored 1, now 0\.05"),
-        (lambda found: found["rows"].pop(0), "rows: how many there are of the model and of no solver: stored 2, now 3"),
-        (lambda found: found["settings"].update(note=1), "note: stored 1, now None"),
-        (lambda found: found["settings"]["variants"].pop(), "variants: how many"),
+        (lambda found: found["rows"][1].update(tilt=9.0), r"rows\[1\]\.tilt: stored 9, now 0\.05"),
+        (lambda found: found["rows"][0].update(starts=[1.0]), r"rows\[0\]\.starts\[0\]: stored 1, now 0\.05"),
+        (lambda found: found["rows"].pop(0), r"rows\[0\]"),
+        (lambda found: found["settings"].update(note=1), "settings.note: stored 1, now None"),
+        (lambda found: found["settings"]["variants"].pop(), r"settings.variants\[0\]: stored None"),
         (lambda found: found["provenance"].update(seed=4), "seed: stored 4, now 3"),
     ],
 )
-def test_where_anything_else_has_changed_nothing_is_written(one, both, spoil, words):
-    before = edit(both, spoil).read_bytes()
-    with pytest.raises(ResultError, match=f"{words}.* nothing was written: rocking study made without --into"):
-        computed(one.parent, SECOND, into=both)
-    assert both.read_bytes() == before
+def test_where_anything_of_the_model_has_changed_nothing_is_written(copy, spoil, words):
+    before = edit(copy / f"{MODEL}.json", spoil).read_bytes()
+    with pytest.raises(ResultError, match=f"{words}.* nothing was written: rocking study made without --engine"):
+        computed(copy.parent, SECOND)
+    assert (copy / f"{MODEL}.json").read_bytes() == before and not (copy / f"{SECOND}.json").exists()
 
 
 @MADE_ONCE
-def test_an_array_of_the_model_that_has_changed_is_named(one, tmp_path):
-    old = read_result(one)
+def test_an_array_of_the_model_that_has_changed_is_named(copy):
+    old = read_result(copy / f"{MODEL}.json")
     old.arrays["swings/analytic/tilt"][0] += 1e-6
-    path = save(tmp_path / "made.json", old)
+    save(copy / f"{MODEL}.json", old)
     with pytest.raises(ResultError, match="array swings/analytic/tilt: stored"):
-        computed(one.parent, SECOND, into=path)
+        computed(copy.parent, SECOND)
 
 
 @MADE_ONCE
-def test_a_result_is_asked_what_it_was_asked(one, tmp_path):
-    assert opened(MADE, one, False, {})[1:] == (False, {"mass": 2.0})
-    assert opened(MADE, one, False, {"mass": 2.0})[1:] == (False, {"mass": 2.0})
+@pytest.mark.parametrize(
+    "spoil, words",
+    [
+        (
+            lambda found: found["settings"].update(mass=3.0),
+            r"asked otherwise than analytic.json \(mass: 2 there, 3 here",
+        ),
+        (
+            lambda found: found["settings"].update(note=1),
+            r"asked otherwise than analytic.json \(note: None there, 1 here",
+        ),
+        (lambda found: found["settings"].pop("quick"), "asked otherwise than analytic.json .quick"),
+        (lambda found: found["settings"].update(engines=["another"]), "asked otherwise .*engines"),
+        (lambda found: found["provenance"].update(seed=4), r"asked otherwise than analytic.json \(seed: 3 there, 4"),
+        (lambda found: found.update(kind="other"), "a result of other, beside one of made"),
+        (lambda found: found["rows"][0].update(variant="more"), "has rows of a variant .*: more"),
+    ],
+)
+def test_a_file_that_does_not_belong_to_the_others_is_refused(both, spoil, words):
+    edit(both / f"{SECOND}.json", spoil)
+    with pytest.raises(
+        ResultError, match=f"^made/{SECOND}.json: {words}.*; run the study with --engine {SECOND} again"
+    ):
+        read(both)
+
+
+@MADE_ONCE
+def test_a_folder_without_the_models_file_and_one_that_is_none_say_what_to_do(copy):
+    (copy / f"{MODEL}.json").unlink()
+    with pytest.raises(ResultError, match="^made/analytic.json: missing; run the study again"):
+        read(copy)
+    with pytest.raises(ResultError, match="^none: no such result; run the study that writes it"):
+        read(copy.parent / "none")
+
+
+@MADE_ONCE
+def test_a_result_is_asked_what_it_was_asked(one):
+    assert opened(MADE, one, [SECOND], False, {})[1:] == (False, {"mass": 2.0})
+    assert opened(MADE, one, [SECOND], False, {"mass": 2.0})[1:] == (False, {"mass": 2.0})
     with pytest.raises(SettingError, match="--mass 3.0: .* was computed with 2.0; leave it out"):
-        opened(MADE, one, False, {"mass": 3.0})
+        opened(MADE, one, [SECOND], False, {"mass": 3.0})
     with pytest.raises(SettingError, match="--quick: .* was computed in full; leave it out"):
-        opened(MADE, one, True, {})
-    with pytest.raises(ResultError, match="a result of made; give one that rocking study other wrote"):
-        opened(Study("other", "", MADE.plan), one, False, {})
-    with pytest.raises(SettingError, match="study made cannot take one engine by itself: of one piece"):
-        opened(Study("made", "", MADE.plan, whole="of one piece"), one, False, {})
-    random = read_result(RESULTS / "random-scenes.json")
-    seeded = save(tmp_path / "random-scenes.json", random)
-    drawn = {"seed": random.provenance["seed"], "scenes": 500}
-    assert opened(get_study("random-scenes"), seeded, False, {})[2] == drawn and drawn["seed"] > 0
-    recorded = save(tmp_path / "recorded.json", read_result(RESULTS / "recorded.json"))
-    assert opened(get_study("recorded"), recorded, False, {"records": "mine"})[2] == {"records": "mine"}
+        opened(MADE, one, [SECOND], True, {})
+    with pytest.raises(ResultError, match="holds a result of made; give another --output"):
+        opened(Study("other", "", MADE.plan), one, [SECOND], False, {})
+    recorded = RESULTS / "recorded"
+    assert opened(get_study("recorded"), recorded, [SECOND], False, {"records": "mine"})[2] == {"records": "mine"}
 
 
-@pytest.mark.slow
-@MADE_ONCE
-def test_random_scenes_take_one_engine_after_the_other(tmp_path):
-    study, options = get_study("random-scenes"), {"workers": 2, "progress": False}
-    (path,) = compute(study, tmp_path, engines=[FIRST], seed=1, scenes=3, **options)
-    first = read_result(path)
-    compute(study, tmp_path, engines=[SECOND], into=path, **options)
-    found, (whole,) = read_result(path), compute(study, tmp_path, engines=[FIRST, SECOND], seed=1, scenes=3, **options)
-    assert found.rows == read_result(whole).rows and len(found.rows) > len(first.rows) > 0
-    assert found.settings == read_result(whole).settings and found.run_count == len(found.runs) == len(found.rows)
-
-
-@pytest.mark.parametrize("file", sorted(RESULTS.glob("*.json")), ids=lambda file: file.stem)
-def test_rows_of_every_stored_result_go_back_to_their_places(file):
-    """Of every one that takes an engine by itself."""
-    result = read_result(file)
-    rows = [] if get_study(result.kind).whole else result.rows
-    shared = set(map(engine_of, rows)) - set(ENGINES)
-    for name in set(map(engine_of, rows)) & set(ENGINES):
-        new = [row for row in rows if engine_of(row) in {*shared, name}]
-        assert _joined(rows, new, name, shared) == rows
-        added = _joined([row for row in rows if engine_of(row) != name], new, name, shared)
-        assert sorted(map(json.dumps, added)) == sorted(map(json.dumps, rows))
-        assert [row for row in added if engine_of(row) in {*shared, name}] == new
+@pytest.mark.parametrize("path", results_in(RESULTS), ids=lambda path: path.name)
+def test_every_stored_result_is_the_sum_of_its_files(path):
+    whole, names = read(path), [file.stem for file in path.glob("*.json") if file.stem != MODEL]
+    again = joined(
+        {
+            name: read_result(path / f"{name}.json") if name in names else part
+            for name, part in split(whole, names).items()
+        }
+        | {MODEL: read_result(path / f"{MODEL}.json")}
+    )
+    assert again.rows == whole.rows and again.settings == whole.settings and again.arrays.keys() == whole.arrays.keys()
+    for name, part in split(whole, names).items():
+        own = read_result(path / f"{name}.json")
+        assert (part.rows, part.settings, part.runs) == (own.rows, own.settings, own.runs)
+        assert part.arrays.keys() == own.arrays.keys()
 
 
 FALLEN = {"kind": "crash", "reason": "fell over", "message": ""}
@@ -221,14 +240,16 @@ def test_no_row_of_a_study_that_takes_one_engine_hangs_on_another(name, monkeypa
         own = ["analytic", name_of(study.plan), *(ENGINES[one].adapter for one in engines)]
         return made_here(name, answer.settings, answer.rows, answer.arrays, modules=own, seed=answer.seed)
 
-    def same(whole, joined):
-        assert sorted(map(json.dumps, joined)) == sorted(map(json.dumps, whole))
+    def alike(one, other):
+        assert sorted(map(json.dumps, one)) == sorted(map(json.dumps, other))
 
     whole, old, new = found(FIRST, SECOND), found(FIRST), found(SECOND)
-    joined = merged(study, old, new, (SECOND,), {SECOND: 1})
-    same(whole.rows, joined.rows)
-    same(whole.settings.pop("variants", ()), joined.settings.pop("variants", ()))
-    assert joined.settings == whole.settings and joined.arrays.keys() == whole.arrays.keys()
+    parts = split(old, [FIRST]) | {SECOND: split(new, [SECOND])[SECOND]}
+    check_same(study, parts[MODEL], new, [SECOND])
+    together = joined(parts)
+    alike(whole.rows, together.rows)
+    for key in ("variants", "engines", "faults"):
+        alike(whole.settings.pop(key, ()), together.settings.pop(key, ()))
+    assert together.settings == whole.settings and together.arrays.keys() == whole.arrays.keys()
     for key, array in whole.arrays.items():
-        pair = array, joined.arrays[key]
-        np.testing.assert_array_equal(*map(ordered, pair) if key in study.indexed else pair)
+        np.testing.assert_array_equal(array, together.arrays[key])
