@@ -27,11 +27,6 @@ def plan(request, *, mass: float = 1.0):
         {"part": "least", "engine": name, "tilt": min(one["tilt"] for one in swings if one["engine"] == name)}
         for name in request.engines
     ]
-    points = [
-        (request.engines.index(one["engine"]), one["start"], one["tilt"])
-        for one in swings
-        if one["engine"] != "analytic"
-    ]
     arrays = {
         f"swings/{name}/tilt": np.array([one["tilt"] for one in swings if one["engine"] == name]) for name in solvers
     }
@@ -43,7 +38,7 @@ def plan(request, *, mass: float = 1.0):
         "variants": [{"engine": name} for name in request.engines] + [{"engine": "twin"}],
     }
     rows = [{"part": "starts", "starts": STARTS}, *swings, *least]
-    return Computed(settings, rows, {**arrays, "points": np.array(points)}, seed=3)
+    return Computed(settings, rows, arrays, seed=3)
 
 
-MADE = Study("made", "How far?", plan, indexed={"points": 0})
+MADE = Study("made", "How far?", plan)

@@ -60,7 +60,7 @@ def command(
     studies: Annotated[
         str | None,
         typer.Option(
-            metavar="DIR", help="Folder of the studies' result files, as of rocking study all. Default: those shipped."
+            metavar="DIR", help="Folder of the studies' results, as of rocking study all. Default: those shipped."
         ),
     ] = None,
     json_file: Annotated[
@@ -74,6 +74,7 @@ def command(
     """
 
     from ..report.write import write_page
+    from ..running.by_solver import results_in
     from ..running.files import check_folder, check_writable, write_text
 
     check_folder(output)
@@ -89,7 +90,7 @@ def command(
     if not scene and (records is not None or both_signs or directions is not None):
         raise SettingError("--records, --both-signs and --directions belong to scenes of your own; name one")
     calls = _simulate(output, scene, motion, engines, variants, (records, both_signs, directions, of_folder))
-    with bar(f"studies and pages: {len([*shown.glob('*.json')])} stored results") as progress:
+    with bar(f"studies and pages: {len(results_in(shown))} stored results") as progress:
         page = write_page(output, shown, progress, calls)
     if json_file:
         write_text(json_file, form(page).text())
@@ -139,12 +140,13 @@ def _call(place, records, both_signs, directions, units):
 
 
 def _studies(folder):
-    """The folder of the studies' result files, checked."""
+    """The folder of the studies' results, checked."""
 
+    from ..running.by_solver import results_in
     from ..running.provenance import RESULTS
 
-    if folder is not None and not any(Path(folder).glob("*.json")):
-        raise SettingError(f"--studies {folder}: holds no result file; rocking study all --output {folder} writes them")
+    if folder is not None and not results_in(folder):
+        raise SettingError(f"--studies {folder}: holds no result; rocking study all --output {folder} writes them")
     return RESULTS if folder is None else Path(folder)
 
 

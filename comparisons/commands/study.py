@@ -23,14 +23,17 @@ Output = Annotated[
     str | None,
     typer.Option(
         metavar="DIR",
-        help="Folder for the result file, its page and the runs "
-        "from which an interrupted study resumes. Default: "
+        help="Folder for the result, its page and the runs from which an interrupted study resumes. Default: "
         "NAME-study.",
     ),
 ]
 Engines = Annotated[
     list[str] | None,
-    typer.Option("--engine", help="Engine to compare; may be repeated. Default: all that the study needs."),
+    typer.Option(
+        "--engine",
+        help="Engine to compare; may be repeated. Where the folder holds a result, its file alone is written. Default: "
+        "all that the study needs.",
+    ),
 ]
 Workers = Annotated[int | None, typer.Option(min=1, help="Worker processes. Default: one per core.")]
 Scheduler = Annotated[
@@ -41,15 +44,7 @@ Scheduler = Annotated[
     ),
 ]
 EVERY = "all"
-Into = Annotated[
-    str | None,
-    typer.Option(
-        metavar="FILE",
-        help="Run the engines of --engine alone, with the options that FILE was computed with, and put their rows into "
-        "that result: in place of theirs, or beside those of others.",
-    ),
-]
-Replot = Annotated[str | None, typer.Option(metavar="FILE", help="Run nothing, show this result file again.")]
+Replot = Annotated[str | None, typer.Option(metavar="DIR", help="Run nothing, show this result again.")]
 
 Check = Annotated[
     int | None,
@@ -61,8 +56,7 @@ Check = Annotated[
     ),
 ]
 Write = Annotated[
-    bool,
-    typer.Option("--write", help="With --check: write date, commit and outcome of the check into the result file."),
+    bool, typer.Option("--write", help="With --check: write date, commit and outcome of the check into the result.")
 ]
 Seed = Annotated[
     int | None, typer.Option(min=0, max=2**63, help="Seed of the random draw of --check. Default: a new one each time.")
@@ -80,7 +74,6 @@ def command_of(study: Study) -> Callable[..., None]:
         engine: Engines = None,
         workers: Workers = None,
         scheduler: Scheduler = None,
-        into: Into = None,
         replot: Replot = None,
         check: Check = None,
         write: Write = False,
@@ -90,13 +83,13 @@ def command_of(study: Study) -> Callable[..., None]:
         from ..report.detail import write_study
         from ..running.files import check_folder
         from ..running.progress import spinner
-        from ..running.provenance import read_result
         from ..running.study import compute
+        from ..studies.rows import read_study
 
         if check is not None:
-            if quick or engine or scheduler or into or replot:
+            if quick or engine or scheduler or replot:
                 raise SettingError(
-                    "--check: takes a result as it is; leave --quick, --engine, --scheduler, --into, --replot out"
+                    "--check: takes a result as it is; leave --quick, --engine, --scheduler, --replot out"
                 )
             return _check(study.name, output, check, seed, write, workers)
         if write:
@@ -107,21 +100,19 @@ def command_of(study: Study) -> Callable[..., None]:
             raise SettingError(f"--seed {seed}: belongs to --check; this study draws nothing by a seed")
         folder = f"{study.name}-study" if output is None else output
         check_folder(folder)
-        if replot is not None and into is None:
+        if replot is not None:
             print(write_study(study, replot, output)[0])
             return
         problems = []
         if scheduler is not None and workers is not None:
             raise SettingError("--workers: a scheduler has its own workers; give --workers or --scheduler")
-        if into is not None:
-            options = _given(context, options, into, engine)
-        place: dict[str, Any] = {"workers": workers, "scheduler": scheduler, "into": into}
-        for path in compute(study, folder, engines=engine or None, quick=quick, **place, **options):
+        place: dict[str, Any] = {"workers": workers, "scheduler": scheduler, **_given(context, options)}
+        for path in compute(study, folder, engines=engine or None, quick=quick, **place):
             with spinner(f"{path.name}: page"):
-                file, page = write_study(study, path, None if into is None else folder)
+                file, page = write_study(study, path)
             print(path, file, sep="\n")
             print(page.title, *page.text, sep="\n", file=sys.stderr)
-            problems += study.problems(read_result(path))
+            problems += study.problems(read_study(path))
         if problems:
             print(*problems, sep="\n")
             raise typer.Exit(1)
@@ -136,10 +127,8 @@ def command_of(study: Study) -> Callable[..., None]:
     return command
 
 
-def _given(context, options, into, engine):
-    """Of the plan's options those that the user gives: a default is not meant to contradict the file."""
-    if not engine or context.params["replot"] is not None:
-        raise SettingError(f"--into {into}: name the engines to be run by --engine, and leave --replot out")
+def _given(context, options):
+    """Of the plan's options those that the user gives: a default is not meant to contradict a stored result."""
     return {name: value for name, value in options.items() if context.get_parameter_source(name).name != "DEFAULT"}
 
 
@@ -160,7 +149,7 @@ def _check(name, output, number, seed, write, workers):
 
 def every(
     output: Annotated[
-        str, typer.Option(metavar="DIR", help="Folder for the result files; below it the runs of each study.")
+        str, typer.Option(metavar="DIR", help="Folder for the results, and the runs from which it resumes.")
     ] = "studies",
     quick: Quick = False,
     engine: Engines = None,
@@ -168,26 +157,21 @@ def every(
 ) -> None:
     """Compute all studies of this project, one after the other; after an interruption the same command resumes.
 
-    Runs are stored, so that a second call computes only new ones. The result files are written into one folder, which
-    rocking report --studies DIR shows.
+    Runs are stored, so that a second call computes only new ones. rocking report --studies DIR shows the results.
 
     Example: rocking study all --output studies
     """
     import time
-    from pathlib import Path
 
     from ..running.files import check_folder
     from ..running.progress import log
-    from ..running.provenance import copy_result
     from ..running.study import compute
 
     check_folder(output)
     for name in BUILT_IN:
         began = time.monotonic()
         log(f"study {name}")
-        folder = Path(output) / name
-        for path in compute(get_study(name), folder, engines=engine or None, quick=quick, workers=workers):
-            print(*copy_result(path, Path(output)), sep="\n")
+        print(*compute(get_study(name), output, engines=engine or None, quick=quick, workers=workers), sep="\n")
         log(f"study {name}: {(time.monotonic() - began) / 60:.1f} minutes")
 
 
@@ -220,7 +204,7 @@ app = typer.Typer(cls=_Studies, add_completion=False, rich_markup_mode=None, no_
 
 @app.callback()
 def _about():
-    """Compute one study's result file and its page; after an interruption the same command resumes.
+    """Compute one study's result and its page; after an interruption the same command resumes.
 
     Example: rocking study restitution --quick
     """

@@ -22,7 +22,7 @@ def command(
     output: Annotated[
         str | None,
         typer.Option(
-            metavar="DIR", help="Write the rows as DIR/tolerances.json, too, which rocking report --studies DIR shows."
+            metavar="DIR", help="Write the rows into DIR/tolerances, too, which rocking report --studies DIR shows."
         ),
     ] = None,
     json_file: Annotated[
@@ -56,7 +56,7 @@ def command(
         for one in [variant] if variant else get_engine(name).tolerance_rows() or [None]:
             results += _verified(name, rows(name, one), time_limit)
     if output is not None:
-        _write(Path(output), results)
+        _write(Path(output), results, alone=bool(engine))
     versions = {name: get_engine(name).versions() for name in dict.fromkeys(row["engine"] for row in results)}
     form = Verification(versions=versions, rows=[Tolerance(**row) for row in results])
     write_output({json_file: form}, lambda: _show(results))
@@ -80,18 +80,22 @@ def _verified(name, table, time_limit):
     return [row.result(None, failure.reason) for row in table]
 
 
-def _write(folder, results):
-    """The rows as a result file, beside those of the studies."""
+def _write(folder, results, alone):
+    """The rows as a result beside those of the studies; alone: the engines' files, beside those of others."""
     from engines import ENGINES
 
-    from ..running.provenance import write_result
+    from ..measuring.tolerances import measure_all
+    from ..running.by_solver import MODEL, save_parts
+    from ..running.cases import name_of
+    from ..running.provenance import made_here
     from ..studies import TOLERANCES
 
-    engines = [ENGINES[name] for name in dict.fromkeys(row["engine"] for row in results)]
-    code = ["comparisons.measuring.tolerances:measure_all", *(engine.adapter for engine in engines)]
-    code += [f"{engine.tolerances}:TOLERANCES" for engine in engines if engine.tolerances]
-    rows = [{"part": "tolerance", **row} for row in results]
-    write_result(folder / f"{TOLERANCES}.json", TOLERANCES, {}, rows, modules=code)
+    engines = list(dict.fromkeys(row["engine"] for row in results))
+    bounds = [f"{ENGINES[name].tolerances}:TOLERANCES" for name in engines if ENGINES[name].tolerances]
+    plan, place = name_of(measure_all), folder / TOLERANCES
+    result = made_here(TOLERANCES, {}, [{"part": "tolerance", **row} for row in results], modules=[plan])
+    only = alone and (place / f"{MODEL}.json").exists()
+    save_parts(place, result, plan, engines, dict.fromkeys((*engines, *bounds), 0), only)
 
 
 def _show(results):

@@ -10,7 +10,8 @@ from typing import Any, Self
 
 from engines import ENGINES
 
-from ..running.age import age, by_engine, date_of, last_check
+from ..running.age import age, by_engine, date_of, last_check, origins_of
+from ..running.by_solver import results_in
 from ..running.provenance import RESULTS, Result, ResultError
 from ..running.readable import readable
 from ..showing.glance import Glance
@@ -22,7 +23,7 @@ from ..studies.rows import read_study
 
 @dataclass(frozen=True)
 class Stored:
-    """One result file. section: all of it; finding: its answer for the first page; judgements: its rows of the first
+    """One result. section: all of it; finding: its answer for the first page; judgements: its rows of the first
     table; glance: what the first screen has of it.
 
     wrong: why it cannot be shown, "" where it can. origin: machine, versions, date and commit in one line. variants:
@@ -47,16 +48,17 @@ class Stored:
 def stored_studies(
     folder: Path = RESULTS, progress: Callable[[int, int], object] = lambda done, total: None
 ) -> list[Stored]:
-    """All result files ``<study>.json`` in `folder`, in the studies' order; one that cannot be shown says why.
+    """All results in `folder`, each a folder of files by solver, in the studies' order; one that cannot be shown says
+    why.
 
     progress : is called with how many of them are done, of how many.
     """
     order = {name: place for place, name in enumerate(study_names())}
-    files = sorted(folder.glob("*.json"), key=lambda file: (order.get(file.stem, len(order)), file.stem))
+    found = sorted(results_in(folder), key=lambda path: (order.get(path.name, len(order)), path.name))
     stored = []
-    for file in files:
-        stored.append(_stored(file))
-        progress(len(stored), len(files))
+    for path in found:
+        stored.append(_stored(path))
+        progress(len(stored), len(found))
     return stored
 
 
@@ -67,13 +69,18 @@ def variants_of(stored: Iterable[Stored], *more: Mapping[str, Any]) -> list[Mapp
 
 
 def origin_of(result: Result) -> str:
-    """Date, commit, machine, versions and the last check, in one line; of engines run later than the rest, theirs."""
+    """Date, commit, processor, versions and the last check, in one line; of engines run apart from the rest, theirs."""
 
     def words(origin):
-        packages = [f"{name} {version}" for name, version in origin["packages"].items() if version]
-        return ", ".join((date_of(origin), f"commit {commit_of(origin)}", origin["machine"]["processor"], *packages))
+        return ", ".join((date_of(origin), f"commit {commit_of(origin)}", origin["machine"]["processor"]))
 
-    return "; ".join(filter(None, (by_engine(result.provenance, words), last_check(result))))
+    used = dict.fromkeys(
+        f"{name} {version}"
+        for origin in origins_of(result).values()
+        for name, version in origin["packages"].items()
+        if version
+    )
+    return "; ".join(filter(None, (by_engine(result, words), ", ".join(used), last_check(result))))
 
 
 def commit_of(origin: Mapping[str, Any]) -> str:
@@ -83,29 +90,30 @@ def commit_of(origin: Mapping[str, Any]) -> str:
     return origin["commit"][:12] + (", with uncommitted changes" if origin["dirty"] else "")
 
 
-def _stored(file):
+def _stored(path):
+    name = path.name
     try:
-        result = read_study(file)
-        if not f"{file.stem}-".startswith(f"{result.kind}-"):  # <study>-<part>.json where a study has several
-            raise ResultError(f"a result of {result.kind}; call it {result.kind}.json")
+        result = read_study(path)
+        if not f"{name}-".startswith(f"{result.kind}-"):  # <study>-<part> where a study has several
+            raise ResultError(f"a result of {result.kind}; call its folder {result.kind}")
     except ResultError as error:
-        why = readable(error).removeprefix(f"{file.name}: ")
-        return Stored.damaged(file.stem, f"Study {file.stem}", f"{file.name} cannot be shown: {why}")
+        why = readable(error).removeprefix(f"{name}: ")
+        return Stored.damaged(name, f"Study {name}", f"{name} cannot be shown: {why}")
     old, origin = age(result), origin_of(result)
     try:
         study = get_study(result.kind)
     except (KeyError, StudyBroken) as error:
-        words = f"{file.name} cannot be shown: {error.args[0]}."
-        return Stored.damaged(file.stem, f"Study {result.kind}", words, age=old, origin=origin)
+        words = f"{name} cannot be shown: {error.args[0]}."
+        return Stored.damaged(name, f"Study {result.kind}", words, age=old, origin=origin)
     try:
         page = study.page(result)  # drawn once
         judgements, variants, glance = study.judgements(result), _variants(result.settings), study.glance(result)
         section, finding = replace(page.whole(), age=old), page.opening()
     except Exception as error:  # settings of another version, or another package's page: the report goes on
-        words = f"{file.name} cannot be shown: its page fails ({readable(repr(error))}); --replot shows where."
-        return Stored.damaged(file.stem, f"Study {result.kind}", words, age=old, origin=origin)
+        words = f"{name} cannot be shown: its page fails ({readable(repr(error))}); --replot shows where."
+        return Stored.damaged(name, f"Study {result.kind}", words, age=old, origin=origin)
     finding = finding and replace(finding, age=old)
-    return Stored(file.stem, section, finding, judgements, glance, origin, variants)
+    return Stored(name, section, finding, judgements, glance, origin, variants)
 
 
 def _variants(settings):

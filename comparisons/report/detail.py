@@ -33,17 +33,20 @@ HERE = Path(__file__).parent
 def write_study(
     study: Study, path: str | PathLike[str], folder: str | PathLike[str] | None = None
 ) -> tuple[Path, Section]:
-    """Write the page of the result file at `path` into `folder`, by default beside it: (its path, what it says).
+    """Write the page of the result at `path` into `folder`, by default beside it: (its path, what it says).
 
     Raises
     ------
     ResultError
-        The result file is missing or damaged, or of another study.
+        The result is missing or damaged, or of another study.
     PlaceError
         The page cannot be written.
     """
+    path = Path(path)
+    if path.name in ("", ".."):  # the folder one is in, or the one above
+        path = path.resolve()
     result = read_study(path, study.name)
-    old, file = age(result), Path(path).name
+    old, file = age(result), path.name
     try:
         page = study.page(result).whole()
     except Exception as error:
@@ -53,7 +56,7 @@ def write_study(
             f"{file}: its page cannot be drawn ({readable(repr(error))}); it is {old}; run rocking study {study.name}"
         )
         raise ResultError(words) from error
-    into = (Path(path) if folder is None else Path(folder) / file).with_suffix(".html")
+    into = (path if folder is None else Path(folder) / file).with_suffix(".html")
     html = detail(page.title, [replace(page, age=old)], origin_of(result))
     write_all(into.parent, {into.name: html})
     return into, page

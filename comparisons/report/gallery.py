@@ -12,7 +12,8 @@ from xml.etree import ElementTree
 
 from engines import ENGINES
 
-from ..running.age import by_engine, date_of
+from ..running.age import by_engine, checked, date_of, held
+from ..running.by_solver import results_in
 from ..running.files import write, write_all
 from ..running.provenance import PROJECT_FOLDER, RESULTS, Result
 from ..showing.charts import alone
@@ -61,12 +62,11 @@ def origins(results: Mapping[str, Result]) -> str:
     rows = [["result", "computed", "commit", "processor, cores, memory", "engines", "runs that held when done again"]]
     rows += [["---"] * len(rows[0])]
     for name, result in results.items():
-        origin = result.provenance
         engines = sorted({row["engine"] for row in result.rows if row.get("engine") in ENGINES})
-        last = origin.get("check")
-        held = f"{last['held']} of {last['runs']}, {last['date']}" if last else "none"
-        told = (by_engine(origin, words) for words in (date_of, commit_of, _machine))
-        rows.append([f"`{name}`", *told, ", ".join(engines) or "none", held])
+        last = checked(result)
+        again = f"{held(last)}, {last['date']}" if last else "none"
+        told = (by_engine(result, words) for words in (date_of, commit_of, _machine))
+        rows.append([f"`{name}`", *told, ", ".join(engines) or "none", again])
     return "\n".join(f"| {' | '.join(row)} |" for row in rows)
 
 
@@ -84,7 +84,7 @@ def with_findings(readme: str, words: str) -> str:
 
 if __name__ == "__main__":
     # one that cannot be read must not leave the README without its rows
-    results = {file.stem: read_study(file) for file in sorted(RESULTS.glob("*.json"))}
+    results = {path.name: read_study(path) for path in results_in(RESULTS)}
     found = stored_studies()
     first = first_screen(found)
     for readme, words in ((README, headlines(first)), (RESULTS_README, origins(results))):

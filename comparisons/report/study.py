@@ -17,7 +17,7 @@ from .runs import CARYATID, RESTITUTION, SCENES, load_scenes, plan
 SHORT_RECORD = 200_000
 UNFINISHED = "unfinished"  # folder of what a report that is broken off goes on from
 
-STUDY = Study("report", "Scenes in every solver.", plan)
+STUDY = Study("report", "Scenes in every solver.", plan, by_solver=False)
 
 
 def make_own_results(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
+from .by_solver import MODEL
 from .provenance import at_commit
 from .sources import changes, version_of
 
@@ -18,15 +19,22 @@ NAMED = 3  # definitions that a sentence on a stale result names
 def age(result: Result) -> str | None:
     """In words: None if code, shipped scenes and packages behind `result` are those here, else what has changed since.
 
-    Code counts wherever it has moved; comments, docstrings and packages that are not installed here do not. The rows of
-    an engine that was run later than the rest are judged by what they come from themselves.
+    Code counts wherever it has moved; comments, docstrings and packages that are not installed here do not. Files of
+    one commit are told together.
     """
-    later = result.provenance.get("engines") or {}
-    rest = f"apart from the rows of {', '.join(later)} " if later else ""
-    judged = [(rest, result.provenance), *((f"in the rows of {name} ", origin) for name, origin in later.items())]
-    found = [(words, "; ".join(filter(None, (_changed(one), _other_versions(one))))) for words, one in judged]
-    old = "; ".join(f"{words}{changes}" for words, changes in found if changes)
-    return "; ".join(filter(None, (old, last_check(result)))) if old else None
+    origins = origins_of(result)
+    groups: dict[tuple[str, str | None], dict[str, list[str]]] = {}
+    for name, origin in origins.items():
+        if changed := changes(origin["sources"]):
+            groups.setdefault((date_of(origin), origin["commit"]), {})[name] = changed
+    found = [_older(date, commit, names, len(names) == len(origins)) for (date, commit), names in groups.items()]
+    found += dict.fromkeys(filter(None, map(_other_versions, origins.values())))
+    return "; ".join(filter(None, (*found, last_check(result)))) if found else None
+
+
+def origins_of(result: Result) -> dict[str, Mapping[str, Any]]:
+    """{solver: where its part of a result comes from}, the model's first."""
+    return {MODEL: result.provenance, **(result.provenance.get("engines") or {})}
 
 
 def briefly(words: str) -> str:
@@ -38,17 +46,32 @@ def briefly(words: str) -> str:
 
 def last_check(result: Result) -> str | None:
     """In words when some of a result's runs were done again and how many held; None if never."""
-    last = result.provenance.get("check")
-    return (
-        last and f"last check: {last['date']}, {at_commit(last['commit'])}, {last['held']} of {last['runs']} runs hold"
-    )
+    found = checked(result)
+    return f"last check: {found['date']}, {at_commit(found['commit'])}, {held(found)} runs hold" if found else None
 
 
-def by_engine(origin: Mapping[str, Any], words: Callable[[Mapping[str, Any]], str]) -> str:
-    """What is said of a provenance, and of the engines of which something else holds."""
-    first = words(origin)
-    others = {name: words({**origin, **own}) for name, own in (origin.get("engines") or {}).items()}
-    return "; ".join((first, *(f"{name}: {other}" for name, other in others.items() if other != first)))
+def checked(result: Result) -> dict[str, Any] | None:
+    """The checks of a result's files together, with the oldest one's date and commit; None without any."""
+    known = [origin["check"] for origin in origins_of(result).values() if origin.get("check")]
+    if not known:
+        return None
+    runs, held = (sum(one[name] for one in known) for name in ("runs", "held"))
+    return {**min(known, key=lambda one: one["date"]), "runs": runs, "held": held}
+
+
+def held(check: Mapping[str, Any]) -> str:
+    """How many runs held, of how many."""
+    return f"{check['held']} of {check['runs']}"
+
+
+def by_engine(result: Result, words: Callable[[Mapping[str, Any]], str]) -> str:
+    """What is said of where the files of a result come from: the model's, and those of which something else holds."""
+    told = {name: words(origin) for name, origin in origins_of(result).items()}
+    others: dict[str, list[str]] = {}
+    for name, text in told.items():
+        if text != told[MODEL]:
+            others.setdefault(text, []).append(name)
+    return "; ".join((told[MODEL], *(f"{', '.join(names)}: {text}" for text, names in others.items())))
 
 
 def date_of(origin: Mapping[str, Any]) -> str:
@@ -56,15 +79,13 @@ def date_of(origin: Mapping[str, Any]) -> str:
     return origin["time"][:10]
 
 
-def _changed(origin):
-    changed = changes(origin["sources"])
-    if not changed:
-        return None
-    others = f" and {len(changed) - NAMED} more" if len(changed) > NAMED else ""
-    return (
-        f"{OLDER}: computed on {date_of(origin)} {at_commit(origin['commit'])}; since then changed: "
-        f"{', '.join(changed[:NAMED])}{others}"
-    )
+def _older(date, commit, changed, whole):
+    """changed: {solver: definitions}. whole: whether these are all solvers."""
+    every = list(dict.fromkeys(name for names in changed.values() for name in names))
+    others = f" and {len(every) - NAMED} more" if len(every) > NAMED else ""
+    where = "" if whole else f"in the rows of {', '.join(changed)} "
+    words = f"computed on {date} {at_commit(commit)}; since then changed: {', '.join(every[:NAMED])}{others}"
+    return f"{where}{OLDER}: {words}"
 
 
 def _other_versions(origin):

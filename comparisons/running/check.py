@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
 import random
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from itertools import zip_longest
 from os import PathLike
 from pathlib import Path
 from pkgutil import resolve_name
@@ -15,28 +13,26 @@ from typing import Any
 
 from analytic.errors import EngineNotInstalled, SceneError
 
+from .by_solver import MODEL, differences, read, short
 from .cases import solver
 from .executors import Processes
 from .files import TemporaryFolder
-from .provenance import ResultError, checkout, read_result, record_check
+from .provenance import ResultError, checkout, record_check
 from .run_sample import case_of, outcome_of
 from .sources import today
 from .sweep import run_sweep
 
-RELATIVE, ABSOLUTE = 1e-9, 1e-12  # numbers this near are equal: another processor rounds otherwise
-NOT_COMPARED = ("traced_bytes", "resident_bytes", "versions")  # costs, and what they were paid with,
-CPU = "cpu_"  # and all that begins so
 SHOWN = 3  # differences named of a run
 
 
 @dataclass(frozen=True)
 class Check:
-    """Of a result file: runs repeated, of so many stored and so many in all; what differs, a sentence a run.
+    """Of a result: runs repeated, of so many stored and so many in all; what differs, a sentence a run.
 
     missing: engines of stored runs that are not installed here; none of their runs is drawn.
     """
 
-    file: str
+    result: str
     seed: int
     runs: int
     stored: int
@@ -52,9 +48,9 @@ class Check:
         """The outcome in a sentence."""
         without = f"; not installed: {', '.join(self.missing)}" if self.missing else ""
         if not self.runs:
-            return f"{self.file}: nothing to check, none of its {self.total} runs can be stored{without}"
+            return f"{self.result}: nothing to check, none of its {self.total} runs can be stored{without}"
         drawn = f"drawn with seed {self.seed} from {self.stored} stored of {self.total}{without}"
-        return f"{self.file}: {self.held} of {self.runs} runs hold ({drawn})"
+        return f"{self.result}: {self.held} of {self.runs} runs hold ({drawn})"
 
 
 def check_all(name: str, folder: str | PathLike[str], number: int, seed: int, **options: Any) -> list[Check]:
@@ -65,9 +61,9 @@ def check_all(name: str, folder: str | PathLike[str], number: int, seed: int, **
     ResultError
         As `check`; or there is no such result, or none of them keeps a run.
     """
-    own = Path(folder) / f"{name}.json"
-    files = [own] if own.exists() else sorted(Path(folder).glob(f"{name}-*.json"))  # a study may have several
-    checks = [check(file, number, seed, **options) for file in files or [own]]
+    own = Path(folder) / name
+    parts = [own] if own.exists() else sorted(Path(folder).glob(f"{name}-*"))  # a study may have several
+    checks = [check(part, number, seed, **options) for part in parts or [own]]
     if not any(one.runs for one in checks):
         raise ResultError(f"{checks[0].words()}; run rocking study {name}, which computes all of it again")
     return checks
@@ -86,18 +82,21 @@ def check(
     ResultError
         The result cannot be read, is older than this check, or the outcome cannot be recorded there.
     """
-    result = read_result(path)
+    result = read(path)
     if result.run_count is None:
         raise ResultError(f"{path.name}: was written before runs were stored; run rocking study {result.kind}")
     missing = [name for name in dict.fromkeys(run["engine"] for run in result.runs) if not _installed(name)]
     able = [run for run in result.runs if run["engine"] not in missing]
     drawn = random.Random(seed).sample(able, min(number, len(able)))
     again = _again(drawn, workers, progress) if drawn else []
-    found = filter(None, (_differ(run, now) for run, now in zip(drawn, again, strict=True)))
-    done = Check(path.name, seed, len(drawn), len(able), result.run_count, tuple(found), tuple(missing))
-    if drawn and record:
-        today = {"date": datetime.now(UTC).date().isoformat(), **checkout()}
-        record_check(path, {**today, "seed": seed, "runs": done.runs, "held": done.held})
+    wrong = [_differ(run, now) for run, now in zip(drawn, again, strict=True)]
+    done = Check(path.name, seed, len(drawn), len(able), result.run_count, tuple(filter(None, wrong)), tuple(missing))
+    if record:
+        when = {"date": datetime.now(UTC).date().isoformat(), **checkout(), "seed": seed}
+        places = [run["engine"] if (path / f"{run['engine']}.json").exists() else MODEL for run in drawn]
+        for name in dict.fromkeys(places):
+            own = [differs for differs, place in zip(wrong, places, strict=True) if place == name]
+            record_check(path / f"{name}.json", {**when, "runs": len(own), "held": own.count(None)})
     return done
 
 
@@ -147,25 +146,6 @@ def _differ(run: Mapping[str, Any], now: Any) -> str | None:
     return f"{_named(run)}: {shown}{more}" if found else None
 
 
-def differences(where: str, stored: Any, now: Any) -> Iterator[tuple[str, Any, Any]]:
-    """(quantity, stored, now) of all that differs."""
-    if isinstance(stored, dict) and isinstance(now, dict):
-        for name in dict.fromkeys((*stored, *now)):
-            if name not in NOT_COMPARED and not name.startswith(CPU):
-                yield from differences(f"{where}.{name}", stored.get(name), now.get(name))
-    elif isinstance(stored, list) and isinstance(now, list):
-        for k, (one, other) in enumerate(zip_longest(stored, now)):
-            yield from differences(f"{where}[{k}]", one, other)
-    elif not _equal(stored, now):
-        yield where.removeprefix("values."), stored, now
-
-
-def _equal(stored, now):
-    if type(stored) is float and isinstance(now, int | float) and type(now) is not bool:
-        return math.isclose(stored, now, rel_tol=RELATIVE, abs_tol=ABSOLUTE)
-    return type(stored) is type(now) and stored == now
-
-
 def _state(failure):
     return f"{failure['kind']}: {failure['reason']}" if failure else "sound"
 
@@ -173,9 +153,3 @@ def _state(failure):
 def _named(run):
     own = ", ".join(f"{name} = {value}" for name, value in {**run["settings"], **run["tag"]}.items())
     return ", ".join(filter(None, (run["engine"], run["variant"], run["scene"]["name"], own)))
-
-
-def short(value: object) -> str:
-    """A value as a sentence has it."""
-    text = f"{value:.9g}" if isinstance(value, float) else str(value)
-    return text if len(text) <= 80 else f"{text[:80]}..."

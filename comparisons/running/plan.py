@@ -15,7 +15,7 @@ to write a study, from the first file to its page: `comparisons.studies`.
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Generator, Mapping, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, field
 from importlib import import_module
 from typing import TYPE_CHECKING
@@ -95,8 +95,8 @@ class Study:
     `comparisons.showing.parts.Page`; its ``judgements(result)``, if it has them, rows of the report's first table, and
     its ``glance(result)`` what stands above them.
     problems: result -> sentences that end the command with status 1. whole: why one engine's rows cannot be computed
-    anew by themselves (`merge`); "" where they can. indexed: {array: its column that says of which engine a row is, by
-    the place in the settings' "engines"}; other arrays of an engine bear its name.
+    anew by themselves (`by_solver`); "" where they can: then its arrays bear its name. by_solver: whether its result is
+    a folder of files by solver, or one file.
     """
 
     name: str
@@ -105,7 +105,7 @@ class Study:
     shown_by: str = ""
     problems: Callable[[Result], list] = lambda result: []
     whole: str = ""
-    indexed: Mapping[str, int] = field(default_factory=dict)
+    by_solver: bool = True
 
     def options(self) -> dict[str, inspect.Parameter]:
         """The plan's options by name; annotations that are kept as text stand for what they do where it is."""

@@ -135,7 +135,7 @@ def save(path: str | PathLike[str], result: Result) -> Path:
         "provenance": result.provenance,
         "settings": result.settings,
         "arrays": None,
-        "runs": {"stored": len(runs), "total": result.run_count or 0},
+        "runs": {"stored": len(runs), "total": result.run_count},
         "rows": result.rows,
     }
     _check_form(path.name, content)

@@ -8,15 +8,15 @@ from collections.abc import Iterable
 from contextlib import ExitStack
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from engines import ENGINES, installed_engines
 
+from .by_solver import EDITED, MODEL, check_same, opened, save_parts
 from .cases import name_of, root_of
 from .cluster import Cluster
 from .executors import Processes, number_of
 from .files import check_folder
-from .merge import merged, opened, the_one
 from .plan import Batch, Computed, Request, Study
 from .progress import log, spinner, stdout_to_stderr
 from .provenance import made_here, save
@@ -24,9 +24,6 @@ from .run_sample import sample_of
 from .solving import named_engines
 from .sources import digests_of_all, package_of, source_digests
 from .sweep import Row, Store, run_sweep
-
-if TYPE_CHECKING:
-    from .provenance import Result
 
 RUNS = "runs.jsonl"  # rows of single runs, beside the result
 _stored: Path | None = None  # where the runs are of the study under way, or of the last one
@@ -42,10 +39,12 @@ def compute(
     workers: int | None = None,
     scheduler: str | None = None,
     progress: bool = True,
-    into: str | PathLike[str] | None = None,
     **options: Any,
 ) -> list[Path]:
-    """Run a study's plan; returns the paths of its result files in `folder`, mostly one.
+    """Run a study's plan; returns the paths of its results in `folder`, mostly one: a folder of files by solver.
+
+    Where `engines` are named and there is a result of the study, they are computed alone, with the options that it was
+    computed with, and their files are written beside those of the others (`by_solver`).
 
     Parameters
     ----------
@@ -62,10 +61,8 @@ def compute(
         Address of a Dask scheduler whose workers do the runs, or "local:N". What is timed is done here all the same.
     progress : bool
         Show it on standard error.
-    into : path or None
-        A result file of the study, whose rows of the `engines` are replaced (`merge`), in place of files in `folder`.
     **options
-        Of the study's plan; with `into` those that differ from their defaults there.
+        Of the study's plan.
 
     Raises
     ------
@@ -82,10 +79,12 @@ def compute(
     """
     global _stored
     check_folder(folder)
-    if into is not None:
-        old, quick, options = opened(study, into, quick, options)
     workers, folder = number_of(workers), Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
+    place, old = folder / study.name, None
+    if engines and not study.whole and (place / f"{MODEL}.json").exists():
+        engines = named_engines(engines)
+        old, quick, options = opened(study, place, engines, quick, options)
     with ExitStack() as stack:
         stack.enter_context(stdout_to_stderr())  # engines print on import
         store = stack.enter_context(Store(folder / RUNS))
@@ -99,11 +98,7 @@ def compute(
         solvers = ("analytic", *asked)
         pool = Processes(workers, solvers) if scheduler is None else Cluster(scheduler, solvers)
         plan = study.plan(Request(asked, quick), **options)
-        keep = save if into is None else _keep
-        found, runs = _carry_out(study, plan, folder, solvers, code, store, stack.enter_context(pool), progress, keep)
-    if into is None:
-        return list(found)
-    return [save(into, merged(study, old, the_one(found, Path(into)), asked, runs))]
+        return _carry_out(study, plan, folder, solvers, code, store, stack.enter_context(pool), progress, old)
 
 
 def kept() -> str:
@@ -116,14 +111,10 @@ def kept() -> str:
     return f"{runs}; the same command goes on from there." if count else ""
 
 
-def _keep(path, result):
-    """What is to be merged is not written by itself."""
-
-
-def _carry_out(study, plan, folder, always, code, store, pool, progress, keep):
-    """Run what the plan asks for, and keep what it finds; ({path: result}, how many runs of each solver)."""
+def _carry_out(study, plan, folder, always, code, store, pool, progress, old):
+    """Run what the plan asks for, and write what it finds; the paths. old: see `opened`, where engines run alone."""
     done: list[tuple[Batch, Row]] = []
-    found: dict[Path, Result] = {}
+    found: list[Path] = []
     answer, ended = None, False
     solvers = dict.fromkeys(always)
     while not ended:
@@ -134,13 +125,8 @@ def _carry_out(study, plan, folder, always, code, store, pool, progress, keep):
         if isinstance(step, Computed):
             answer = None
             solvers.update(dict.fromkeys(step.solvers))
-            modules = [name_of(study.plan), *dict.fromkeys(map(root_of, solvers))]
-            path = folder / f"{step.name or study.name}.json"
-            edited = [name for name, digest in source_digests(modules).items() if digest not in code]
-            settings = {**step.settings, "changed_while_running": edited}  # its numbers are of the code before
-            origin: dict[str, Any] = dict(modules=modules, seed=step.seed, runs=sample_of(done), run_count=len(done))
-            found[path] = made_here(study.name, settings, step.rows, step.arrays, **origin)
-            keep(path, found[path])
+            if ended or old is None:
+                found.append(_written(study, folder, step, list(solvers), always[1:], code, done, old))
             continue
         answer = _run(step, store, pool, progress)
         solvers.update(dict.fromkeys(case.solver for case in step.cases))
@@ -148,7 +134,23 @@ def _carry_out(study, plan, folder, always, code, store, pool, progress, keep):
     if progress:
         reused = sum(row.reused for _, row in done)
         log(f"{len(done) - reused} runs done, {reused} found in {folder.name}/{RUNS}")
-    return found, Counter(row.case.solver for _, row in done)
+    return list(dict.fromkeys(found))
+
+
+def _written(study, folder, answer, solvers, engines, code, done, old):
+    """The path at which an answer was written."""
+    plan, path = name_of(study.plan), folder / (answer.name or study.name)
+    roots = [plan, *dict.fromkeys(map(root_of, solvers))]
+    edited = [name for name, digest in source_digests(roots).items() if digest not in code]
+    settings = {**answer.settings, EDITED: edited}  # its numbers are of the code before
+    origin: dict[str, Any] = dict(modules=roots, seed=answer.seed, runs=sample_of(done), run_count=len(done))
+    result = made_here(study.name, settings, answer.rows, answer.arrays, **origin)
+    if not study.by_solver:
+        return save(path.with_suffix(".json"), result)
+    if old is not None:
+        check_same(study, old, result, engines)
+    counts = dict.fromkeys(solvers, 0) | Counter(row.case.solver for _, row in done)
+    return save_parts(path, result, plan, engines, counts, only=old is not None)
 
 
 def _leave_nothing_empty(folder):

@@ -44,11 +44,10 @@ class Origin(Part):
 
 
 class Provenance(Origin):
-    """Where a result comes from; engines: of those whose rows were computed later than the rest, where these do."""
+    """Where a result comes from."""
 
     seed: int | list[int] | None = Field(description="of the random numbers used; null where none are")
     check: Checked | None = None
-    engines: dict[str, Origin] | None = None
 
 
 class Arrays(Part):
@@ -63,7 +62,7 @@ class Runs(Part):
     engine run again counts as when it was first run."""
 
     stored: int
-    total: int
+    total: int | None = Field(description="null: counted with those of analytic.json")
 
 
 class StudyResult(Form):

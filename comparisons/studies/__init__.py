@@ -5,7 +5,7 @@ noun (its cases).
 
 ``study.py`` computes and imports nothing that shows: a ``plan(request)`` that yields a `Batch` of cases with their
 ``measure`` and returns `Computed`, plain rows and settings (`comparisons.running.plan`); where `Study` has them other
-than usual, also ``problems``, ``WHOLE``, ``INDEXED``. All rows of all studies say
+than usual, also ``problems``, ``WHOLE``. All rows of all studies say
 ``engine``, ``variant`` and ``part`` (what the row is), ``level`` for a value of the accuracy parameter, ``lost`` for
 missed impacts; settings list ``variants``, each with engine, variant, ``tier`` (its kind), parameter, default and
 levels. `comparisons.studies.vocabulary` explains every column, `comparisons.studies.rows` says which of them a row has.
@@ -73,7 +73,7 @@ QUESTIONS = {
 BUILT_IN = tuple(QUESTIONS)
 TOLERANCES = "tolerances"  # a result that is shown as a study's, and computed by rocking verify
 # What a study.py may have beside its plan: {its name there: the field of `Study`}.
-OWN = {"problems": "problems", "WHOLE": "whole", "INDEXED": "indexed"}
+OWN = {"problems": "problems", "WHOLE": "whole"}
 
 
 class StudyBroken(SettingError):

@@ -11,7 +11,8 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from ..running.provenance import Result, ResultError, read_result
+from ..running.by_solver import read
+from ..running.provenance import Result, ResultError
 from ..running.readable import readable
 from .vocabulary import columns_of
 
@@ -131,15 +132,15 @@ ROWS = {
 
 
 def read_study(path: str | PathLike[str], name: str | None = None) -> Result:
-    """The `Result` in the file at `path`, its rows such as its study writes; those of another package's study are not
-    looked at. name: of the study that it must be of.
+    """The `Result` at `path`, a folder of files by solver or one file, its rows such as its study writes; those of
+    another package's study are not looked at. name: of the study that it must be of.
 
     Raises
     ------
     ResultError
-        As `read_result`; or it is of another study, or a row is not as it should be.
+        As `by_solver.read`; or it is of another study, or a row is not as it should be.
     """
-    result, file = read_result(path), Path(path).name
+    result, file = read(path), Path(path).name
     if name not in (None, result.kind):
         raise ResultError(f"{file}: a result of {result.kind}; give one that rocking study {name} wrote")
     for number, row in enumerate(result.rows if result.kind in ROWS else (), 1):

@@ -130,8 +130,8 @@ def mirror_defect() -> float:
 def skill() -> float:
     """Brier score of a forecast that knows the share of overturnings alone, over the model's on the shake table; nan if
     its study is not stored."""
-    file = RESULTS / "shake-table.json"
-    rows = where(read_study(file).rows, part="fit", change="as it is") if file.exists() else ()
+    path = RESULTS / "shake-table"
+    rows = where(read_study(path).rows, part="fit", change="as it is") if path.exists() else ()
     share = OVERTURNED / TESTS
     return share * (1 - share) / rows[0]["brier"] if rows else math.nan
 

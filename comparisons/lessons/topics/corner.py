@@ -117,7 +117,7 @@ WHICH = ("engine", "variant")
 
 def bad_example() -> View:
     """Error of restitution over the step for the engines under study: a finer level of their defaults does not help."""
-    study = read_study(RESULTS / "restitution.json")
+    study = read_study(RESULTS / "restitution")
     best = study.settings["default_variants"]
     chosen = [
         variant
@@ -177,8 +177,8 @@ WHOSE, MISTAKE = next(
 
 def hidden_loss() -> float:
     """Error [%] of restitution from the rates of successive impacts with `MISTAKE`; nan if its study is not stored."""
-    file = RESULTS / "mistakes.json"
-    rows = where(read_study(file).rows, engine=WHOSE, mistake=MADE, scene="released") if file.exists() else ()
+    path = RESULTS / "mistakes"
+    rows = where(read_study(path).rows, engine=WHOSE, mistake=MADE, scene="released") if path.exists() else ()
     return 100 * rows[0]["energy"] if rows else math.nan
 
 

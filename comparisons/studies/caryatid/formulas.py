@@ -56,7 +56,7 @@ def momentum_after(scene: Scene, jump_length: float, rate: float = -1.0) -> floa
 
 
 def formulas() -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
-    """(rows, arrays) of the result file ``caryatid-paper``."""
+    """(rows, arrays) of the result ``caryatid-paper``."""
     scene = load_scene("caryatid-isolated").with_(motion=None)
     law = BearingLaw.of(scene.bearings)
     arrays = {**_loops(law), **_reversal(law), **_momentum(scene), **_amplitudes(scene)}

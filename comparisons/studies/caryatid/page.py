@@ -1,4 +1,4 @@
-"""What is shown of the study of the paper, a page for each of its three result files."""
+"""What is shown of the study of the paper, a page for each of its three results."""
 
 import re
 from collections.abc import Iterable, Iterator, Mapping

@@ -1,6 +1,6 @@
 """The Caryatid paper: every equation, figure and table of it reproduced or corrected, and what it leaves out.
 
-There are three result files, all of kind "caryatid": ``caryatid-paper`` (what needs no motion: bearing law, Table 1,
+There are three results, all of kind "caryatid": ``caryatid-paper`` (what needs no motion: bearing law, Table 1,
 misprints), ``caryatid-under-<motion>`` (what does, without a single value of the motion itself) and
 ``caryatid-under-<motion>-histories`` (Figs 4 and 6 over time: not to be passed on where the record may not be).
 """

@@ -19,8 +19,6 @@ from ...running.progress import log
 from ...running.refine import together
 from .edges import HIGHEST, LOWEST, drawn_columns, drawn_edges, edges, least_normal, locate, pulse
 
-INDEXED = {"points": 2}  # see `Study.indexed`
-
 # The isolated Caryatid itself overturns at base displacements far beyond its bearings' 0.30 m only; a more slender
 # block on the same bearings does at amplitudes of a strong earthquake.
 GROUNDS = {"rigid ground": ("caryatid-rigid", {}), "isolated base": ("caryatid-isolated", {"slenderness": 0.15})}
@@ -101,9 +99,7 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
     outside the band) and "failure".
 
     Arrays: frequency, amplitude; ``<ground>/<shape>``: int16, shape (amplitudes, frequencies), impacts before
-    overturning in the analytic model, -1 where it does not overturn. ``points``: shape (n, 8): ground, shape, engine
-    (indices into the settings), frequency, amplitude, analytic outcome, engine's outcome (1 overturns, 0 not, -1
-    failed or undecided), whether of the scan.
+    overturning in the analytic model, -1 where it does not overturn.
     """
     grid = grid or (QUICK if request.quick else FULL)
     grounds = {
@@ -142,7 +138,6 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
     for settings_of, *how in ((default, DISTANCES, TOLERANCE), (coarser, LEVEL_DISTANCES, LEVEL_TOLERANCE)):
         rows += yield from others.search("drawn shift", settings_of, [edge for _, edge in drawn], *how)
     records = _compared(runs.outcomes, default, grounds, found)
-    arrays["points"] = _indexed(records, grid, request.engines)
     rows += [*_confusions(records, default, grounds), *_disagreements(records)]
     described = [*itertools.starmap(_described, variants), STEPPING]
     settings = _settings(request, grid, grounds, described)
@@ -372,21 +367,3 @@ def _disagreements(records):
         if one["distance"] > BAND and one["overturns"] not in (None, one["analytic_overturns"]):
             row = {key: value for key, value in one.items() if key not in ("overturns", "scan")}
             yield {"part": "disagreement", **row}
-
-
-def _indexed(records, grid, engines):
-    """Array of shape (n, 8), the columns as the plan names them."""
-    rows = [
-        (
-            grid.grounds.index(one["ground"]),
-            grid.shapes.index(one["shape"]),
-            engines.index(one["engine"]),
-            one["frequency"],
-            one["amplitude"],
-            one["analytic_overturns"],
-            -1 if one["overturns"] is None else one["overturns"],
-            one["scan"],
-        )
-        for one in records
-    ]
-    return np.array(rows, dtype=float)

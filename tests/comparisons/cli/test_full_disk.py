@@ -51,16 +51,12 @@ def each(*commands):
 def folders(tmp_path_factory):
     """Makes a folder with what a command has written there before: pages with other words, results as they are."""
     root = tmp_path_factory.mktemp("disk")
-    (root / "studies").mkdir()
-    for file in RESULTS.glob("sensitivity.*"):
-        shutil.copy(file, root / "studies")
+    shutil.copytree(RESULTS / "sensitivity", root / "studies" / "sensitivity")
 
     def made(name, number):
         first, folder = root / name, root / f"{name}-{number}"
         if not first.exists() and name == "check":
-            first.mkdir()
-            for file in RESULTS.glob("restitution.*"):
-                shutil.copy(file, first)
+            shutil.copytree(RESULTS / "restitution", first / "restitution")
         elif not first.exists():
             assert run(name, first).returncode == 0
         shutil.copytree(first, folder)
@@ -90,7 +86,7 @@ def assert_whole(folder, before, first):
     for name in [name for name in before if after[name] not in (before[name], first[name])]:
         whole = after[name].rstrip().endswith((b"</html>", b"</svg>", b"IEND\xaeB`\x82"))
         assert whole or name.endswith((".json", ".npz", ".jsonl")), name
-    for file in folder.glob("*.json"):
+    for file in folder.rglob("*.json"):
         read_result(file)
 
 

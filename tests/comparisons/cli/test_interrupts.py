@@ -159,9 +159,7 @@ def test_an_interrupted_study_says_what_is_kept(tmp_path):
 
 
 def test_an_interrupted_report_says_what_is_kept_and_goes_on_from_there(tmp_path):
-    (tmp_path / "studies").mkdir()
-    for file in RESULTS.glob("sensitivity.*"):
-        shutil.copy(file, tmp_path / "studies")
+    shutil.copytree(RESULTS / "sensitivity", tmp_path / "studies" / "sensitivity")
     store, one = tmp_path / "page" / UNFINISHED / "runs.jsonl", ("--engine", installed_engines()[0])
     (tmp_path / "stands.toml").write_text(STANDS)  # no run but those of the scene itself
     words = ("report", tmp_path / "stands.toml", *one, "--output", tmp_path / "page", "--studies", tmp_path / "studies")

@@ -86,7 +86,7 @@ MISTAKES = {
     "study restitution --check 3 --quick": "--check: takes a result as it is",
     "study restitution --check 3 --engine exudyn": "--check: takes a result as it is",
     "study restitution --check 3 --replot FILE": "--check: takes a result as it is",
-    "study mistakes --check 3 --output none": "no such result file",
+    "study mistakes --check 3 --output none": "no such result; run the study",
     "design caryatid-isolated": "--stroke",
     "design caryatid-isolated --stroke 0.2 --period 2": "--period",
     "design caryatid-isolated --stroke 0.2 --write softest": "own",

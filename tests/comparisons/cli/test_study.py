@@ -1,6 +1,7 @@
 """``rocking study``: all of them side by side, and a stored result checked (running/test_check.py: how)."""
 
 import shutil
+from operator import itemgetter
 from pathlib import Path
 from unittest.mock import Mock
 
@@ -9,9 +10,11 @@ from engine_cases import needs
 
 from comparisons.commands import study as command
 from comparisons.running import check as module
+from comparisons.running.by_solver import read
 from comparisons.running.check import Check
 from comparisons.running.plan import Computed, Study
 from comparisons.running.provenance import RESULTS, read_result
+from comparisons.running.study import compute
 from comparisons.showing.parts import Page
 
 
@@ -20,20 +23,30 @@ def _plan(ask):
     yield  # a plan is a generator
 
 
+def _drawing(ask, *, seed: int | None = None):
+    return Computed({"seed": seed}, [{"value": 1.5}])
+    yield
+
+
+def _weighing(ask, *, mass: float = 1.0):
+    return Computed({"mass": mass}, [{"engine": name, "mass": mass} for name in ask.engines])
+    yield
+
+
 def test_results_lie_side_by_side_and_a_second_call_keeps_them(rocking, monkeypatch, tmp_path):
     monkeypatch.setattr(command, "BUILT_IN", ("first", "second"))
-    monkeypatch.setattr(command, "get_study", lambda name: Study(name, "A study that asks for no run?", _plan))
+    monkeypatch.setattr(command, "get_study", lambda name: Study(name, "Asks for no run?", _plan, all_engines=False))
     for _ in range(2):
         status, out, _ = rocking("study", "all", "--quick", "--output", tmp_path)
         assert status == 0
-        assert [Path(line).name for line in out.split()] == ["first.json", "second.json"]
+        assert [Path(line).name for line in out.split()] == ["first", "second"]
     found = sorted(file.relative_to(tmp_path).as_posix() for file in tmp_path.rglob("*.json"))
-    assert found == ["first.json", "first/first.json", "second.json", "second/second.json"]
+    assert found == ["first/analytic.json", "second/analytic.json"]
 
 
 @pytest.mark.parametrize("differences, status", [((), 0), (("exudyn: peak: stored 1, now 2",), 1)])
 def test_status_is_whether_all_hold(rocking, monkeypatch, differences, status):
-    check_all = Mock(return_value=[Check("restitution.json", 1, 4, 60, 1408, differences)])
+    check_all = Mock(return_value=[Check("restitution", 1, 4, 60, 1408, differences)])
     monkeypatch.setattr(module, "check_all", check_all)
     found, out, _ = rocking("study", "restitution", "--check", "4", "--output", "mine")
     assert found == status and check_all.call_args.args[:3] == ("restitution", "mine", 4)
@@ -41,7 +54,7 @@ def test_status_is_whether_all_hold(rocking, monkeypatch, differences, status):
 
 
 def test_a_seed_repeats_the_draw_of_a_check_and_none_draws_anew(rocking, monkeypatch):
-    check_all = Mock(return_value=[Check("stability.json", 1, 4, 60, 490)])
+    check_all = Mock(return_value=[Check("stability", 1, 4, 60, 490)])
     monkeypatch.setattr(module, "check_all", check_all)
     for words in ([], [], ["--seed", "7", "--write"]):
         assert rocking("study", "stability", "--check", "4", *words)[0] == 0
@@ -50,48 +63,55 @@ def test_a_seed_repeats_the_draw_of_a_check_and_none_draws_anew(rocking, monkeyp
 
 
 def test_a_seed_is_the_plans_where_it_takes_one_and_else_belongs_to_a_check(rocking, monkeypatch, tmp_path):
-    def drawing(ask, *, seed: int | None = None):
-        return Computed({"seed": seed}, [{"value": 1.5}])
-        yield
-
-    for name, plan in (("draws", drawing), ("draws-nothing", _plan)):
+    for name, plan in (("draws", _drawing), ("draws-nothing", _plan)):
         monkeypatch.setattr(command, "get_study", lambda name, plan=plan: Study(name, "Asks?", plan, __name__))
         status, _, err = rocking("study", name, "--seed", "3", "--output", tmp_path / name)
-        if plan is drawing:
-            assert status == 0 and read_result(tmp_path / name / "draws.json").settings["seed"] == 3
+        if plan is _drawing:
+            assert status == 0 and read(tmp_path / name / name).settings["seed"] == 3
         else:
             assert status == 2 and err == "Error: --seed 3: belongs to --check; this study draws nothing by a seed\n"
     assert rocking("study", "stability", "--write")[::2] == (2, "Error: --write: belongs to --check\n")
     assert "--seed" in rocking("study", "random-scenes", "--help")[1]
 
 
-def test_an_engine_is_run_into_a_result_with_the_options_of_that(rocking, monkeypatch, tmp_path):
+def test_an_engine_is_run_alone_with_the_options_of_the_result_that_is_there(rocking, monkeypatch, tmp_path):
     needs("pybullet")
-
-    def weighing(ask, *, mass: float = 1.0):
-        return Computed({"mass": mass}, [{"engine": name, "mass": mass} for name in ask.engines])
-        yield
-
-    monkeypatch.setattr(command, "get_study", lambda name: Study("weighs", "Asks?", weighing, __name__))
-    words = ("study", "restitution", "--output", tmp_path / "runs", "--engine")
+    monkeypatch.setattr(command, "get_study", lambda name: Study("weighs", "Asks?", _weighing, __name__))
+    words, path = ("study", "restitution", "--output", tmp_path, "--engine"), tmp_path / "weighs"
     assert rocking(*words, "pybullet", "--mass", "2")[0] == 0
-    path = shutil.copy(tmp_path / "runs" / "weighs.json", tmp_path / "weighs.json")
-    status, out, err = rocking(*words, "exudyn", "--into", path)  # the option's default does not count as given
-    assert status == 0 and out.split() == [str(path), str(tmp_path / "runs" / "weighs.html")], err
-    assert read_result(path).rows == [{"engine": name, "mass": 2.0} for name in ("pybullet", "exudyn")]
-    assert len(read_result(tmp_path / "runs" / "weighs.json").rows) == 1
+    before = {file.name: file.read_bytes() for file in path.iterdir()}
+    status, out, err = rocking(*words, "exudyn")  # the option's default does not count as given
+    assert status == 0 and out.split() == [str(path), str(tmp_path / "weighs.html")], err
+    assert sorted(read(path).rows, key=itemgetter("engine")) == [
+        {"engine": name, "mass": 2.0} for name in ("exudyn", "pybullet")
+    ]
+    after = {file.name: file.read_bytes() for file in path.iterdir()}
+    assert {name: after[name] for name in before} == before and after.keys() - before.keys() == {"exudyn.json"}
     for more, message in (
-        (("exudyn", "--mass", "1"), f"--mass 1.0: {path} was computed with 2.0; leave it out"),
-        (
-            ("exudyn", "--replot", path),
-            f"--into {path}: name the engines to be run by --engine, and leave --replot out",
-        ),
-        (("exudyn", "--check", "3"), "--check: takes a result as it is; leave --quick, --engine, --scheduler, --into,"),
+        (("--mass", "1"), f"--mass 1.0: {path} was computed with 2.0; leave it out"),
+        (("--quick",), f"--quick: {path} was computed in full; leave it out"),
+        (("--check", "3"), "--check: takes a result as it is; leave --quick, --engine, --scheduler, --replot out"),
     ):
-        status, _, err = rocking(*words, *more, "--into", path)
+        status, _, err = rocking(*words, "exudyn", *more)
         assert status == 2 and err.startswith(f"Error: {message}")
-    status, _, err = rocking("study", "restitution", "--into", path)
-    assert status == 2 and "name the engines to be run by --engine" in err
+
+
+def test_where_no_engine_is_to_be_compared_all_is_computed_anew(tmp_path):
+    needs("exudyn")
+    weighs = Study("weighs", "Asks?", _weighing, __name__)
+    for engines, mass in ((("exudyn",), 2.0), ((), 3.0)):
+        (path,) = compute(weighs, tmp_path, engines=engines, mass=mass, progress=False)
+        assert (read(path).settings["mass"], len(read(path).rows)) == (mass, len(engines))
+    assert [file.name for file in path.iterdir()] == ["analytic.json"]
+
+
+def test_the_folder_one_is_in_is_shown_by_its_name(rocking, monkeypatch, tmp_path):
+    monkeypatch.chdir(shutil.copytree(RESULTS / "surface", tmp_path / "surface"))
+    assert rocking("study", "surface", "--replot", ".", "--output", "page")[:2] == (0, "page/surface.html\n")
+    assert rocking("study", "surface", "--replot", "..")[::2] == (
+        2,
+        f"Error: {tmp_path.name}: no such result; run the study that writes it\n",
+    )
 
 
 def page(result):
@@ -100,18 +120,17 @@ def page(result):
 
 
 def test_a_damaged_result_is_one_message_of_replot(rocking, tmp_path):
-    for name in ("restitution.json", "restitution.npz"):
-        shutil.copy(RESULTS / name, tmp_path)
-    path = tmp_path / "restitution.json"
-    text = path.read_text()
-    rms = read_result(path).rows[0]["rms"]
+    path = shutil.copytree(RESULTS / "restitution", tmp_path / "restitution")
+    file = path / "exudyn.json"
+    text = file.read_text()
+    rms = read_result(file).rows[0]["rms"]
     for wrong in (text[:-200], text.replace(f'"rms": {rms}', '"rms": 1e-7', 1), text.replace("exudyn", "exudin", 1)):
-        path.write_text(wrong)
+        file.write_text(wrong)
         status, out, err = rocking("study", "restitution", "--replot", path, "--output", tmp_path / "page")
-        assert (status, out) == (2, "") and err.startswith("Error: restitution.json: ") and err.count("\n") == 1
-    path.write_text(text)
+        assert (status, out) == (2, "") and err.startswith("Error: restitution/exudyn.json: ") and err.count("\n") == 1
+    file.write_text(text)
     status, _, err = rocking("study", "stability", "--replot", path)
     assert status == 2 and err == (
-        "Error: restitution.json: a result of restitution; give one that rocking study stability wrote\n"
+        "Error: restitution: a result of restitution; give one that rocking study stability wrote\n"
     )
     assert not (tmp_path / "page").exists()

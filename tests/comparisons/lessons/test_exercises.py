@@ -72,7 +72,7 @@ def test_a_closed_form(answer, known, near):
 
 def test_the_skill_of_the_model_on_a_shake_table(monkeypatch):
     """Held against a forecast that is made here, test by test."""
-    stored = read_study(RESULTS / "shake-table.json")
+    stored = read_study(RESULTS / "shake-table")
     assert (len(stored.settings["tests"]), stored.settings["overturned"][0]) == (checks.TESTS, checks.OVERTURNED)
     fell = np.arange(checks.TESTS) < checks.OVERTURNED
     constant = np.mean((np.full(checks.TESTS, fell.mean()) - fell) ** 2)

@@ -28,6 +28,5 @@ def studies(tmp_path_factory):
     """Stored results of three studies: one that judges engines, one ranked, one a matrix."""
     folder = tmp_path_factory.mktemp("studies")
     for name in ("restitution", "sensitivity", "stability"):
-        for file in RESULTS.glob(f"{name}.*"):
-            shutil.copy(file, folder)
+        shutil.copytree(RESULTS / name, folder / name)
     return folder

@@ -19,7 +19,8 @@ from comparisons.report.gallery import (
     origins,
     with_findings,
 )
-from comparisons.running.provenance import RESULTS, read_result
+from comparisons.running.by_solver import read, results_in
+from comparisons.running.provenance import RESULTS
 from comparisons.showing.parts import NAME, RESTITUTION, number, percent, where
 from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.restitution.columns import STATE
@@ -28,7 +29,7 @@ from engines import ENGINES
 from engines.contract import Engine
 
 pytestmark = pytest.mark.xdist_group("contradictions")  # the stored studies are shown once
-STORED = [name for name in BUILT_IN if (RESULTS / f"{name}.json").exists()]
+STORED = [name for name in BUILT_IN if (RESULTS / name).exists()]
 NUMBER = re.compile(r"(?<![\w.,−·])\d+(?:\.\d+)?(?![\w.])")
 
 
@@ -53,7 +54,7 @@ def decision(studies):
 
 def shown(name):
     """(page, judgements) of a study's stored result."""
-    study, result = get_study(name), read_result(RESULTS / f"{name}.json")
+    study, result = get_study(name), read(RESULTS / name)
     return study.page(result).whole(), study.judgements(result)
 
 
@@ -89,7 +90,7 @@ def test_every_number_of_a_title_is_one_of_its_tables(name):
 
 def test_the_rating_of_restitution_is_the_same_on_the_first_screen_and_on_its_page(decision):
     words = {"good": "may be trusted", "fair": "is usable", "bad": "is not to be trusted"}
-    rows = rated(read_result(RESULTS / "restitution.json"))
+    rows = rated(read(RESULTS / "restitution"))
     page, judgements = shown("restitution")
     (heading,) = (one.heading for one in judgements if one.key == RESTITUTION)
     table = page.tables[0]
@@ -128,7 +129,7 @@ def test_cost_is_one_number_in_title_table_and_first_screen(studies, decision):
     advised = [one for one in study.glance.advice if one.engine]
     costs = {f"{number(1e3 * one.cost, 2)} ms ({one.engine})" for one in advised if one.accuracy == 1e-3}
     assert len(costs) == 2 and all(cost in words for cost in costs)  # one number in the line and in the recommendation
-    rows = where(read_result(RESULTS / "speed-error.json").rows, scene="isolated-rocking", variant="script")
+    rows = where(read(RESULTS / "speed-error").rows, scene="isolated-rocking", variant="script")
     assert len(rows) == 2 == len(re.findall(r" ms with an error of ", script))
     for row in rows:
         cost = number(1e3 * row["cpu_per_second"] * row["cpu_low"] / row["cpu_seconds"], 2)
@@ -169,19 +170,19 @@ def test_the_readme_shows_and_says_what_the_stored_results_do(studies):
 
 
 def test_the_readme_of_the_results_says_where_each_of_them_comes_from():
-    files = sorted(RESULTS.glob("*.json"))
-    readme, table = (
-        RESULTS_README.read_text(encoding="utf-8"),
-        origins({file.stem: read_result(file) for file in files}),
-    )
+    folders = results_in(RESULTS)
+    readme, table = RESULTS_README.read_text(encoding="utf-8"), origins({path.name: read(path) for path in folders})
     assert readme == with_findings(readme, table)
     lines = {line.split("`")[1]: line for line in table.splitlines()[2:]}
-    assert list(lines) == [file.stem for file in files]
-    for file in files:  # as the files themselves have it
-        content = json.loads(file.read_text())
-        origin, engines = content["provenance"], {str(row.get("engine")) for row in content["rows"]}
-        assert all(words in lines[file.stem] for words in (origin["time"][:10], origin["machine"]["processor"]))
-        assert origin["commit"][:12] + ", with uncommitted changes" * origin["dirty"] + " |" in lines[file.stem]
-        assert {name for name in ENGINES if name in lines[file.stem]} == ENGINES.keys() & engines
-        if last := origin.get("check"):
-            assert f"| {last['held']} of {last['runs']}, {last['date']} |" in lines[file.stem]
+    assert list(lines) == [path.name for path in folders]
+    for path in folders:  # as the files themselves have it
+        line, contents = lines[path.name], [json.loads(file.read_text()) for file in path.glob("*.json")]
+        engines = {str(row.get("engine")) for content in contents for row in content["rows"]}
+        assert {name for name in ENGINES if name in line} == ENGINES.keys() & engines
+        origins_here = [content["provenance"] for content in contents]
+        for origin in origins_here:
+            assert all(words in line for words in (origin["time"][:10], origin["machine"]["processor"]))
+            assert origin["commit"][:12] + ", with uncommitted changes" * origin["dirty"] in line
+        if checks := [origin["check"] for origin in origins_here if origin.get("check")]:
+            held, runs = (sum(check[name] for check in checks) for name in ("held", "runs"))
+            assert f"| {held} of {runs}, {min(check['date'] for check in checks)} |" in line

@@ -21,8 +21,7 @@ def written(tmp_path_factory):
     """The file of a page with no engine's run of its own; one of its studies is made old."""
     folder, studies = tmp_path_factory.mktemp("page"), tmp_path_factory.mktemp("studies")
     for name in ("restitution", OLD, "recorded"):
-        for file in RESULTS.glob(f"{name}.*"):
-            shutil.copy(file, studies)
+        shutil.copytree(RESULTS / name, studies / name)
     make_own_results(folder, {"block": load_scene("free-rocking-rigid")}, engines=[])
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(answer, "age", lambda result: "older than the code: ..." if result.kind == OLD else None)

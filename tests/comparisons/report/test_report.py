@@ -14,6 +14,7 @@ from analytic import EngineNotInstalled, load_scene, simulate, synthetic_motion
 from comparisons.report import runs, write
 from comparisons.report.study import make_results
 from comparisons.report.write import write_page
+from comparisons.running.by_solver import read
 from comparisons.running.provenance import read_result, write_result
 from comparisons.showing import parts
 from comparisons.showing.parts import Table, where
@@ -138,8 +139,8 @@ def test_outside_the_range_no_engine_is_recommended(copied, studies):
 def test_every_number_of_the_first_table_is_that_of_a_study(copied, studies):
     page = Page(write_page(copied, studies))
     found = page.table("With counts") | page.table("All tests of the others")
-    summaries = where(read_result(studies / "restitution.json").rows, scope="all")
-    marks = get_study("stability").judgements(read_result(studies / "stability.json"))[0].marks
+    summaries = where(read(studies / "restitution").rows, scope="all")
+    marks = get_study("stability").judgements(read(studies / "stability"))[0].marks
     columns = {column for _, column in found if column != "engine"}
     (heading,) = {row for row, _ in found if row.startswith("error of restitution by states (")}
     names = {(row["engine"], row["variant"]) for row in summaries}
@@ -240,9 +241,9 @@ def test_missing_engines_are_named_with_their_remedy(tmp_path, monkeypatch):
 
 def test_a_study_is_shown_by_its_own_page_and_says_when_it_is_old(folder, copied, tmp_path_factory, monkeypatch):
     studies = tmp_path_factory.mktemp("results")
-    file = write_result(studies / "fake.json", "fake", {}, [{"kappa": 0.75}], modules=["analytic.errors"])
+    file = write_result(studies / "fake" / "analytic.json", "fake", {}, [{"kappa": 0.75}], modules=["analytic.errors"])
     write_page(copied, studies=studies)
-    assert "fake.json cannot be shown: unknown study" in (copied / "pages/fake.html").read_text()
+    assert "fake cannot be shown: unknown study" in (copied / "pages/fake.html").read_text()
     tables = [Table(name, ("solver", "kappa [-]"), [["exudyn", "0.75"]]) for name in ("Agreement", "All of it")]
     shown = parts.Page("A fake study: agrees", ("Two paragraphs < one.",), tuple(tables[:1]), tuple(tables[1:]))
     study = SimpleNamespace(page=lambda result: shown, judgements=lambda result: (), glance=lambda result: None)

@@ -11,8 +11,8 @@ from analytic import PulseMotion, SampledMotion, synthetic_motion
 from analytic.errors import EngineNotInstalled
 from analytic.pairing import paired
 from comparisons.report.answer import origin_of
+from comparisons.running import by_solver, run_sample
 from comparisons.running import check as module
-from comparisons.running import run_sample
 from comparisons.running.age import age, last_check
 from comparisons.running.check import check, check_all
 from comparisons.running.plan import Batch, Computed, Study
@@ -44,7 +44,8 @@ def result(tmp_path):
 
 
 def changed(path, change):
-    """The result with its stored runs changed."""
+    """The result with its stored runs changed; all of them are in the model's file, as no engine was asked for."""
+    path = path / "analytic.json"
     old = read_result(path)
     for run in old.runs:
         change(run)
@@ -54,15 +55,15 @@ def changed(path, change):
 def test_unchanged_code_holds_and_the_result_says_when_it_was_checked(result):
     found = check(result, 30, 1, record=True, workers=1, progress=False)
     assert (found.runs, found.held, found.stored, found.total) == (12, 12, 12, 12)  # failed runs among them
-    read = read_result(result)
+    read = by_solver.read(result)
     last = read.provenance["check"]
     assert (last["runs"], last["held"], last["seed"]) == (12, 12, 1)
     assert "12 of 12 runs hold" in last_check(read) and last_check(read) in origin_of(read)
     read.provenance["sources"]["analytic.gone"] = ""
     assert age(read).endswith(last_check(read))
-    before = result.read_bytes()
+    before = (result / "analytic.json").read_bytes()
     assert check(result, 5, 2, workers=1, progress=False).runs == 5
-    assert result.read_bytes() == before  # not recorded: not asked for
+    assert (result / "analytic.json").read_bytes() == before  # not recorded: not asked for
 
 
 def test_a_run_that_differs_is_named_with_both_numbers(result):
@@ -72,7 +73,7 @@ def test_a_run_that_differs_is_named_with_both_numbers(result):
 
     changed(result, change)
     found = check(result, 30, 1, record=True, workers=1, progress=False)
-    assert found.held == 11 and read_result(result).provenance["check"]["held"] == 11
+    assert found.held == 11 and by_solver.read(result).provenance["check"]["held"] == 11
     (words,) = found.differences
     assert "fake_solvers:sound, i = 2: peak: stored 0.000400000004, now 0.0004" == words
 
@@ -99,13 +100,13 @@ def test_what_is_gone_or_fails_otherwise_does_not_hold(result, part, value, word
 
 
 def test_results_without_stored_runs_say_what_to_do(tmp_path):
-    path = write_result(tmp_path / "tilts.json", "tilts", {}, [], modules=["analytic"])
+    path = write_result(tmp_path / "tilts" / "analytic.json", "tilts", {}, [], modules=["analytic"])
     with pytest.raises(ResultError, match="nothing to check, none of its 0 runs .* run rocking study tilts"):
         check_all("tilts", tmp_path, 3, 0)
     edit(path, lambda content: content.pop("runs"))
     with pytest.raises(ResultError, match="before runs were stored; run rocking study tilts"):
         check_all("tilts", tmp_path, 3, 0)
-    with pytest.raises(ResultError, match="other.json: no such result file"):
+    with pytest.raises(ResultError, match="other: no such result; run the study"):
         check_all("other", tmp_path, 3, 0)
 
 
@@ -160,12 +161,12 @@ def test_few_long_motions_and_few_runs_are_stored():
     ],
 )
 def test_differences_are_found_in_their_place(stored, now, places):
-    assert [where for where, _, _ in module.differences("x", stored, now)] == places
+    assert [where for where, _, _ in by_solver.differences("x", stored, now)] == places
 
 
 def test_runs_of_an_engine_that_is_not_installed_are_left_out_and_named(result, monkeypatch):
     changed(result, lambda run: run.update(engine="mujoco") if run["tag"] == {"i": 0} else None)
-    runs = read_result(result).runs
+    runs = by_solver.read(result).runs
     absent = sum(run["engine"] == "mujoco" for run in runs)
 
     def solver(name, known=module.solver):

@@ -15,7 +15,7 @@ import time
 import psutil
 import pytest
 
-from comparisons.running.provenance import read_result
+from comparisons.running.by_solver import read
 from comparisons.running.sweep import Store
 from engines import installed_engines
 
@@ -41,7 +41,7 @@ def finished(study, folder, *options):
     assert process.returncode == 0, words[-2000:]
     with Store(folder / "runs.jsonl") as store:
         runs = {key: (without_costs(row["values"]), row["failure"]) for key, row in store.rows.items()}
-    return without_costs(read_result(folder / f"{study}.json").rows), runs
+    return without_costs(read(folder / study).rows), runs
 
 
 def without_costs(value):

@@ -12,7 +12,8 @@ import pytest
 from analytic.scene_file import SHIPPED
 from comparisons.running import provenance as module
 from comparisons.running import sources
-from comparisons.running.age import age
+from comparisons.running.age import age, origins_of
+from comparisons.running.by_solver import read, results_in
 from comparisons.running.provenance import (
     RESULTS,
     ResultError,
@@ -188,10 +189,10 @@ def test_another_layout_is_refused_with_the_one_that_is_read_and_who_reads_it(tm
 
 
 def test_every_committed_result_can_be_read_and_says_where_it_comes_from():
-    for file in RESULTS.glob("*.json"):
-        result = read_result(file)
-        assert result.provenance["commit"], file.name
-        assert f"{file.stem}-".startswith(f"{result.kind}-")  # <study>-<part>.json where a study has several
+    for path in results_in(RESULTS):
+        result = read(path)
+        assert all(origin["commit"] for origin in origins_of(result).values()), path.name
+        assert f"{path.name}-".startswith(f"{result.kind}-")  # <study>-<part> where a study has several
 
 
 def test_version_by_the_name_that_is_imported(monkeypatch):

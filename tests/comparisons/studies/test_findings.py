@@ -9,8 +9,9 @@ import pytest
 from page_numbers import number_in
 
 from comparisons.report.write import SHORT
+from comparisons.running.by_solver import read, results_in
 from comparisons.running.cases import name_of
-from comparisons.running.provenance import RESULTS, read_result
+from comparisons.running.provenance import RESULTS
 from comparisons.running.sources import source_digests
 from comparisons.showing.parts import NAME, Head, where
 from comparisons.showing.wording import ENDS, FALL, TURNED
@@ -20,7 +21,7 @@ from engines import ENGINES, get_engine
 
 
 def stored(name):
-    return read_result(RESULTS / f"{name}.json")
+    return read(RESULTS / name)
 
 
 SUBJECTS = [name for name, engine in ENGINES.items() if engine.subject]
@@ -44,7 +45,7 @@ def test_what_shows_is_no_part_of_what_a_result_depends_on(name):
 
 
 @pytest.mark.parametrize(
-    "name, file", [(name, file.stem) for name in BUILT_IN for file in sorted(RESULTS.glob(f"{name}*.json"))]
+    "name, file", [(name, path.name) for name in BUILT_IN for path in results_in(RESULTS) if path.name.startswith(name)]
 )
 def test_a_page_writes_numbers_and_symbols_as_a_reader_does_and_its_finding_is_short(name, file):
     page = get_study(name).page(stored(file))

@@ -70,7 +70,7 @@ def test_a_study_of_another_package_gets_command_resumption_and_section(tmp_path
     assert len(SOURCE.strip().splitlines()) <= 60
     install_study(tmp_path, SOURCE)
     status, out, err = study(tmp_path, "swings", "--quick", "--mass", "2", "--workers", "1")
-    assert status == 0 and (tmp_path / "swings-study" / "swings.json").exists(), err
+    assert status == 0 and (tmp_path / "swings-study" / "swings" / "analytic.json").exists(), err
     assert "2 swings of 2 kg." in err and "2 runs done, 0 found" in err and "swings.html" in out
     status, _, err = study(tmp_path, "swings", "--mass", "2", "--workers", "1")
     assert status == 0 and "2 runs done, 2 found" in err

@@ -7,9 +7,10 @@ from answered import answered, by_model, by_runs, stored
 from engine_cases import needs
 
 from comparisons.measuring.scripts import ScriptFailed, run_script
+from comparisons.running.by_solver import read
 from comparisons.running.cases import Case
 from comparisons.running.plan import Request
-from comparisons.running.provenance import RESULTS, read_result
+from comparisons.running.provenance import RESULTS
 from comparisons.showing.parts import where
 from comparisons.studies import get_study
 from comparisons.studies.mistakes import study
@@ -115,9 +116,9 @@ def test_another_text_of_a_script_is_another_run():
     assert texts[0] != texts[1]
 
 
-@pytest.mark.skipif(not (RESULTS / "mistakes.json").exists(), reason="not stored")
+@pytest.mark.skipif(not (RESULTS / "mistakes").exists(), reason="not stored")
 class TestStored:
-    result = read_result(RESULTS / "mistakes.json") if (RESULTS / "mistakes.json").exists() else None
+    result = read(RESULTS / "mistakes") if (RESULTS / "mistakes").exists() else None
 
     def test_what_does_not_matter_keeps_what_scripts_promise(self):
         for row in where(self.result.rows, group=NO_MATTER):

@@ -18,8 +18,9 @@ from table_tests import published
 import engines
 from analytic import synthetic_motion
 from comparisons.report.runs import restitution_cases
+from comparisons.running.by_solver import read
 from comparisons.running.plan import Request
-from comparisons.running.provenance import RESULTS, json_ready, read_result
+from comparisons.running.provenance import RESULTS, json_ready
 from comparisons.showing.parts import where
 from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.caryatid.runs import simulations
@@ -148,10 +149,7 @@ def test_the_overturning_study_runs_and_shows_it(crude, monkeypatch, tmp_path):
 @pytest.mark.parametrize("crude", [FAKE_ENGINE], indirect=True)
 def test_the_study_of_the_paper_runs_and_shows_it(crude, tmp_path):
     """Its simulations; what the analytic model alone finds is taken from the stored result."""
-    stored, plan = (
-        read_result(RESULTS / "caryatid-under-synthetic.json"),
-        simulations(synthetic_motion(), ASK.engines, True),
-    )
+    stored, plan = (read(RESULTS / "caryatid-under-synthetic"), simulations(synthetic_motion(), ASK.engines, True))
     ((rows, histories),) = answered(plan, by_model(history=True))
     assert {row["engine"] for row in rows} == {"analytic", "crude"}
     assert {f"{scene}/crude/tilt" for scene in ("free-standing", "isolated")} <= histories.keys()

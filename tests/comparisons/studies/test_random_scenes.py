@@ -8,8 +8,9 @@ from page_numbers import number_in
 
 from analytic import Block, PulseMotion, Scene
 from analytic.response import COMPARED, EDGE
+from comparisons.running.by_solver import read
 from comparisons.running.plan import Request
-from comparisons.running.provenance import RESULTS, read_result
+from comparisons.running.provenance import RESULTS
 from comparisons.running.sweep import Row
 from comparisons.showing.parts import NAME
 from comparisons.showing.wording import ENDS, TURNED
@@ -23,7 +24,7 @@ ENGINE = next(iter(ENGINES))
 
 @pytest.fixture(scope="module")
 def result():
-    return read_result(RESULTS / "random-scenes.json")
+    return read(RESULTS / "random-scenes")
 
 
 def test_scenes_are_repeatable_and_within_the_range():

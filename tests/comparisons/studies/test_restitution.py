@@ -9,7 +9,8 @@ from page_numbers import number_in
 from analytic import simulate
 from analytic.rocking import restitution
 from comparisons.report.detail import write_study
-from comparisons.running.provenance import RESULTS, read_result
+from comparisons.running.by_solver import read
+from comparisons.running.provenance import RESULTS
 from comparisons.running.study import compute
 from comparisons.showing.parts import RESTITUTION, Figure, Table, number, where
 from comparisons.studies import get_study
@@ -89,7 +90,7 @@ def small(tmp_path_factory):
 
 
 def test_a_small_study_finds_what_is_known(small):
-    result = read_result(small)
+    result = read(small)
 
     def one(part, **wanted):
         (row,) = where(result.rows, part=part, **wanted)
@@ -110,7 +111,7 @@ def test_a_small_study_finds_what_is_known(small):
 
 
 def test_the_page_comes_from_the_result_alone(small):
-    page = STUDY.page(read_result(small))
+    page = STUDY.page(read(small))
     opening, whole = page.opening(), page.whole()
     assert whole.parts[:2] == opening.parts and list(map(type, opening.parts)) == [Figure, Table]
     aware, first = "pybullet, impact-aware", "pybullet, first-script"
@@ -125,7 +126,7 @@ def test_the_page_comes_from_the_result_alone(small):
 
 def test_no_worst_error_is_less_than_the_root_mean_square_beside_it(small):
     """Both are of one measure, on rigid ground and on bearings."""
-    for judgement in STUDY.judgements(read_result(small)):
+    for judgement in STUDY.judgements(read(small)):
         worst = [number_in(mark.note.partition("worst ")[2].partition(";")[0]) for mark in judgement.marks.values()]
         rms = [mark.value for mark in judgement.marks.values()]
         assert len(rms) >= 2 and all(most > 0.97 * mean for most, mean in zip(worst, rms, strict=True))
@@ -140,7 +141,7 @@ def test_its_own_page_needs_no_other_file(small, tmp_path):
 
 def test_the_error_of_the_first_screen_is_the_one_by_states_in_the_section():
     """Of both grounds the worse, as the stored rows have it; the other measure has its own name and column."""
-    result, study = read_result(RESULTS / "restitution.json"), get_study("restitution")
+    result, study = read(RESULTS / "restitution"), get_study("restitution")
     opening = study.page(result).opening()
     (table,) = opening.tables
     marks = next(one for one in study.judgements(result) if one.key == RESTITUTION).marks

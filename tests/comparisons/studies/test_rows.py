@@ -1,9 +1,13 @@
 """Studies declare their rows: those stored are so, and a row that is not is named with column, value and remedy."""
 
+import shutil
+
 import pytest
 from answered import edit
 
+from comparisons.running.by_solver import read, results_in
 from comparisons.running.provenance import RESULTS, ResultError, read_result, write_result
+from comparisons.showing.parts import where
 from comparisons.studies import BUILT_IN, TOLERANCES, get_study
 from comparisons.studies.explained import TYPES, Explained
 from comparisons.studies.rows import ROWS, _columns, read_study, wrong_with
@@ -12,10 +16,10 @@ from comparisons.studies.vocabulary import columns_of
 CELL = {**{"part": "order", "engine": "exudyn", "variant": "step", "ground": "rigid ground"}, "order": 2.0}
 
 
-@pytest.mark.parametrize("file", sorted(RESULTS.glob("*.json")), ids=lambda file: file.stem)
+@pytest.mark.parametrize("file", results_in(RESULTS), ids=lambda path: path.name)
 def test_rows_of_every_stored_result_are_those_of_its_study(file):
     result = read_study(file)
-    assert result.rows == read_result(file).rows and result.kind in ROWS
+    assert result.rows == read(file).rows and result.kind in ROWS
     assert all(isinstance(words, str) for words in get_study(result.kind).problems(result))
 
 
@@ -72,16 +76,16 @@ def test_a_result_of_another_study_is_refused_by_name_and_a_foreign_one_is_not_l
 
 def test_a_number_changed_in_a_stored_result_is_seen(tmp_path):
     """By the digest; by one who makes it anew it is not, and cannot be."""
-    text = (RESULTS / "restitution.json").read_text()
-    path = tmp_path / "restitution.json"
-    (tmp_path / "restitution.npz").write_bytes((RESULTS / "restitution.npz").read_bytes())
-    rms = read_result(RESULTS / "restitution.json").rows[0]["rms"]
+    path = shutil.copytree(RESULTS / "restitution", tmp_path / "restitution")
+    file = path / "exudyn.json"
+    text, rms = file.read_text(), read_result(file).rows[0]["rms"]
     assert f'"rms": {rms},' in text
-    path.write_text(text.replace(f'"rms": {rms},', f'"rms": {rms * 1.001:.5g},', 1))
-    with pytest.raises(ResultError, match=r"restitution\.json: damaged"):
+    file.write_text(text.replace(f'"rms": {rms},', f'"rms": {rms * 1.001:.5g},', 1))
+    with pytest.raises(ResultError, match=r"restitution/exudyn\.json: damaged"):
         read_study(path)
-    path.write_text(text)
-    assert read_study(edit(path, lambda content: None)).rows[0]["rms"] == rms
+    file.write_text(text)
+    edit(file, lambda content: None)
+    assert rms == where(read_study(path).rows, engine="exudyn")[0]["rms"]
 
 
 def test_a_type_is_that_of_json():

@@ -46,7 +46,7 @@ from comparisons.studies.shake_table.telling import array_of, cell_rows, cells, 
 from comparisons.studies.shake_table.told import ALIKE
 from engines import ENGINES
 
-RESULT = provenance.RESULTS / "shake-table.json"
+RESULT = provenance.RESULTS / "shake-table"
 REAL = Path(__file__).parents[4] / "shared" / "experiments" / "granite-blocks"
 ENGINE = next(iter(ENGINES))
 FAILURE = {"kind": "solver", "reason": "the solver gave up", "message": "no convergence"}

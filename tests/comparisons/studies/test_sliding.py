@@ -9,9 +9,10 @@ from answered import answered, by_model, stored
 from sliding_scenes import LOST, SAVED, SLIDES, scene_of
 
 from analytic import SceneError, Start, simulate, synthetic_motion
+from comparisons.running.by_solver import read
 from comparisons.running.cases import Case
 from comparisons.running.plan import Request
-from comparisons.running.provenance import RESULTS, read_result
+from comparisons.running.provenance import RESULTS
 from comparisons.showing.parts import NAME, number, percent, where
 from comparisons.studies import get_study
 from comparisons.studies.sliding import study
@@ -189,7 +190,7 @@ def test_failed_runs_are_shown_apart_and_counted_as_wrong(tmp_path):
 
 def test_what_is_right_as_a_whole_in_its_outcome_and_at_slipping_impacts_is_told_apart():
     """From stored rows, counted here by hand: three counts that differ, each with what it counts."""
-    result = read_result(RESULTS / "sliding.json")
+    result = read(RESULTS / "sliding")
     _, counted, errors = STUDY.page(result).opening().text
     for name in (name for name, engine in ENGINES.items() if engine.subject):
         runs = where(result.rows, part="run", engine=name, variant=get_engine(name).default_variant)

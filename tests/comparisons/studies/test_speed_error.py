@@ -11,8 +11,9 @@ from analytic import simulate
 from analytic.rocking import restitution
 from analytic.time_stepping import simulate_time_stepping
 from comparisons.measuring import models, scripts
+from comparisons.running.by_solver import read
 from comparisons.running.cases import Case, solver
-from comparisons.running.provenance import Result, read_result
+from comparisons.running.provenance import Result
 from comparisons.running.study import compute
 from comparisons.showing.parts import COST, Figure, Table, short
 from comparisons.studies import get_study
@@ -340,7 +341,7 @@ def studied(tmp_path_factory, near):
 
     given = dict(quick=True, progress=False, repeats=2, scenes=[near], keep=keep)
     folders = (tmp_path_factory.mktemp("speed-error") for _ in range(2))
-    return [read_result(file) for folder in folders for file in compute(STUDY, folder, engines=("pybullet",), **given)]
+    return [read(file) for folder in folders for file in compute(STUDY, folder, engines=("pybullet",), **given)]
 
 
 def test_a_study_repeats_bit_for_bit_and_the_page_comes_from_its_result_alone(studied):
@@ -374,5 +375,5 @@ def test_what_is_stored_of_a_run_of_an_integrator_has_all_its_errors(tmp_path):
     some = [trial for trial in problem_trials() if trial.name == "problem A"]
     given = dict(quick=True, progress=False, repeats=1, scenes=some)
     (path,) = compute(STUDY, tmp_path, engines=(), keep=lambda entry: entry.variant == "DOP853", **given)
-    found = [run["values"]["errors"] for run in read_result(path).runs if run["values"].get("errors")]
+    found = [run["values"]["errors"] for run in read(path).runs if run["values"].get("errors")]
     assert found and all("lost" in one and len(one) > 1 for one in found)

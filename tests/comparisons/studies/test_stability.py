@@ -15,8 +15,9 @@ from analytic.sliding import layout
 from analytic.sliding.bounds import contact_of, slipping_friction
 from analytic.sliding.run import marched
 from analytic.solver import TOLERANCE, ground, options, parameters
+from comparisons.running.by_solver import read
 from comparisons.running.plan import Request
-from comparisons.running.provenance import RESULTS, read_result
+from comparisons.running.provenance import RESULTS
 from comparisons.running.study import compute
 from comparisons.running.sweep import Row
 from comparisons.showing.parts import where
@@ -224,7 +225,7 @@ def test_cases_outside_the_range_are_counted_apart(tmp_path):
     names = ("uplift 0.99", "zeno", "slides", "inertia 1.0001, free rocking", "uplift 1.01")
     options = {"names": names, "columns": [KERNEL, TIME_STEPPING]}
     (path,) = compute(STUDY, tmp_path, engines=(), workers=1, progress=False, **options)
-    result = read_result(path)
+    result = read(path)
     outside = {name: set(case["outside"]) for name, case in result.settings["cases"].items()}
     assert outside == {names[0]: set(), names[1]: set(), names[2]: set(), names[3]: {"inertia"}, names[4]: {"tilt"}}
     marks = judgements(result)[0].marks
@@ -316,7 +317,7 @@ def test_ten_minutes_are_asked_of_the_default_variants_alone():
 def test_the_study_tries_finer_settings_and_resumes_and_its_page_shows_what_they_change(tmp_path):
     options = {"names": ("uplift 0.99", "zeno", "critical pulse -0.01"), "columns": [KERNEL, TIME_STEPPING]}
     (path,) = compute(STUDY, tmp_path, engines=(), workers=1, progress=False, **options)
-    runs, result = (tmp_path / "runs.jsonl").read_text(), read_result(path)
+    runs, result = (tmp_path / "runs.jsonl").read_text(), read(path)
     first, finer = where(result.rows, case="zeno", engine="time-stepping")
     assert (first["part"], first["level"], first["result"]) == ("default settings", 1e-3, DIFFERS)  # too coarse for it
     assert (finer["part"], finer["level"], finer["result"]) == ("finer settings", 1e-4, RIGHT)
@@ -333,12 +334,12 @@ def test_the_study_tries_finer_settings_and_resumes_and_its_page_shows_what_they
 
     (again,) = compute(STUDY, tmp_path, engines=(), workers=1, progress=False, **options)
     assert (tmp_path / "runs.jsonl").read_text() == runs  # nothing ran twice
-    ran, found = ([{**row, "cpu_seconds": 0} for row in one.rows] for one in (result, read_result(again)))
+    ran, found = ([{**row, "cpu_seconds": 0} for row in one.rows] for one in (result, read(again)))
     assert ran == found
 
 
 def test_committed_result_has_the_kernel_right_in_every_case():
-    result = read_result(RESULTS / "stability.json")
+    result = read(RESULTS / "stability")
     assert not result.settings["quick"]
     kernel = where(result.rows, engine="analytic")
     assert {row["case"] for row in kernel} == set(result.settings["cases"]) == set(CASES)

@@ -7,8 +7,9 @@ from answered import answered, by_model
 from record_files import pairs
 from table_tests import published
 
+from comparisons.running.by_solver import read, results_in
 from comparisons.running.plan import Request
-from comparisons.running.provenance import RESULTS, read_result
+from comparisons.running.provenance import RESULTS
 from comparisons.studies import BUILT_IN, TOLERANCES, get_study
 from comparisons.studies.explained import SHARED
 from comparisons.studies.vocabulary import OWN, columns_of
@@ -30,7 +31,7 @@ def columns(tmp_path_factory):
     last = get_study("shake-table").plan(Request(ask.engines), data=tests)
     shaken = answered(last, by_model(failure=lambda case: FAILED if case.solver != "analytic" else None))[-1].rows
     found = {"recorded": set().union(*recorded), "shake-table": set().union(*shaken)}
-    for result in map(read_result, RESULTS.glob("*.json")):
+    for result in map(read, results_in(RESULTS)):
         found.setdefault(result.kind, set()).update(*result.rows)
     return found
 
