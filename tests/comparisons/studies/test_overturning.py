@@ -154,9 +154,13 @@ def test_failed_runs_are_no_outcomes_and_their_evidence_is_kept(tmp_path):
     (counts,) = (table for table in page.tables if "reason" in table.columns)
     shown = {(row[0], row[1]): int(row[2]) for row in counts.rows}
     assert shown == Counter((f"{row['engine']}, {row['variant']}", row["reason"]) for row in failures + undecided)
-    mains = result.settings["default_variants"].items()  # of which the points are
-    of_mains = [row for row in failures + undecided if (row["engine"], row["variant"]) in mains]
-    assert (result.arrays["points"][:, 6] == -1).sum() == len(of_mains)
+    scan = result.settings["scan"]
+    counted = where(result.rows, part="confusion", region="scan")
+    assert len(counted) == 2  # the main variant of each engine
+    for row in counted:
+        own = where(failures + undecided, engine=row["engine"], variant=row["variant"], amplitude={*scan})
+        outcomes = sum(row[key] for key in ("both_stand", "both_overturn", "only_a", "only_b"))
+        assert own and outcomes + len(own) == len(result.settings["frequencies"]) * len(scan)
 
 
 def test_the_scan_counts_who_errs_which_way(tmp_path):
