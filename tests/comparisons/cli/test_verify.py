@@ -28,7 +28,7 @@ def test_verify_measures_each_row_and_names_the_one_that_fails(rocking, monkeypa
     assert content["schema"] == "rocking verify 3" and "exudyn" in content["versions"]["exudyn"]
     assert [row["holds"] for row in content["rows"]] == [True, False]
     assert content["rows"][0]["found"] == content["rows"][1]["found"] > 0
-    assert read_study(tmp_path / "studies" / "tolerances.json").rows == [
+    assert read_study(tmp_path / "studies" / "tolerances").rows == [
         {"part": "tolerance", **row} for row in content["rows"]
     ]
     (shown,) = stored_studies(tmp_path / "studies")
@@ -46,7 +46,7 @@ def test_without_a_bound_nothing_holds_or_fails_and_what_was_found_is_said(rocki
         assert f"no bound stated, so nothing holds or fails; 1 of {len(rows)} quantities measured." in out
         told = json.loads((tmp_path / "verify.json").read_text())["rows"]
         assert [row["holds"] for row in told] == [None] * len(rows) and told[0]["found"] > 0
-        assert [row["holds"] for row in read_study(tmp_path / "tolerances.json").rows] == [None] * len(rows)
+        assert [row["holds"] for row in read_study(tmp_path / "tolerances").rows] == [None] * len(rows)
     assert free.check({}) == told[0]["found"]
 
 

@@ -350,4 +350,4 @@ def test_committed_result_has_the_kernel_right_in_every_case():
     drawn = b"".join(figure.svg.split(b'class="narrow"')[-1] for figure in STUDY.page(result).whole().figures)
     unknown = drawn.count(b": not modelled;")
     assert drawn.count(b": not run;") + unknown == missing > 0  # what was not asked is no empty cell
-    assert unknown == 3 * len(SLIPPERY)  # twin, time stepping, the variant that is given the impact
+    assert unknown == 2 * len(SLIPPERY)  # twin, time stepping
