@@ -31,8 +31,8 @@ Engines = Annotated[
     list[str] | None,
     typer.Option(
         "--engine",
-        help="Engine to compare; may be repeated. Where the folder holds a result, its file alone is written. Default: "
-        "all that the study needs.",
+        help="Engine to compare; may be repeated. Where the folder holds a result, its file alone is written, but of "
+        "studies that compare all solvers' CPU times. Default: all that the study needs.",
     ),
 ]
 Workers = Annotated[int | None, typer.Option(min=1, help="Worker processes. Default: one per core.")]

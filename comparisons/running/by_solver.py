@@ -208,10 +208,8 @@ def save_parts(
     return folder
 
 
-def opened(
-    study: Study, folder: Path, engines: Sequence[str], quick: bool, options: Mapping[str, Any]
-) -> tuple[Result, bool, dict[str, Any]]:
-    """The model's part of the result in `folder`, of which `engines` are to be computed alone, and what it was asked:
+def opened(study: Study, folder: Path, quick: bool, options: Mapping[str, Any]) -> tuple[Result, bool, dict[str, Any]]:
+    """The model's part of the result in `folder`, where an engine is to be computed alone, and what it was asked:
     whether quick, and the options of the plan.
 
     options: those given; they must not contradict the stored ones.
@@ -219,16 +217,13 @@ def opened(
     Raises
     ------
     SettingError
-        One does; or no engine of this study can be computed by itself.
+        One does.
     ResultError
         As `read_result`; or it is of another study.
     """
-    words = f"--engine {' --engine '.join(engines)}: {folder} holds a result"
-    if study.whole:
-        raise SettingError(f"{words}, and study {study.name} cannot take one engine by itself: {study.whole}")
     old = read_result(folder / f"{MODEL}.json")
     if old.kind != study.name:
-        raise ResultError(f"{words} of {old.kind}; give another --output")
+        raise ResultError(f"{folder} holds a result of {old.kind}; give another --output")
     known = {**old.settings, "seed": old.provenance["seed"]}
     stored = {name: known[name] for name, kind in study.options().items() if name in known and _is(known[name], kind)}
     asked = {"quick": bool(old.settings.get("quick")), **stored}

@@ -57,6 +57,7 @@ def source_digests(roots: Iterable[str]) -> dict[str, str]:
     ModuleNotFoundError
         The module of a root does not exist, or holds no such definition.
     """
+    roots = list(roots)
     code = code_of(map(package_of, roots))
     return dict(sorted((code.named(place), code.digest(place)) for place in code.reached(roots)))
 
@@ -76,8 +77,9 @@ def changes(kept: Mapping[str, str]) -> list[str]:
     """Names of the definitions that are others today than those of which `kept_digests` were kept: of those that do not
     read another such one; and of roots that are gone."""
     known = {text[k : k + DIGITS] for text in kept.values() for k in range(0, len(text), DIGITS)}
-    code, there, gone = code_of(map(package_of, kept)), list[str](), list[str]()
-    for root in map(today, kept):
+    roots = list(map(today, kept))
+    code, there, gone = code_of(map(package_of, roots)), list[str](), list[str]()
+    for root in roots:
         (there if code.root(root) else gone).append(root)
     others = {place for place in code.reached(there) if code.digest(place) not in known}
     return gone + sorted(code.named(one) for one in others if not others & {*code.reads(one)} - {one})
@@ -99,6 +101,7 @@ def digests_of_all(packages: Iterable[str]) -> set[str]:
     return {code.digest(place) for place in code.all()}
 
 
+@functools.cache  # of this process: another version takes another one
 def version_of(package: str) -> str | None:
     """Version of an installed package, also where its distribution has another name (pydrake's is drake); else None."""
     try:
@@ -149,10 +152,11 @@ class Code:
         self.packages = frozenset(packages)
         self.file, self.module = functools.cache(_file), functools.cache(_module)
         self.of, self.targets = functools.cache(self._of), functools.cache(self._targets)
+        self.digest, self.reads = functools.cache(self._digest), functools.cache(self._reads)
 
     def all(self) -> Iterator[Place]:
         """All of them, and the shipped scenes."""
-        for name in _modules(self.packages):
+        for name, _ in _modules(self.packages):
             yield from (place for place in self.of(name, ()) if isinstance(place, Place))
         yield from (Place(one, SCENE) for one in SHIPPED_NAMES)
 
@@ -177,7 +181,7 @@ class Code:
                 waiting += [*self.reads(place), *self.nameless(place)]
         return found
 
-    def digest(self, place: Place) -> str:
+    def _digest(self, place: Place) -> str:
         """Of a definition's code and of what its names stand for."""
         if place.number == SCENE:
             return self._own(place)
@@ -187,7 +191,7 @@ class Code:
         }
         return _digest((self._own(place), sorted(found.items())))[:DIGITS]
 
-    def reads(self, place: Place) -> list[Place]:
+    def _reads(self, place: Place) -> list[Place]:
         """The definitions that one reads by name."""
         if place.number == SCENE:
             return []
@@ -264,8 +268,8 @@ def package_of(root: str) -> str:
 def code_of(packages: Iterable[str]) -> Code:
     """The `Code` of the project and some more packages, as it is now."""
     names = frozenset({*PROJECT, *packages})
-    files = [_file(name) for name in _modules(names)]
-    return _code(names, tuple((str(file), file.stat().st_mtime_ns) for file in files if file))
+    files = [*(file for _, file in _modules(names)), *sorted(SHIPPED.glob("*.toml"))]
+    return _code(names, tuple((str(file), file.stat().st_mtime_ns) for file in files))
 
 
 @functools.lru_cache(maxsize=4)
@@ -273,16 +277,16 @@ def _code(names, _files):
     return Code(names)
 
 
-def _modules(packages: Iterable[str]) -> Iterator[str]:
-    """Names of all modules of some packages."""
+def _modules(packages: Iterable[str]) -> Iterator[tuple[str, Path]]:
+    """(name, file) of all modules of some packages."""
     for package in packages:
         file = _file(package)
         if file and file.name == "__init__.py":
             for path in sorted(file.parent.rglob("*.py")):
                 inner = path.relative_to(file.parent).with_suffix("").parts
-                yield ".".join((package, *(inner[:-1] if inner[-1] == "__init__" else inner)))
+                yield ".".join((package, *(inner[:-1] if inner[-1] == "__init__" else inner))), path
         elif file:
-            yield package
+            yield package, file
 
 
 def _file(name):

@@ -84,7 +84,7 @@ def compute(
     place, old = folder / study.name, None
     if engines and not study.whole and (place / f"{MODEL}.json").exists():
         engines = named_engines(engines)
-        old, quick, options = opened(study, place, engines, quick, options)
+        old, quick, options = opened(study, place, quick, options)
     with ExitStack() as stack:
         stack.enter_context(stdout_to_stderr())  # engines print on import
         store = stack.enter_context(Store(folder / RUNS))

@@ -175,16 +175,16 @@ def test_a_folder_without_the_models_file_and_one_that_is_none_say_what_to_do(co
 
 @MADE_ONCE
 def test_a_result_is_asked_what_it_was_asked(one):
-    assert opened(MADE, one, [SECOND], False, {})[1:] == (False, {"mass": 2.0})
-    assert opened(MADE, one, [SECOND], False, {"mass": 2.0})[1:] == (False, {"mass": 2.0})
+    assert opened(MADE, one, False, {})[1:] == (False, {"mass": 2.0})
+    assert opened(MADE, one, False, {"mass": 2.0})[1:] == (False, {"mass": 2.0})
     with pytest.raises(SettingError, match="--mass 3.0: .* was computed with 2.0; leave it out"):
-        opened(MADE, one, [SECOND], False, {"mass": 3.0})
+        opened(MADE, one, False, {"mass": 3.0})
     with pytest.raises(SettingError, match="--quick: .* was computed in full; leave it out"):
-        opened(MADE, one, [SECOND], True, {})
+        opened(MADE, one, True, {})
     with pytest.raises(ResultError, match="holds a result of made; give another --output"):
-        opened(Study("other", "", MADE.plan), one, [SECOND], False, {})
+        opened(Study("other", "", MADE.plan), one, False, {})
     recorded = RESULTS / "recorded"
-    assert opened(get_study("recorded"), recorded, [SECOND], False, {"records": "mine"})[2] == {"records": "mine"}
+    assert opened(get_study("recorded"), recorded, False, {"records": "mine"})[2] == {"records": "mine"}
 
 
 @pytest.mark.parametrize("path", results_in(RESULTS), ids=lambda path: path.name)
