@@ -37,6 +37,18 @@ def origins_of(result: Result) -> dict[str, Mapping[str, Any]]:
     return {MODEL: result.provenance, **(result.provenance.get("engines") or {})}
 
 
+def timed_apart(result: Result) -> dict[str, str]:
+    """{engine: why} its CPU times cannot be set against the model's: another processor, or code of another commit."""
+    origins = origins_of(result)
+    own, found = origins[MODEL], {}
+    for name, origin in origins.items():
+        if (processor := origin["machine"]["processor"]) != own["machine"]["processor"]:
+            found[name] = f"on another processor ({processor})"
+        elif origin["commit"] != own["commit"]:
+            found[name] = f"with the code of another commit ({at_commit(origin['commit'])})"
+    return found
+
+
 def briefly(words: str) -> str:
     """What `age` says, for a heading: that it is so, not why."""
     if OLDER not in words:

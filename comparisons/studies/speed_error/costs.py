@@ -10,6 +10,7 @@ import numpy as np
 from engines import ENGINES
 
 from ...measuring.scripts import NAME as SCRIPT
+from ...running.age import timed_apart
 from ...running.provenance import Result
 from ...showing.figures import mains
 from ...showing.glance import Advised, Curve, Glance
@@ -51,6 +52,7 @@ CPU = Column("CPU time of a run [s]", "cpu_seconds")
 TIMES = "cpu_seconds", "cpu_per_second", "cpu_per_step"
 NOISE = 95  # percentile of the levels
 NOT_REACHED = Mark("not reached", "none")
+APART = "timed apart"  # with another processor or the code of another commit than the model
 SHORT = {KERNEL: "analytic model", "time-stepping": "our time stepping"}
 
 
@@ -120,7 +122,7 @@ def level_costs(result: Result) -> dict[str, dict[tuple[str, str], dict[float, f
 
 def equal_cost_tables(result: Result) -> list[Table | None]:
     """A table for each error: what it costs every solver in every scene."""
-    costs, scenes = level_costs(result), result.settings["scenes"]
+    costs, scenes, apart = level_costs(result), result.settings["scenes"], timed_apart(result)
     places = list(dict.fromkeys(place for some in costs.values() for place in some))
 
     def cell(place, error):
@@ -132,6 +134,7 @@ def equal_cost_tables(result: Result) -> list[Table | None]:
             if (cost := row["costs"][place].get(error)) is None:
                 return "not reached"
             over = f" ({number(cost / model, 2)} ×)" if model and row["name"] != KERNEL else ""
+            over = f" ({APART})" if row["name"].split(", ")[0] in apart else over
             return f"{number(1e3 * cost, 2)}{over}"
 
         return Column(f"{scenes[place[0]]['title']}: {MEASURES[place[1]].removesuffix(' [-]')}", text)
@@ -150,11 +153,12 @@ def equal_cost_tables(result: Result) -> list[Table | None]:
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
     """CPU time over the analytic model's at an equal error, by (engine, variant); none without that scene."""
-    kept, marks = keeping(result, ASKED), {}
+    kept, apart, marks = keeping(result, ASKED), timed_apart(result), {}
     for name, *pair in grouped(_plain(result), "name", "engine", "variant") if KERNEL in kept else ():
         ratio = name in kept and kept[name]["cpu_per_second"] / kept[KERNEL]["cpu_per_second"]
         if name in {NAME.of(one) for one in result.settings["variants"]}:
-            marks[tuple(pair)] = Mark(f"{number(ratio, 2)} ×", "none", value=ratio) if ratio else NOT_REACHED
+            mark = Mark(f"{number(ratio, 2)} ×", "none", value=ratio) if ratio else NOT_REACHED
+            marks[tuple(pair)] = Mark(APART, "none", apart[pair[0]]) if ratio and pair[0] in apart else mark
     heading = f"CPU time over the analytic model's at {percent(ASKED, 1)} of peak tilt, isolated rocking"
     return (Judgement(heading, marks, COST),) if marks else ()
 
@@ -186,13 +190,14 @@ def _plain(result):
 def _curves(result, rows):
     """Of every solver once: engines' main variants and those as they come, scripts, and the other solvers."""
     listed = {NAME.of(one): one for one in result.settings["variants"]}
-    main = mains(result.settings["variants"])
+    main, apart = mains(result.settings["variants"]), timed_apart(result)
     for (who, engine, variant), some in grouped(rows, "name", "engine", "variant").items():
         tier = listed[who]["tier"] if who in listed else ""
         if who in listed and tier != "defaults" and main[engine] != variant:
             continue
         known = {"tuned": f"{engine}, tuned", "defaults": f"{engine}, defaults"}
         name = known.get(tier, f"{engine}, script" if variant == SCRIPT else SHORT.get(who, engine))
+        name += f" ({APART})" if engine in apart else ""
         points = tuple(
             (row["cpu_per_second"], row["errors"]["peak_tilt"], not row["lost"], _says(row))
             for row in some
@@ -224,15 +229,17 @@ def keeping(result: Result, error: float) -> dict[str, Row]:
 
 def advice(result: Result, error: float) -> list[Advised]:
     """What keeps an error: of tuned variants of the engines in question, whose engine computes the impact, the cheapest
-    level of the cheapest, and that of every other that costs the same within the `noise`."""
+    level of the cheapest, and that of every other that costs the same within the `noise`, or was timed apart."""
+    apart = timed_apart(result)
     able = {
         NAME.of(one)
         for one in where(result.settings["variants"], tier="tuned", applies_impact=False)
         if ENGINES[one["engine"]].subject
     }
     kept = [row for name, row in keeping(result, error).items() if name in able]
-    most = noise(result) * kept[0]["cpu_per_second"] if kept else 0.0
-    return [_advised(result, error, row) for row in kept if row["cpu_per_second"] <= most] or [Advised(error)]
+    least = min((row["cpu_per_second"] for row in kept if row["engine"] not in apart), default=0.0)
+    alike = [row for row in kept if row["engine"] in apart or row["cpu_per_second"] <= noise(result) * least]
+    return [_advised(result, error, row) for row in alike] or [Advised(error)]
 
 
 def _advised(result, error, row):
@@ -277,13 +284,24 @@ def at_a_glance(result: Result) -> str:
 
 
 def _asked(result):
-    """(engine, CPU time, the model's) of the engines in question, tuned, that reach the error `ASKED`."""
-    kept, main = keeping(result, ASKED), mains(result.settings["variants"])
+    """(engine, CPU time, the model's) of the engines in question, tuned, that reach the error `ASKED`, but those timed
+    apart."""
+    kept, apart = keeping(result, ASKED), timed_apart(result)
     model = kept.get(KERNEL)
     return [
-        (one["engine"], kept[NAME.of(one)]["cpu_per_second"], model["cpu_per_second"])
+        (row["engine"], row["cpu_per_second"], model["cpu_per_second"])
+        for row in reached(result)
+        if model and row["engine"] not in apart
+    ]
+
+
+def reached(result: Result) -> list[Row]:
+    """The levels `keeping` the error `ASKED` of main variants, tuned, of the engines in question."""
+    kept, main = keeping(result, ASKED), mains(result.settings["variants"])
+    return [
+        kept[NAME.of(one)]
         for one in where(result.settings["variants"], tier="tuned")
-        if model and ENGINES[one["engine"]].subject and main[one["engine"]] == one["variant"] and NAME.of(one) in kept
+        if ENGINES[one["engine"]].subject and main[one["engine"]] == one["variant"] and NAME.of(one) in kept
     ]
 
 

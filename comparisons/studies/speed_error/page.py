@@ -7,12 +7,14 @@ import numpy as np
 import numpy.typing as npt
 
 from ...measuring.scripts import NAME as SCRIPT
+from ...running.age import timed_apart
 from ...running.provenance import Result
 from ...showing.figures import beside, lines, mains
 from ...showing.parts import NAME as SOLVER
 from ...showing.parts import Column, Head, Page, grouped, number, percent, short, table, where
 from .cases import NEEDED, PLAIN
 from .costs import (
+    APART,
     ASKED,
     CPU,
     FINE,
@@ -30,6 +32,7 @@ from .costs import (
     measures_of,
     noise,
     passing,
+    reached,
     times,
 )
 
@@ -58,7 +61,8 @@ def page(result: Result) -> Page:
         (
             "Every solver is run at several levels of its accuracy parameter. Error and CPU time come from the same "
             "runs. The cost of an error is that of the cheapest level that keeps it, if all finer levels keep it too. "
-            f"Costs within a factor of {number(noise(result), 2)} are not distinguished.",
+            f"Costs within a factor of {number(noise(result), 2)} are not distinguished."
+            + "".join(f" {engine} was timed {why}: no ratio is given." for engine, why in timed_apart(result).items()),
         ),
         first=(_figure([row for key in first for row in errors[key]], CPU, MAIN_CAPTION, rows, _leads(result)), asked),
         more=(
@@ -122,7 +126,9 @@ def _assisted(result):
 
 def _title(result):
     place = f"Cost against error: {percent(ASKED, 1)} of peak tilt"
-    return f"{place} takes {cost}" if (cost := times(result)) else f"{place} is reached by no engine in question"
+    if not (cost := times(result)):
+        return f"{place} is reached by {f'engines {APART}' if reached(result) else 'no engine in question'}"
+    return f"{place} takes {cost}"
 
 
 def _panel(row):

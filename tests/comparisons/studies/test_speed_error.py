@@ -161,7 +161,7 @@ def result_of(*rows):
     scene = {"title": "a scene", "measures": ["restitution"], "reference_difference": {"restitution": 2e-12}}
     settings = {"rounds": 1, "scenes": {"s": {**scene, "bouc_wen": {"peak_displacement": 0.01, "peak_tilt": None}}}}
     machine = {"processor": "one", "logical_cores": 2}
-    return Result(STUDY.name, {**settings, "variants": []}, list(rows), {"machine": machine})
+    return Result(STUDY.name, {**settings, "variants": []}, list(rows), {"machine": machine, "commit": None})
 
 
 def cells(result, head):
@@ -314,6 +314,24 @@ def test_engines_that_cost_the_same_are_recommended_together(cost, named):
     found = advice(result, 1e-3)
     assert [one.engine for one in found] == named and found[0].cost == pytest.approx(200 / 1.5)
     assert ("so these are the same" in STUDY.glance(result).says["cost"]) == (len(named) == 2)
+
+
+@pytest.mark.parametrize(
+    "changed, why",
+    [({"machine": {"processor": "another"}}, "on another processor"), ({"commit": 40 * "1"}, "of another commit")],
+)
+def test_costs_of_another_processor_or_commit_give_no_ratio(changed, why):
+    result = costly()
+    result.provenance["engines"] = {"exudyn": result.provenance | changed}
+    page, (judgement,) = STUDY.page(result), STUDY.judgements(result)
+    mark = judgement.marks["exudyn", "compliant-corners"]
+    assert (mark.words, mark.value) == ("timed apart", None) and why in mark.note and why in page.lead[0]
+    assert page.title.endswith("is reached by engines timed apart")
+    (cell,) = [row[1] for part in page.first if isinstance(part, Table) for row in part.rows if "exudyn" in row[0]]
+    assert "timed apart" in cell and "×" not in cell
+    glance = STUDY.glance(result)
+    assert "cost" not in glance.says and [curve.name for curve in glance.curves][1:] == ["exudyn, tuned (timed apart)"]
+    assert [one.engine for one in glance.advice] == ["exudyn", "exudyn", ""]  # its level keeps the error all the same
 
 
 def test_a_script_has_its_own_cost_and_error():
