@@ -5,13 +5,14 @@ without also stands here, and a result without it is refused.
 """
 
 import shlex
+from collections import Counter
 from collections.abc import Mapping
 from functools import cache
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from ..running.by_solver import read
+from ..running.by_solver import MODEL, engine_of, read
 from ..running.provenance import Result, ResultError
 from ..running.readable import readable
 from .vocabulary import columns_of
@@ -143,9 +144,14 @@ def read_study(path: str | PathLike[str], name: str | None = None) -> Result:
     result, file = read(path), Path(path).name
     if name not in (None, result.kind):
         raise ResultError(f"{file}: a result of {result.kind}; give one that rocking study {name} wrote")
-    for number, row in enumerate(result.rows if result.kind in ROWS else (), 1):
+    place: Counter[str] = Counter()
+    for row in result.rows if result.kind in ROWS else ():
+        who = engine_of(row)
+        solver = who if who in result.provenance.get("engines", ()) else MODEL
+        place[solver] += 1
         if wrong := wrong_with(row, result.kind):
-            raise ResultError(f"{file}, row {number}: {wrong}; run rocking study {result.kind} again")
+            whose = f"{file}/{solver}.json" if Path(path).is_dir() else file
+            raise ResultError(f"{whose}, row {place[solver]}: {wrong}; run rocking study {result.kind} again")
     return result
 
 

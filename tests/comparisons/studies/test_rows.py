@@ -88,6 +88,13 @@ def test_a_number_changed_in_a_stored_result_is_seen(tmp_path):
     assert rms == where(read_study(path).rows, engine="exudyn")[0]["rms"]
 
 
+def test_a_wrong_row_is_named_by_its_file_and_its_place_there(tmp_path):
+    path = shutil.copytree(RESULTS / "restitution", tmp_path / "restitution")
+    edit(path / "pybullet.json", lambda content: content["rows"][4].update(ground=7))
+    with pytest.raises(ResultError, match=r"^restitution/pybullet\.json, row 5: column 'ground' = 7 is no word"):
+        read_study(path)
+
+
 def test_a_type_is_that_of_json():
     assert Explained("what").holds(1) and Explained("what").holds(1.5) and not Explained("what").holds(True)
     assert Explained("what", type="number or list").holds([]) and not Explained("what", type="flag").holds(1)
