@@ -1,7 +1,7 @@
 """Where numba keeps the compiled model: each entry by the code of all that it runs, whatever file that stands in.
 
-Numba itself looks only at the entry's file: after a change in taylor.py it would use a stale kernel, and after one beside
-the kernel it would compile a good one again.
+Numba itself looks only at the file of the entry: after a change in taylor.py it would use a stale kernel, and after one
+beside the kernel it would compile a good one again.
 """
 
 from __future__ import annotations
