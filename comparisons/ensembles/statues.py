@@ -1,4 +1,4 @@
-"""Statues in the promised range, `engines.statue_range`, drawn at random: without a friction or with one."""
+"""Statues in the promised range, `engines.statue_range`, drawn at random: without friction or with it."""
 
 import math
 from collections.abc import Sequence

@@ -12,9 +12,9 @@ from typing import Any
 from analytic import PulseMotion
 
 from ..running.provenance import Result
-from .charts import Axis, Chart, log_axis, room
+from .charts import Axis, Chart, figure, log_axis, room
 from .figures import as_it_comes, kind, subject
-from .parts import NAME, Column, Judgement, Mark, Row, Table, grouped, number, percent, short, table, where
+from .parts import NAME, Column, Figure, Judgement, Mark, Row, Table, grouped, number, percent, short, table, where
 from .wording import listed
 
 EDGES, SHIFTS = {"edge", "drawn edge"}, {"shift", "drawn shift"}
@@ -45,9 +45,8 @@ def pressed(result: Result) -> set[tuple[Any, ...]]:
     return {place(edge) for edge in where(result.rows, part=EDGES) if edge["min_normal"] >= 0}
 
 
-def strip(result: Result, title: str) -> tuple[Chart, str] | None:
-    """(each boundary at its shift, a row for each main variant and each of the kind "defaults"; what to look at); None:
-    there is none."""
+def strip(result: Result, title: str) -> Figure | None:
+    """Each boundary at its shift, a row for each main variant and each of the kind "defaults"; None: there is none."""
     settings, own = result.settings, result.settings["default_variants"]
     rows = grouped(where(result.rows, part=SHIFTS), NAME.of)
     every = [one for one in settings["variants"] if (NAME.of(one),) in rows]
@@ -57,14 +56,16 @@ def strip(result: Result, title: str) -> tuple[Chart, str] | None:
     shown.sort(key=lambda one: not subject(one))
     left_out = "; ".join(NAME.of(one) for one in every if one not in shown)
     sound, grounds = pressed(result), list(settings.get("grounds", ()))
-    caption = (
-        f"Shift of each boundary, known to ±\u00a0{percent(settings['tolerance'] / 2, 1)}"
-        + f"; in a row from above: {', '.join(grounds)}" * bool(grounds)
-        + ". Filled: tuned; open: defaults"
-        + "; bars: boundaries with N\u00a0<\u00a00, which do not count. Cross at the frame: number not found, + those "
-        "with N\u00a0<\u00a00. Arrowhead: nearer to 0." + f" Not drawn, but in the table: {left_out}." * bool(left_out)
+    lanes = (
+        f"in a row from above: {', '.join(grounds)}; bars, and + at the frame: N\u00a0<\u00a00, which does not count; "
     )
-    return _strip(shown, rows, sound, grounds, title), caption
+    caption = (
+        f"Shift of each boundary, known to ±\u00a0{percent(settings['tolerance'] / 2, 1)}; {lanes if grounds else ''}"
+        "filled: tuned, open: defaults. Cross at the frame: number not found. Arrowhead: nearer to 0."
+        + f" Not drawn, but in the table: {left_out}."
+        * bool(left_out)
+    )
+    return figure([_strip(shown, rows, sound, grounds, title)], caption)
 
 
 def _strip(shown, rows, sound, grounds, title):

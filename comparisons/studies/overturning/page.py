@@ -29,7 +29,7 @@ from ...showing.boundaries import (
     under_jumps,
 )
 from ...showing.charts import figure
-from ...showing.figures import lines
+from ...showing.figures import beside, lines
 from ...showing.glance import Endings, Glance
 from ...showing.parts import NAME, Column, Head, Judgement, Page, grouped, number, percent, setting_of, table, where
 from .maps import maps, model_map, over_frequency
@@ -161,14 +161,10 @@ def glance(result: Result) -> Glance:
 
 def _shifts(result):
     """Beside each other the boundaries at their shifts, and those that are sought in one of the model's maps."""
-    found, settings = strip(result, "shift of every boundary"), result.settings
-    if found is None:
-        return None
-    chart, words = found
+    settings = result.settings
     model = model_map(result, next(iter(settings["grounds"])), settings["shapes"][0])
-    return figure(
-        [chart, model], f"{words} Right: analytic model under one pulse; shaded: overturns; dots: boundaries."
-    )
+    words = "Right: analytic model under one pulse; shaded: overturns; dots: boundaries."
+    return beside(strip(result, "shift of every boundary"), figure([model], words))
 
 
 def _scanned(settings):

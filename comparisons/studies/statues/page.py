@@ -63,7 +63,7 @@ SHARES = {
 
 def page(result: Result) -> Page:
     cells, counts, settings = where(result.rows, part="cell"), tallies(result), result.settings
-    found, every = strip(result, "statues: shift of the boundary"), summed(cells, lambda cell: ALL)
+    every = summed(cells, lambda cell: ALL)
     return Page(
         _title(result, counts),
         (
@@ -78,7 +78,7 @@ def page(result: Result) -> Page:
         ),
         first=(
             beside(
-                found and figure([found[0]], found[1]),
+                strip(result, "statues: shift of the boundary"),
                 ranks(
                     counts,
                     NAME,
@@ -169,8 +169,8 @@ def _title(result, counts):
         for key in ("right", "runs")
     )
     return (
-        f"Random statues: {right[NONE]} of {whole[NONE]} runs of tuned engines are right without a friction, "
-        f"{right[DRAWN]} of {whole[DRAWN]} where the friction does not suffice; {largest(result)}"
+        f"Random statues: {right[NONE]} of {whole[NONE]} runs of tuned engines are right without friction, "
+        f"{right[DRAWN]} of {whole[DRAWN]} where friction does not suffice; {largest(result)}"
     )
 
 
@@ -183,7 +183,7 @@ def _with_friction(rows):
 
     if rows:
         yield (
-            "With a friction, engines run only scenes in which it does not suffice. Right in all that is asked are "
+            "With friction, engines run only scenes in which it does not suffice. Right in all that is asked are "
             f"{each(lambda row: '{right} of {runs}'.format(**row))}; the outcome alone is another one or none in "
             f"{each(lambda row: row['runs'] - row['alike'])}. At impacts with slip, restitution by states is off by "
             f"{each(lambda row: number(row['slipping'], 2))}, rms; the limit of a trusted engine, {TRUSTED:g}, is one "
@@ -192,7 +192,7 @@ def _with_friction(rows):
 
 
 def tallies(result: Result) -> list[dict[str, Any]]:
-    """A row for each variant, without a friction and with one: the `tally` of its runs, how many are right, shares with
+    """A row for each variant, without friction and with it: the `tally` of its runs, how many are right, shares with
     their 95 % intervals, and errors where blocks slide; None where none is judged, or slides."""
     found = []
     for (friction, engine, variant), rows in grouped(_runs(result), _scenes, "engine", "variant").items():
@@ -232,7 +232,7 @@ def _turned(row):
 
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
-    """The counts without a friction and with one stay apart: together the many would hide the few."""
+    """The counts without friction and with it stay apart: together the many would hide the few."""
     heads = {NONE: "random scenes right", DRAWN: "sliding scenes right"}
     marks: dict[str, dict[tuple[str, str], Mark]] = {name: {} for name in heads}
     for row in tallies(result):
@@ -246,9 +246,9 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
 
 
 def glance(result: Result) -> Glance:
-    """Of the runs with a friction that differ, those that end otherwise: a slip within its tolerance is no other end.
+    """Of the runs with friction that differ, those that end otherwise: a slip within its tolerance is no other end.
 
-    Those without a friction, of which the few that differ would be hidden among many, are not on the first screen.
+    Those without friction, of which the few that differ would be hidden among many, are not on the first screen.
     """
     outcomes = {row["index"]: row["outcome"] for row in where(result.rows, part="scene")}
     runs = [
@@ -338,21 +338,21 @@ def _how(result: Result) -> tuple[str, ...]:
     low, high = settings["peak"]
     limits = settings["range"].replace("J_O/(m R^2)", "inertia about a corner over m R²")
     return (
-        f"Without a friction {settings['scenes']} scenes drawn at random (seed {result.provenance['seed']}, of the "
+        f"Without friction {settings['scenes']} scenes drawn at random (seed {result.provenance['seed']}, of the "
         f"commit): {limits}; released or under a pulse, until the outcome is decided. {settings['below_range']} whose "
-        f"peak tilt stays below the range are not run. With a friction, drawn evenly, {settings['sliders']} scenes at "
+        f"peak tilt stays below the range are not run. With friction, drawn evenly, {settings['sliders']} scenes at "
         "rest, on rigid ground or on bearings, as no motion reaches a block whose base has none. Half of the motions "
         f"are pulses, a quarter synthetic, a quarter recorded ({recorded}), each times a factor: its peak is {low:g} "
         f"to {high:g} times g tan γ. {percent(settings['vertical'])} have a vertical component, "
         f"{number(settings['ratio'], 2)} times the horizontal peak. What the shares say depends on how it is drawn.",
-        "Without sliding: the same scene without a friction, whose block turns about corners that never slip. It needs "
+        "Without sliding: the same scene without friction, whose block turns about corners that never slip. It needs "
         "more than the friction where the demand |H|/N exceeds it before any last fall, or N falls to 0. Undecided: "
         "the base goes on swinging, so that the end is not certain. Errors of the slip are relative, of blocks that "
         "stay upright; a slip too small to count is compared as one of 0.005 R. CPU time is that of the stepping over "
         "that of the model’s march, median over scenes.",
         f"Engines run the first {len(scenes)} scenes in which the friction does not suffice; variants other than the "
         f"main ones of the engines in question run one scene in {settings['fewer']}. Left out, of all engines alike: "
-        "the normal force falls to 0 without a friction, the friction demand is more than any contact provides, or the "
+        "the normal force falls to 0 without friction, the friction demand is more than any contact provides, or the "
         "scene is near an outcome boundary: a change by 10⁻⁴, of the friction too, makes such a difference in the "
         "model. Beyond it: runs of those scenes that fail, or lie outside what such changes do in the model.",
         f"Boundaries: of {len(where(result.rows, part='drawn edge'))} of the statues, at rest; shapes of pulses take "

@@ -1,4 +1,4 @@
-"""Statues drawn at random in the promised range: engines beside the model without a friction, with one where it does
+"""Statues drawn at random in the promised range: engines beside the model without friction, with it where it does
 not suffice, and at the overturning boundaries of some; and what sliding does in the model.
 """
 
@@ -11,7 +11,6 @@ import numpy as np
 import typer
 
 from analytic import Response, SampledMotion, Scene, SceneError, Start, simulate, simulate_many
-from analytic.batch import Outcomes
 from analytic.bearing import BearingLaw
 from analytic.records.fema import PREFIX
 from analytic.records.folder import folder_motions
@@ -31,7 +30,7 @@ from ...running.progress import log
 from ...running.provenance import commit_seed
 from ...running.sweep import Row
 
-# scenes without a friction; with one, and how many of these engines run; statues whose boundaries are sought
+# scenes without friction; with it, and how many of these engines run; statues whose boundaries are sought
 FULL, QUICK = (500, 20_000, 50, 20), (20, 400, 10, 2)
 FEWER = 5  # variants other than the main ones of the engines in question run one scene in so many
 BINS = 6  # of the friction, in which outcomes are counted
@@ -41,8 +40,8 @@ FALLS = "overturns"
 
 SEED = "Of the scenes, without it of the commit; with --check of the draw of runs."
 Seed = Annotated[int | None, typer.Option(min=0, max=2**63, help=SEED)]
-Number = Annotated[int | None, typer.Option(min=1, max=10**6, help="Without a friction. Default 500, quick 20.")]
-Sliders = Annotated[int | None, typer.Option(min=1, max=10**7, help="With a friction. Default 20000, quick 400.")]
+Number = Annotated[int | None, typer.Option(min=1, max=10**6, help="Without friction. Default 500, quick 20.")]
+Sliders = Annotated[int | None, typer.Option(min=1, max=10**7, help="With friction. Default 20000, quick 400.")]
 
 
 def plan(
@@ -57,7 +56,7 @@ def plan(
     """The plan of the study.
 
     Rows by "part": "cell", how many scenes of a support, a kind of motion and an interval of friction have which fate
-    in the model; "scene", one with a friction that the engines run, and the model's answer; "run", an engine's run of a
+    in the model; "scene", one with friction that the engines run, and the model's answer; "run", an engine's run of a
     scene, friction null where it has none; "drawn edge" and "drawn shift", a statue's boundary in the model and in an
     engine; "failure", of a run that sought it.
 
@@ -157,7 +156,7 @@ def fates(scenes: Sequence[Scene]) -> dict[str, np.ndarray]:
         "runs": np.ones(len(scenes), dtype=bool),
         "failed": failed,
         "undecided": ~failed & ~sound,
-        "moves": sound & (_moves(own) | _moves(plain)),
+        "moves": sound & ((own.names != "stands") | (plain.names != "stands")),
         "lacking": lacking,
         "slides": sound & (own.names == "slides"),
         "falls_without": falls_without,
@@ -167,14 +166,10 @@ def fates(scenes: Sequence[Scene]) -> dict[str, np.ndarray]:
     }
 
 
-def _moves(outcomes: Outcomes) -> np.ndarray:
-    return outcomes.names != "stands"
-
-
 def _ensemble(
     records: Sequence[SampledMotion], seed: int, most: int, few: int
 ) -> tuple[list[dict[str, Any]], list[Case]]:
-    """(rows of cells, the first `few` scenes with a friction for engines)."""
+    """(rows of cells, the first `few` scenes with friction for engines)."""
     counts: dict[tuple[Any, ...], dict[str, int]] = {}
     chosen: list[Case] = []
     for begin in range(0, most, CHUNK):
@@ -217,7 +212,7 @@ def of_model(case: Case, response: Response) -> dict[str, Any]:
 
 
 def of_engine(case: Case, response: Response) -> dict[str, Any]:
-    """Measure of an engine's run: in what it differs from the model; without a friction its class, with one its errors.
+    """Measure of an engine's run: in what it differs from the model; without friction its class, with it its errors.
 
     slip_error, tilt_error: of the peaks, of a block that stays upright in both; None of a slip that is none, see
     `engines.checks`. slipping, sticking: errors of the restitution at impacts in which the model's corner slides before
@@ -280,7 +275,7 @@ def slips_at(model: Response, time: float) -> bool:
 def _run_row(row: Row, known: Mapping[int, Row]) -> dict[str, Any]:
     """The row of a run; a failed one is left out where no run of its scene is judged, of all engines alike.
 
-    known: the model's runs of the scenes with a friction, by their number.
+    known: the model's runs of the scenes with friction, by their number.
     """
     case, values = row.case, dict(row.values)
     model = None if case.scene.friction is None else known[case.tag["index"]]

@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 import pytest
 
 from analytic import EngineNotInstalled
-from comparisons.report.answer import setups_of, stored_studies, variants_of
+from comparisons.report.answer import judgements_of, setups_of, stored_studies, variants_of
 from comparisons.report.gallery import (
     GALLERY,
     README,
@@ -48,8 +48,8 @@ def studies():
 @pytest.fixture(scope="module")
 def decision(studies):
     """The setups of the first screen from the stored results."""
-    judgements = [each for one in studies for each in one.judgements]
-    return {(one.engine, one.variant): one for one in setups_of(variants_of(studies), judgements)}
+    setups = setups_of(variants_of(studies), judgements_of(studies))
+    return {(one.engine, one.variant): one for one in setups}
 
 
 def shown(name):
