@@ -1,4 +1,4 @@
-"""Random valid scenes, extremes included; the study random-scenes draws its own within the range of a statue."""
+"""Random valid scenes, extremes included; `comparisons.ensembles.statues` draws others within the range of a statue."""
 
 import math
 

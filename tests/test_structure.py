@@ -53,6 +53,17 @@ def test_no_modules_import_each_other_in_a_circle():
     assert len(list(TopologicalSorter(GRAPH).static_order())) == len(FILES) > 200
 
 
+def test_no_study_imports_another_study():
+    """What studies share has a room outside `comparisons.studies`."""
+
+    def study(module):
+        parts = module.split(".")
+        return parts[2] if parts[:2] == ["comparisons", "studies"] and len(parts) > 3 else None
+
+    pairs = {(study(name), study(other)) for name, others in GRAPH.items() for other in others}
+    assert not [pair for pair in pairs if None not in pair and len(set(pair)) > 1] and ("statues", "statues") in pairs
+
+
 # Where any exception may be caught: an engine's or another package's code is called or imported, the process ends, or
 # the error is raised again. None stands between a command and the model.
 BROAD = {

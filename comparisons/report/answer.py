@@ -68,6 +68,24 @@ def variants_of(stored: Iterable[Stored], *more: Mapping[str, Any]) -> list[Mapp
     return list({(one["engine"], one["variant"]): one for one in reversed(listed)}.values())
 
 
+def judgements_of(stored: Iterable[Stored]) -> list[Judgement]:
+    """The rows of the first table. Where studies have one of the same heading it says what each found."""
+    found: dict[str, Judgement] = {}
+    for each in (each for one in stored for each in one.judgements):
+        known = found.setdefault(each.heading, each)
+        both = known.marks.keys() & each.marks.keys() if known is not each else set()
+        marks = {who: _together(known.marks[who], each.marks[who]) for who in both}
+        found[each.heading] = replace(known, marks={**known.marks, **each.marks, **marks})
+    return list(found.values())
+
+
+def _together(*marks: Mark) -> Mark:
+    """Marks of one solver as one: the greatest error first, the level of the worst."""
+    first, *others = sorted(marks, key=lambda one: math.inf if one.value is None else one.value, reverse=True)
+    words, notes = ("; ".join(some) for some in zip(*((one.words, one.note) for one in (first, *others)), strict=True))
+    return replace(first, words=words, note=notes, level=max(marks, key=_level).level)
+
+
 def origin_of(result: Result) -> str:
     """Date, commit, processor, versions and the last check, in one line; of engines run apart from the rest, theirs."""
 
@@ -194,8 +212,13 @@ def _mark(judgement, one):
 
 
 def _rating(marks):
-    level = max((mark.level if mark.level in LEVELS else "part" for mark in marks), key=list(LEVELS).index)
-    return Mark(LEVELS[level], level)
+    worst = list(LEVELS)[max(map(_level, marks))]
+    return Mark(LEVELS[worst], worst)
+
+
+def _level(mark):
+    """How bad a mark is: the place of its level among `LEVELS`."""
+    return list(LEVELS).index(mark.level if mark.level in LEVELS else "part")
 
 
 def own_restitution(block: Result, outside: str = "") -> Judgement:

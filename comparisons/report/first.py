@@ -32,8 +32,10 @@ def screen(setups: Sequence[Setup], judgements: Sequence[Judgement], glances: It
 
 
 def shown(found: Sequence[Endings], setups: Sequence[Setup]) -> list[Endings]:
-    """Those of the engines in question in the order of the first table, of each kind of motion: defaults first."""
-    columns = {(one.engine, one.variant): place for place, one in enumerate(setups) if one.in_first_table}
+    """Those of the engines in question in the order of the first table, of each kind of motion: defaults first; of all
+    engines where none of these was run."""
+    asked = [one for one in setups if one.in_first_table] or setups
+    columns = {(one.engine, one.variant): place for place, one in enumerate(asked)}
     kept = [one for one in found if (one.engine, one.variant) in columns]
     motions = list(dict.fromkeys(one.motions for one in kept))
     return sorted(

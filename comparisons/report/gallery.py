@@ -18,7 +18,7 @@ from ..running.files import write, write_all
 from ..running.provenance import PROJECT_FOLDER, RESULTS, Result
 from ..showing.charts import alone
 from ..studies.rows import read_study
-from .answer import Stored, commit_of, setups_of, stored_studies, variants_of
+from .answer import Stored, commit_of, judgements_of, setups_of, stored_studies, variants_of
 from .first import screen
 
 GALLERY, README = Path(__file__).with_name("gallery"), PROJECT_FOLDER / "README.md"
@@ -39,7 +39,7 @@ def gallery(first: Mapping[str, Any]) -> dict[str, str]:
 
 def first_screen(stored: Sequence[Stored]) -> dict[str, Any]:
     """The report's first screen from stored results alone."""
-    judgements = [each for one in stored for each in one.judgements]
+    judgements = judgements_of(stored)
     columns = setups_of(variants_of(stored), judgements)
     return screen(columns, judgements, [one.glance for one in stored if one.glance])
 

@@ -22,7 +22,17 @@ from ..showing import diagrams, modes
 from ..showing.parts import SIGNS, Section, Table, percent
 from ..showing.wording import TRUSTED, USABLE
 from . import equations
-from .answer import Stored, commit_of, not_to_do, origin_of, own_restitution, setups_of, stored_studies, variants_of
+from .answer import (
+    Stored,
+    commit_of,
+    judgements_of,
+    not_to_do,
+    origin_of,
+    own_restitution,
+    setups_of,
+    stored_studies,
+    variants_of,
+)
 from .detail import assets, detail, environment
 from .figures import animation
 from .first import screen
@@ -40,20 +50,19 @@ CONTACT_OURS = "contact law: ours"  # so begins what such an adapter imposes
 # Short names of sections in the contents, by the study whose finding it is; studies of others follow.
 SHORT = {
     "restitution": "One impact",
-    "random-scenes": "Random statues",
     "overturning": "Many pulses",
+    "statues": "Random statues",
     "recorded": "Recorded motions",
     "shake-table": "Shake table",
     "fragility": "Many earthquakes",
     "sensitivity": "What matters more",
     "speed-error": "Cost against error",
-    "sliding": "Sliding",
     "stability": "Hard cases",
     "mistakes": "What a mistake costs",
 }
 
 
-FOLDED = ("random-scenes", "sensitivity", "mistakes")  # what does not answer the page's question by itself
+FOLDED = ("sensitivity", "mistakes")  # what does not answer the page's question by itself
 
 
 @dataclass(frozen=True)
@@ -138,7 +147,7 @@ def _answer(scenes: Result, block: Result | None, stored: list[Stored]) -> dict[
     """What the first screen shows: the studies' numbers; restitution of the scenes' own block where it rocks."""
     where = {each.heading: f"{PAGES}/{one.name}.html" for one in stored for each in one.judgements}
     outside = _outside(scenes)
-    judgements = [each for one in stored for each in one.judgements]
+    judgements = judgements_of(stored)
     if block:
         own = own_restitution(block, outside)
         where[own.heading] = f"{PAGES}/runs.html"

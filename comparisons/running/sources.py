@@ -31,6 +31,12 @@ DIGITS = 8  # of a digest that is kept: of a thousand definitions one collides b
 # {a name by which stored results call code: where that stands today}, of what was moved since
 ALIASES: dict[str, str] = {
     "comparisons.studies.autopsy.study:measure": "comparisons.studies.restitution.study:taken_apart",
+    "comparisons.studies.overturning.study:measure": "comparisons.measuring.boundaries:measure",
+    "comparisons.studies.random_scenes.study:compared": "comparisons.studies.statues.study:of_engine",
+    "comparisons.studies.random_scenes.study:plan": "comparisons.studies.statues.study:plan",
+    "comparisons.studies.sliding.study:of_engine": "comparisons.studies.statues.study:of_engine",
+    "comparisons.studies.sliding.study:of_model": "comparisons.studies.statues.study:of_model",
+    "comparisons.studies.sliding.study:plan": "comparisons.studies.statues.study:plan",
     "comparisons.studies.tolerances.study:plan": "comparisons.measuring.tolerances:measure_all",
 }
 

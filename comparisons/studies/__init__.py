@@ -57,11 +57,9 @@ QUESTIONS = {
     "sensitivity": (
         "What changes the outcome more often than the choice of the engine: vertical motion, a per cent of slenderness?"
     ),
-    "random-scenes": (
-        "Random scenes in the range of a statue: how often is an engine right, and is every wrong run reported?"
-    ),
-    "sliding": (
-        "Random statues that may slide: how often does sliding save them, or overturn them, and do engines slide alike?"
+    "statues": (
+        "Statues drawn at random in the promised range, friction drawn or not: how often is an engine right, where are "
+        "its overturning boundaries, and is every wrong run reported?"
     ),
     "stability": (
         "Named hard cases in every solver and variant: right, differs or failed, with measures, evidence, finer levels."

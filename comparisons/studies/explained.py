@@ -58,7 +58,6 @@ SHARED = {
     "class": word('"right", "differs", "failed" or "left out"'),
     "differences": series("in what the run differs from the model, in words"),
     "quantities": series("in what the run differs from the model, by name"),
-    "index": whole("number of the scene in its ensemble"),
     "outcome": word("of the run: stands, slides, rocks, overturns or failed"),
     "cpu_seconds": number("CPU time of one run: median over the processes", "s"),
 }

@@ -24,6 +24,7 @@ ERRORS = """runs failed impacts lost bias? rms? worst? rms_state? worst_state? j
 PULSE = "engine variant level ground shape frequency amplitude"
 EDGE = "ground shape frequency amplitude rises mode low high min_normal"
 BOUNDARY = f"{PULSE} rises mode room shift? half_width? reason? runs"
+SOUGHT = f"{PULSE} min_normal kind reason message"  # of a boundary, by a run that failed
 CHANGED = "runs outcomes_changed? low? high?"
 CASE = "case engine variant level? set cpu_seconds? result outcome | outside errors until? impacts steps"
 RUN = """engine variant? outcome failure? | scene overturning_time? unstable_time? peak_tilt? peak_tilt_ratio?
@@ -46,15 +47,13 @@ ROWS = {
     },
     "overturning": {
         "edge": EDGE,
-        "drawn edge": f"{EDGE} slenderness radius base_mass? law? period?",
         "shift": BOUNDARY,
-        "drawn shift": BOUNDARY,
         "refinement": BOUNDARY,
         "confusion": """engine variant level ground region both_stand both_overturn only_a only_b kappa? kappa_low?
             kappa_high?""",
         "scan": "engine variant level runs failed both_stand both_overturn only_a only_b interval",
         "disagreement": f"{PULSE} min_normal analytic_overturns distance?",
-        "failure": f"{PULSE} min_normal kind reason message",
+        "failure": SOUGHT,
     },
     "recorded": {
         "scene": """engine variant record component configuration slenderness intensity scale outcome tilt displacement
@@ -97,13 +96,14 @@ ROWS = {
         "change": f"scene engine variant change? failed to_overturning? p_value? tilt? displacement? {CHANGED}",
         "vertical": f"scene faster ratio lifts_off {CHANGED}",
     },
-    "random-scenes": {"": "engine variant tier index class comparable | differences quantities"},
-    "sliding": {
+    "statues": {
         "cell": """engine variant support motion friction runs failed undecided moves lacking slides falls_without saved
             overturned""",
         "scene": "engine variant index support motion friction slenderness raised outcome comparable slip tilt",
-        "run": """engine variant tier index class comparable outcome | differences quantities slip_error? tilt_error?
-            slipping sticking lost cpu_per_second cpu_ratio""",
+        "run": "engine variant tier index friction? class comparable | differences quantities",
+        "drawn edge": f"{EDGE} slenderness radius base_mass? law? period?",
+        "drawn shift": BOUNDARY,
+        "failure": SOUGHT,
     },
     "stability": {"default settings": CASE, "finer settings": CASE},
     "speed-error": {

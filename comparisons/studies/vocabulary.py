@@ -11,6 +11,21 @@ depends on.
 
 from .explained import INTERVAL, SHARED, Explained, flag, number, series, table, whole, word
 
+# of an engine's overturning boundary, and of the model's
+BOUNDARY = {
+    "shape": word("of the pulse"),
+    "frequency": number("of the pulse over omega_r"),
+    "amplitude": number("of the pulse over g tan(slenderness)"),
+    "rises": flag("whether overturning lies above the boundary"),
+    "mode": whole("impacts before overturning"),
+    "low": number("amplitude half way to the boundary below"),
+    "high": number("amplitude half way to the boundary above"),
+    "min_normal": number("least N/(m g) of the analytic model; below 0 it holds the corner down"),
+    "room": number("relative distance to the nearer of low and high"),
+    "shift": number("of the engine's boundary from the model's, relative"),
+    "half_width": number("of the bracket in which that boundary lies, relative"),
+}
+
 OWN: dict[str, dict[str, Explained]] = {
     "restitution": {
         "ratio": number("base mass over block mass; null: rigid ground"),
@@ -56,21 +71,7 @@ OWN: dict[str, dict[str, Explained]] = {
         "why_not": word("why the impact cannot be analysed"),
     },
     "overturning": {
-        "shape": word("of the pulse"),
-        "frequency": number("of the pulse over omega_r"),
-        "amplitude": number("of the pulse over g tan(slenderness)"),
-        "rises": flag("whether overturning lies above the boundary"),
-        "mode": whole("impacts before overturning"),
-        "low": number("amplitude half way to the boundary below"),
-        "high": number("amplitude half way to the boundary above"),
-        "min_normal": number("least N/(m g) of the analytic model; below 0 it holds the corner down"),
-        "room": number("relative distance to the nearer of low and high"),
-        "radius": number("of a drawn block, base corner to centre of mass", "m"),
-        "base_mass": number("of a drawn block: of its base over its own; null: rigid ground"),
-        "law": word("of a drawn block's bearings; null: none"),
-        "period": number("of a drawn block on its bearings, at their stiffness after yielding", "s"),
-        "shift": number("of the engine's boundary from the model's, relative"),
-        "half_width": number("of the bracket in which that boundary lies, relative"),
+        **BOUNDARY,
         "runs": whole("runs that the search took; of a scan, those that are judged"),
         "interval": series("of a scan: 95 % interval of the share that differs or failed (Wilson, by frequency)"),
         "region": word('of a confusion: "scan", or "outside", "inside" the band, "held down" where N < 0'),
@@ -202,11 +203,17 @@ OWN: dict[str, dict[str, Explained]] = {
         "equal": word("whether the engine ends as the model does, as comparisons.measuring.statistics.equality says"),
         "tilt": number("peak tilt over the model's where both rock and stay upright: median over tests"),
     },
-    "random-scenes": {},
-    "sliding": {
+    "statues": {
+        **BOUNDARY,
+        "radius": number("of a drawn block, base corner to centre of mass", "m"),
+        "base_mass": number("of a drawn block: of its base over its own; null: rigid ground"),
+        "law": word("of a drawn block's bearings; null: none"),
+        "period": number("of a drawn block on its bearings, at their stiffness after yielding", "s"),
+        "runs": whole("scenes that the row sums up; of a boundary, runs that the search took"),
+        "index": whole("number of the scene in its ensemble: one without a friction, one with"),
         "support": word("what the block's base is: rigid ground, or isolated"),
         "motion": word("pulse, synthetic or recorded"),
-        "friction": Explained("coefficient, of a cell its interval [low, high]", type="number or list"),
+        "friction": Explained("coefficient, null: none; of a cell its interval [low, high]", type="number or list"),
         "undecided": whole("of the runs, those whose end is not certain, with friction or without"),
         "moves": whole("of the runs, those in which the block lifts or slides, with friction or without"),
         "lacking": whole("of the runs, those that need more than the friction, before any last fall"),

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from analytic import Base, Bearings, Block, PulseMotion, Scene, Start, simulate
-from comparisons.studies.random_scenes.study import random_scene
+from comparisons.ensembles.statues import random_scene
 from engines import get_engine
 from engines.statue_range import RANGE, in_words, outside
 

@@ -13,8 +13,8 @@ import pytest
 
 from analytic import Base, Start, load_scene, simulate
 from analytic.caryatid import BASE, MASS, caryatid_block
+from comparisons.ensembles.statues import random_scene
 from comparisons.measuring.errors import impact_errors, rms
-from comparisons.studies.random_scenes.study import random_scene
 from comparisons.studies.restitution.cases import free_scene, variants_of
 from comparisons.studies.stability.cases import hard_cases
 from engines import ENGINES, get_engine, installed_engines

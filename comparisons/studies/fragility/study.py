@@ -15,11 +15,11 @@ from analytic import Response, SampledMotion, Scene, load_scene, synthetic_motio
 from analytic.caryatid import BASE, BEARINGS, MASS
 from analytic.design import properties
 from analytic.linear_oscillator import displacement_spectrum
-from analytic.motion import Motion
 from analytic.rocking import RockingModel
 from engines import get_engine
 from engines.comparison import END, Reference, compare
 
+from ...ensembles.motions import peak_velocity
 from ...measuring.statistics import class_of
 from ...running.cases import Case
 from ...running.plan import Batch, Computed, Plan, Request
@@ -85,12 +85,6 @@ def measures(scenes: list[Scene]) -> dict[str, np.ndarray]:
     displacement = np.array([displacement_spectrum(scene.motion, [PERIOD], [DAMPING])[0, 0] for scene in scenes])
     spectral = displacement * (2 * math.pi / PERIOD) ** 2 / gravity
     return {**found, "Sa": spectral, ISOLATED: spectral / steepness}
-
-
-def peak_velocity(motion: Motion) -> float:
-    """Peak ground velocity [m/s] of a sampled motion that starts at rest; exact at the samples."""
-    steps = 0.5 * motion.dt * (motion.samples[1:] + motion.samples[:-1])
-    return float(np.abs(np.cumsum(steps)).max())
 
 
 CHANGE = 1e-4  # relative change of the restitution: the model's own sensitivity

@@ -2,34 +2,38 @@
 
 import itertools
 import math
-import statistics
-from functools import partial
 
 from ...running.provenance import Result
-from ...showing.figures import lines
-from ...showing.glance import Endings, Glance
-from ...showing.parts import (
-    NAME,
-    Column,
-    Head,
-    Judgement,
-    Mark,
-    Page,
-    grouped,
-    number,
-    percent,
-    setting_of,
-    table,
-    where,
+from ...showing.boundaries import (
+    AMPLITUDE,
+    FAIR,
+    FOUND,
+    FREQUENCY,
+    GROUND,
+    LARGEST,
+    LIMIT,
+    MEDIAN,
+    NORMAL,
+    PULSE,
+    RATINGS,
+    failures,
+    judged,
+    largest,
+    listing,
+    missing,
+    place,
+    pressed,
+    rated,
+    strip,
+    summary,
+    under_jumps,
 )
-from ...showing.wording import listed
-from .drawn import AMPLITUDE, FAIR, FREQUENCY, GROUND, LIMIT, PULSE, maps, over_frequency, place, pressed
-from .drawn import shifts as drawn_shifts
-from .edges import APART, JUMPS
-from .edges import FREQUENCY as FREQUENCIES
+from ...showing.charts import figure
+from ...showing.figures import beside, lines
+from ...showing.glance import Endings, Glance
+from ...showing.parts import NAME, Column, Head, Judgement, Page, grouped, number, percent, setting_of, table, where
+from .maps import maps, model_map, over_frequency
 
-RATINGS = {"good": "trusted", "fair": "usable", "bad": "not to be trusted"}
-EVIDENCE = 50  # failed runs shown, at most
 REGIONS = {
     "scan": "coarse scan",
     "outside": "beyond the band, N ≥ 0",
@@ -37,38 +41,31 @@ REGIONS = {
     "inside": "within the band",
 }
 
-NORMAL = Column("least N/(m g) of the analytic model [-]", "min_normal")
-FOUND = Column("found [-]", "{found} of {of}")
-MEDIAN = Column("median shift [%]", lambda row: row["median"] and 100 * row["median"])
-LARGEST = Column("largest shift [%]", lambda row: row["largest"] and 100 * row["largest"])
-
 
 def page(result: Result) -> Page:
     s = result.settings
-    edges, shifts, drawn = (where(result.rows, part=part) for part in ("edge", "shift", "drawn edge"))
+    edges, shifts = where(result.rows, part="edge"), where(result.rows, part="shift")
     sound = pressed(result)
     known = [row for row in shifts if place(row) in sound]
-    rated = list(_rated(result))
     own = s["default_variants"]
-    tuned = {(one["engine"], one["variant"]) for one in s["variants"] if one["tier"] == "tuned"}
     band = percent(s["band"], 1)
     return Page(
-        _title([row for row in rated if own[row["engine"]] == row["variant"]], tuned),
+        f"Many pulses: on two grounds, {largest(result)}",
         (
             "A pulse overturns a block above some amplitude. At larger amplitudes there may be a safe gap: the first "
             "impact dissipates so much energy that the block does not overturn. Engines are rated by the shift of "
             "these boundaries, as long as the analytic model keeps the block pressed on its base. An outcome nearer "
             "to a boundary than the engine's shift is uncertain. Only whether the block overturns is compared, not "
-            "when it falls.",
-            *_under_jumps(result),
+            "when it falls. Boundaries of statues drawn at random stand with these in the table of trust.",
+            *under_jumps(result),
         ),
         first=(
-            drawn_shifts(result),
+            _shifts(result),
             table(
-                f"Boundaries under all pulses on both grounds, and of {len(drawn)} blocks drawn in the promised range, "
-                f"with the block pressed on its base; outcomes further than {band} from those on both grounds. "
-                "Boundaries where the normal force N would be negative are shown but do not count",
-                rated,
+                "Boundaries under all pulses on both grounds, with the block pressed on its base; outcomes further "
+                f"than {band} from them. Boundaries where the normal force N would be negative are shown but do not "
+                "count",
+                rated(result),
                 NAME,
                 Column("rating", lambda row: RATINGS[row["rating"]]),
                 FOUND,
@@ -100,24 +97,13 @@ def page(result: Result) -> Page:
             maps(result, s["shapes"]),
             Head("Every boundary"),
             over_frequency([row for row in known if own[row["engine"]] == row["variant"]]),
-            _boundaries(
+            listing(
                 "Boundaries, and the engines' shifts, known to ± "
                 f"{percent(s['tolerance'] / 2, 1)}: block pressed on its base",
                 [edge for edge in edges if place(edge) in sound],
                 known,
             ),
-            _drawn(drawn, where(result.rows, part="drawn shift")),
-            table(
-                "Boundaries not found, within 30 % or half-way to the next one",
-                where(result.rows, part={"shift", "drawn shift"}, shift=None),
-                NAME,
-                GROUND,
-                PULSE,
-                FREQUENCY,
-                AMPLITUDE,
-                Column("half-way to the next boundary", "room", percent=True),
-                Column("why", lambda row: row["reason"].replace("-", "−")),
-            ),
+            missing(result),
             *_sliding(s),
             Head("Where the analytic model holds the corner down"),
             *_held_down(edges, shifts),
@@ -150,30 +136,12 @@ def page(result: Result) -> Page:
             *_refinement(result),
         ),
         how=_how(result),
-        evidence=tuple(
-            (
-                f"{NAME.text(row)}, {row['ground']}, {row['shape']}, frequency {row['frequency']:g}, amplitude "
-                f"{row['amplitude']:.6g}",
-                f"{row['reason']}\n{row.get('message') or ''}",
-            )
-            for row in where(result.rows, part="failure")[:EVIDENCE]
-        ),
+        evidence=failures(result),
     )
 
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
-    marks = {}
-    for row in _rated(result):
-        every = row["of"] + row["beyond"]
-        words = f"{percent(row['largest'])} ({row['found']} of {every} boundaries)"
-        note = f"median {percent(row['median'])}; {row['of'] - row['found']} not found"
-        if row["beyond"]:
-            note += f"; {row['beyond']} with N < 0 do not count, found {row['beyond_found']}"
-            note += f", {percent(row['beyond_largest'])}" if row["beyond_found"] else ""
-        if row["largest"] is None:
-            words = "none found"
-        marks[row["engine"], row["variant"]] = Mark(words, row["rating"], note, row["largest"])
-    return (Judgement("overturning boundary under pulses: shift, worst", marks),)
+    return (judged(result, "boundaries"),)
 
 
 def glance(result: Result) -> Glance:
@@ -189,6 +157,14 @@ def glance(result: Result) -> Glance:
             for row in where(result.rows, part="scan")
         )
     )  # fmt: skip
+
+
+def _shifts(result):
+    """Beside each other the boundaries at their shifts, and those that are sought in one of the model's maps."""
+    settings = result.settings
+    model = model_map(result, next(iter(settings["grounds"])), settings["shapes"][0])
+    words = "Right: analytic model under one pulse; shaded: overturns; dots: boundaries."
+    return beside(strip(result, "shift of every boundary"), figure([model], words))
 
 
 def _scanned(settings):
@@ -211,78 +187,6 @@ def _near_boundaries(result):
     )
 
 
-def _rated(result):
-    """A summary and a rating of each variant that is run at its default, where the block stays pressed on its base;
-    beyond: the boundaries where it does not."""
-    sound = pressed(result)
-    for (name,), every in grouped(where(result.rows, part={"shift", "drawn shift"}), NAME.of).items():
-        members, others = ([row for row in every if (place(row) in sound) == inside] for inside in (True, False))
-        beyond = _summary(others) if others else {"of": 0, "found": 0, "largest": None}
-        counts = [row for row in where(result.rows, part="confusion", region="outside") if NAME.of(row) == name]
-        found, wrong = _summary(members), sum(row["only_a"] + row["only_b"] for row in counts)
-        complete = found["found"] == found["of"]
-        good = complete and found["largest"] <= LIMIT and not wrong
-        rating = "good" if good else "fair" if complete and found["largest"] <= FAIR else "bad"
-        outcomes = wrong + sum(row["both_stand"] + row["both_overturn"] for row in counts)
-        yield {
-            **found,
-            "rating": rating,
-            "wrong": wrong,
-            "outcomes": outcomes,
-            "beyond": beyond["of"],
-            "beyond_found": beyond["found"],
-            "beyond_largest": beyond["largest"],
-        }
-
-
-def _summary(rows):
-    """How many of these boundaries of a variant were found, and how far off they lie."""
-    found = [row for row in rows if row["shift"] is not None]
-    shifts = [abs(row["shift"]) for row in found]
-    return {
-        "engine": rows[0]["engine"],
-        "variant": rows[0]["variant"],
-        "of": len(rows),
-        "found": len(found),
-        "gaps": f"{sum(not row['rises'] for row in found)} of {sum(not row['rises'] for row in rows)}",
-        "median": statistics.median(shifts) if shifts else None,
-        "largest": max(shifts, default=None),
-    }
-
-
-def _title(best, tuned):
-    """The title: over the engines' main variants that are tuned; over all main variants if none is tuned."""
-    rated = [row for row in best if (row["engine"], row["variant"]) in tuned]
-    how, rated = ("tuned engines", rated) if rated else ("engines not tuned", best)
-    largest = max((row["largest"] for row in rated if row["largest"] is not None), default=None)
-    lost = [f"{row['found']} of {row['of']} found ({row['engine']})" for row in rated if row["found"] < row["of"]]
-    words = f"Many pulses: {how} shift the overturning boundary by {percent(largest)} at most"
-    return "; ".join(filter(None, [words, listed(lost)]))
-
-
-def _boundaries(caption, edges, shifts, *columns):
-    """A table of boundaries, with more columns, and the shifts of each setting in a column of its own."""
-    found = {(NAME.of(row), *place(row)): row["shift"] for row in shifts}
-
-    def shift(name, edge):
-        value = found.get((name, *place(edge)))
-        return "not found" if value is None else number(100 * value, 2)
-
-    return table(
-        caption,
-        edges,
-        GROUND,
-        *columns,
-        PULSE,
-        FREQUENCY,
-        AMPLITUDE,
-        Column("overturning", lambda row: "begins" if row["rises"] else "ends"),
-        Column("after impacts [-]", "mode"),
-        NORMAL,
-        *(Column(f"{name} [%]", partial(shift, name)) for name in dict.fromkeys(NAME.of(row) for row in shifts)),
-    )
-
-
 def _sliding(settings):
     """On which grounds a built-in friction is too low for a block to lift."""
     for variant in settings["variants"]:
@@ -302,34 +206,7 @@ def _held_down(edges, shifts):
             "Here the normal force of the analytic model becomes negative. A block in contact would slide or leave its "
             "base, as it does in the engines, so these boundaries say nothing about the engines."
         )
-    yield _boundaries("Boundaries at which the analytic model holds the corner down", pulled, shifts)
-
-
-def _drawn(edges, shifts):
-    return _boundaries(
-        "Blocks drawn at random in the promised range, each under one pulse: shift of its lowest boundary",
-        edges,
-        shifts,
-        Column("slenderness γ [rad]", "slenderness", 3),
-        Column("R [m]", "radius", 3),
-        Column("base mass over block mass [-]", lambda row: "rigid" if row["base_mass"] is None else row["base_mass"]),
-        Column("bearings", lambda row: row["law"] or "–"),
-        Column("period [s]", "period", 3),
-    )
-
-
-def _under_jumps(result):
-    """A sentence on the tuned engines whose largest shift is under a pulse that begins with a jump; none without."""
-    own = result.settings["default_variants"]
-    rows = where(result.rows, part={"shift", "drawn shift"})
-    sound, found = pressed(result), []
-    for engine in result.settings["engines"]:
-        mine = [row for row in where(rows, engine=engine, variant=own[engine]) if row["shift"] and place(row) in sound]
-        worst = max(mine, key=lambda row: abs(row["shift"]), default=None)
-        if worst and worst["shape"] in JUMPS:
-            found.append(f"{percent(worst['shift'])} under a {worst['shape']} pulse ({engine})")
-    if found:
-        yield f"The shift is largest where the acceleration of the ground jumps at the start: {listed(found)}."
+    yield listing("Boundaries at which the analytic model holds the corner down", pulled, shifts)
 
 
 def _confusions(result, band):
@@ -364,7 +241,7 @@ def _refinement(result):
     rows = [row for row in tried if (NAME.of(row), row["level"]) not in known] + closer
     groups, order = grouped(rows, NAME.of, "level"), list(variants)
     levels = [
-        {**variants[name], "level": level, **_summary(groups[name, level])}
+        {**variants[name], "level": level, **summary(groups[name, level])}
         for name, level in sorted(groups, key=lambda group: (order.index(group[0]), group[1]))
     ]
     yield lines(
@@ -405,10 +282,7 @@ def _how(result):
         f"{min(s['frequencies']):g} to {max(s['frequencies']):g} times the rocking frequency, amplitudes of "
         f"{s['amplitudes'][0]:g} to {s['amplitudes'][1]:g} g tan γ, on two grounds ({grounds}). Each engine bisects "
         f"for its own to ± {percent(s['tolerance'] / 2, 1)} at the default level. Where the normal force of the "
-        "analytic model becomes negative, that model is the one not to be trusted, and the boundary is not rated. The "
-        "drawn blocks are those of the random scenes, at rest; shapes of pulses take turns, frequencies are drawn from "
-        f"{FREQUENCIES[0]:g} to {FREQUENCIES[1]:g} times the rocking frequency; of each the lowest boundary that no "
-        f"other one is nearer to than {percent(APART, 1)}.",
+        "analytic model becomes negative, that model is the one not to be trusted, and the boundary is not rated.",
         f"Trusted: all boundaries found, shifted by at most {percent(LIMIT, 1)}, no outcome that differs beyond the "
         f"band; usable: all found, at most {percent(FAIR, 1)}. Kind “assisted”: the adapter applies the impact, so "
         "that the boundaries test the integration alone; no other level is tried.",

@@ -2,31 +2,41 @@
 
 import itertools
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from analytic import Response, Scene, load_scene, overturning_map, simulate
+from analytic import load_scene, overturning_map, simulate
 from engines import get_engine
 from engines.contract import Variant
 
+from ...measuring.boundaries import (
+    HIGHEST,
+    LEVEL_DISTANCES,
+    LEVEL_TOLERANCE,
+    LOWEST,
+    TOLERANCE,
+    Point,
+    Runs,
+    Setting,
+    edges,
+    least_normal,
+    pulse,
+    under,
+    usual_settings,
+)
 from ...measuring.statistics import Confusion, cohen_kappa, confusion, equality
-from ...running.cases import Case, variant_settings
-from ...running.plan import Batch, Computed, Plan, Request
+from ...running.cases import variant_settings
+from ...running.plan import Computed, Plan, Request
 from ...running.progress import log
-from ...running.refine import together
-from .edges import HIGHEST, LOWEST, drawn_columns, drawn_edges, edges, least_normal, locate, pulse
 
 # The isolated Caryatid itself overturns at base displacements far beyond its bearings' 0.30 m only; a more slender
 # block on the same bearings does at amplitudes of a strong earthquake.
 GROUNDS = {"rigid ground": ("caryatid-rigid", {}), "isolated base": ("caryatid-isolated", {"slenderness": 0.15})}
 SHAPES = ("one-sine", "one-cosine", "ricker")
-DISTANCES = ((2e-4, 1.2e-2), (3e-2,), (0.1,), (0.3,))  # relative, where a boundary is sought, see `locate`
-TOLERANCE = 2e-5
-# of other levels, at one frequency
-LEVEL_DISTANCES, LEVEL_TOLERANCE, LEVEL_FREQUENCY = ((2e-3, 2e-2), (0.1,), (0.3,)), 2e-4, 4.0
+LEVEL_FREQUENCY = 4.0  # at which other levels are run
 BAND = 0.01  # relative distance from a boundary beyond which no engine may differ
 # the model's equations by another method, beside the variants of engines
 STEPPING = {
@@ -45,8 +55,7 @@ STEPPING = {
 class Grid:
     """What the study covers. frequencies over omega_r; scan: amplitudes over g tan(slenderness) of the coarse scan.
 
-    size: amplitudes and frequencies of the analytic maps. levels: which levels of a variant. drawn: number
-    of blocks drawn in the range of a statue.
+    size: amplitudes and frequencies of the analytic maps. levels: which levels of a variant.
     """
 
     grounds: tuple[str, ...]
@@ -55,48 +64,19 @@ class Grid:
     scan: tuple[float, ...]
     size: tuple[int, int]
     levels: slice
-    drawn: int
 
 
 SCAN = tuple(np.geomspace(1.05, 19.5, 11).tolist())
-FULL = Grid(tuple(GROUNDS), SHAPES, (2.0, 4.0, 6.0, 8.0), SCAN, (240, 141), slice(None), 20)
-QUICK = Grid(tuple(GROUNDS), SHAPES[:1], (2.0, 4.0), SCAN[::4], (60, 36), slice(1, 2), 2)
-
-
-@dataclass(frozen=True)
-class Setting:
-    """A variant at a level of its accuracy parameter; settings: what sets it, nothing at the default."""
-
-    engine: str
-    variant: str
-    level: float
-    settings: Mapping[str, float] = field(default_factory=dict)
-
-    def row(self) -> dict[str, Any]:
-        return {"engine": self.engine, "variant": self.variant, "level": self.level}
-
-
-class Point(NamedTuple):
-    """A pulse on a ground; min_normal: least N/(m g) of the analytic model there or at the boundary nearby."""
-
-    ground: str
-    shape: str
-    frequency: float
-    amplitude: float
-    min_normal: float
-
-
-def measure(case: Case, response: Response) -> dict[str, Any]:
-    return {"outcome": response.outcome, "decided": response.decided, "end_tilt": response.end.tilt}
+FULL = Grid(tuple(GROUNDS), SHAPES, (2.0, 4.0, 6.0, 8.0), SCAN, (240, 141), slice(None))
+QUICK = Grid(tuple(GROUNDS), SHAPES[:1], (2.0, 4.0), SCAN[::4], (60, 36), slice(1, 2))
 
 
 def plan(request: Request, grid: Grid | None = None) -> Plan:
     """The plan of the study: first an answer at the default levels, then more; grid: in place of FULL or QUICK.
 
     Rows by "part": "edge" (a boundary of the analytic model), "shift" (an engine's beside it, of its main variant and
-    the kind "defaults"), "scan" (their outcomes over a coarse scan), "drawn edge" and "drawn shift" (of blocks drawn at
-    random), "refinement" (other levels), "confusion" (counts of outcomes), "disagreement" (an outcome that differs
-    outside the band) and "failure".
+    the kind "defaults"), "scan" (their outcomes over a coarse scan), "refinement" (other levels), "confusion" (counts
+    of outcomes), "disagreement" (an outcome that differs outside the band) and "failure".
 
     Arrays: frequency, amplitude; ``<ground>/<shape>``: int16, shape (amplitudes, frequencies), impacts before
     overturning in the analytic model, -1 where it does not overturn.
@@ -115,33 +95,17 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
     variants = [
         (name, variant, spec) for name in request.engines for variant, spec in get_engine(name).variants.items()
     ]
-    default = [
-        Setting(name, variant, spec.default)
-        for name, variant, spec in variants
-        if variant == get_engine(name).default_variant
-    ]
-    first_scripts = [
-        Setting(name, variant, spec.default) for name, variant, spec in variants if spec.kind == "defaults"
-    ]
-    coarser = [one for one in first_scripts if one not in default]
-    runs, points = _Runs(grounds, default), _scan(grounds, grid)
+    default, coarser = usual_settings(request.engines)
+    runs, points = Runs(grounds, default), _scan(grounds, grid)
     known = _judged(grounds, points, found)
     for setting in (*default, *coarser):
         answers = yield from runs.ask([(setting, point) for point in points], f"scan: {setting.engine}", scan=True)
         rows.append({"part": "scan", **setting.row(), **_counted(points, known, answers)})
-    rows += yield from runs.search("shift", default, found, DISTANCES, TOLERANCE)
-    rows += yield from runs.search("shift", coarser, found, LEVEL_DISTANCES, LEVEL_TOLERANCE)
-    log(f"analytic boundaries: {grid.drawn} drawn blocks")
-    drawn = drawn_edges(grid.drawn)
-    rows += [{"part": "drawn edge", **vars(edge), **drawn_columns(scene)} for scene, edge in drawn]
-    others = _Runs({edge.ground: scene for scene, edge in drawn})
-    for settings_of, *how in ((default, DISTANCES, TOLERANCE), (coarser, LEVEL_DISTANCES, LEVEL_TOLERANCE)):
-        rows += yield from others.search("drawn shift", settings_of, [edge for _, edge in drawn], *how)
+    rows += yield from runs.search_usual("shift", request.engines, found)
     records = _compared(runs.outcomes, default, grounds, found)
     rows += [*_confusions(records, default, grounds), *_disagreements(records)]
     described = [*itertools.starmap(_described, variants), STEPPING]
     settings = _settings(request, grid, grounds, described)
-    rows += others.failures
     yield Computed(settings, rows + runs.failures, arrays)
     chosen = [edge for edge in found if edge.shape == SHAPES[0] and edge.frequency == LEVEL_FREQUENCY]
     for setting in _refined(described, grid.levels):
@@ -202,78 +166,6 @@ def _maps(grounds, grid):
     return arrays
 
 
-class _Runs:
-    """Runs pulses in solvers, and stores failures and the outcomes at default levels.
-
-    outcomes: {(engine, ground, shape, frequency, amplitude): (overturns, or None where undecided; whether of the scan)}
-    """
-
-    def __init__(self, grounds: Mapping[str, Scene], default: Sequence[Setting] = ()) -> None:
-        self.outcomes: dict[tuple[Any, ...], tuple[bool | None, bool]] = {}
-        self.failures: list[dict[str, Any]] = []
-        self._grounds, self._default = grounds, default
-
-    def ask(self, points, label, scan=False):
-        """Outcomes (True, False, None) of (`Setting`, `Point`) pairs."""
-        cases = [
-            Case(
-                _under(self._grounds, point),
-                setting.engine,
-                setting.variant or None,
-                {"history": False, **setting.settings},
-            )
-            for setting, point in points
-        ]
-        answers = []
-        rows = yield Batch(cases, measure, label)
-        for (setting, point), row in zip(points, rows, strict=True):
-            decided = not row.failed and row.values["decided"]
-            answers.append(row.values["outcome"] == "overturns" if decided else None)
-            if not decided:
-                failure = row.failure or {
-                    "kind": "undecided",
-                    "reason": "the longest run ends without a certain outcome",
-                    "message": f"tilt {row.values['end_tilt']:.6g} rad",
-                }
-                self.failures.append({"part": "failure", **setting.row(), **point._asdict(), **failure})
-            if setting in self._default:
-                self.outcomes[setting.engine, *point[:-1]] = answers[-1], scan
-        return answers
-
-    def search(self, part, settings, found, distances, tolerance):
-        """Rows of the boundaries that settings have beside those found in the analytic model."""
-        jobs = list(itertools.product(settings, found))
-        label = f"{part}: {', '.join(f'{setting.engine} {setting.variant}' for setting in settings)}"
-        searches, answers = together([locate(edge, distances, tolerance) for _, edge in jobs]), None
-        while True:
-            try:
-                batch = searches.send(answers)
-            except StopIteration as stop:
-                located = stop.value
-                break
-            points = [
-                (setting, Point(edge.ground, edge.shape, edge.frequency, float(amplitude), edge.min_normal))
-                for index, amplitude in batch
-                for setting, edge in (jobs[index],)
-            ]
-            answers = yield from self.ask(points, label)
-        return [
-            {
-                "part": part,
-                **setting.row(),
-                "ground": edge.ground,
-                "shape": edge.shape,
-                "frequency": edge.frequency,
-                "amplitude": edge.amplitude,
-                "rises": edge.rises,
-                "mode": edge.mode,
-                "room": min(1 - edge.low / edge.amplitude, edge.high / edge.amplitude - 1),
-                **vars(one),
-            }
-            for (setting, edge), one in zip(jobs, located, strict=True)
-        ]
-
-
 def _scan(grounds, grid):
     """The points of the coarse scan."""
     places = itertools.product(grid.grounds, grid.shapes, grid.frequencies, grid.scan)
@@ -282,7 +174,7 @@ def _scan(grounds, grid):
 
 def _judged(grounds, points, found):
     """Whether the block overturns in the model at each point; None near a boundary, and where it would jump."""
-    models = [simulate(_under(grounds, point), history=False) for point in points]
+    models = [simulate(under(grounds, point), history=False) for point in points]
     return [
         model.outcome == "overturns" if model.min_normal_ratio >= 0 and _distance(found, point) > BAND else None
         for point, model in zip(points, models, strict=True)
@@ -306,20 +198,15 @@ def _distance(found, point):
     return min((abs(point.amplitude / amplitude - 1) for amplitude in near), default=math.inf)
 
 
-def _under(grounds, point):
-    scene = grounds[point.ground]
-    return scene.with_(motion=pulse(scene, point.shape, point.frequency, point.amplitude))
-
-
 def _compared(outcomes, default, grounds, found):
-    """Records of `_Runs.outcomes`, with what the analytic model says there.
+    """Records of `Runs.outcomes`, with what the analytic model says there.
 
     scan: whether of the scan. distance: from the nearest boundary of the analytic model, relative.
     """
     rows, records = {setting.engine: setting.row() for setting in default}, []
     for (engine, *place), (overturns, scan) in outcomes.items():
         point = Point._make((*place, math.nan))
-        response = simulate(_under(grounds, point), history=False)
+        response = simulate(under(grounds, point), history=False)
         records.append(
             {
                 **rows[engine],

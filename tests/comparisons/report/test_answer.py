@@ -6,11 +6,11 @@ from types import SimpleNamespace
 import pytest
 
 from analytic import Block, Scene, Start, simulate
-from comparisons.report.answer import not_to_do, own_restitution, setups_of
+from comparisons.report.answer import Stored, judgements_of, not_to_do, own_restitution, setups_of
 from comparisons.report.runs import restitution_computed
 from comparisons.report.sections import restitution_section
 from comparisons.report.write import _outside
-from comparisons.showing.parts import RESTITUTION, Judgement, Mark
+from comparisons.showing.parts import RESTITUTION, Judgement, Mark, Section
 from comparisons.showing.wording import rating
 
 FINE, COARSE, GIVEN, OTHER = ("exudyn", "fine"), ("exudyn", "coarse"), ("exudyn", "given"), ("mujoco", "fine")
@@ -25,6 +25,19 @@ def restitution(fine=1e-5):
     errors = {FINE: fine, COARSE: 0.2, GIVEN: 1e-9, OTHER: 1e-4}
     marks = {name: Mark(f"{error:g}", rating(error, 0), value=error) for name, error in errors.items()}
     return Judgement("restitution", marks, RESTITUTION)
+
+
+def test_rows_of_one_heading_are_one_that_says_what_each_study_found_and_is_as_bad_as_the_worst():
+    one, other = ("e", ""), ("e", "fine")
+    first = Judgement("shift", {one: Mark("1 % (3 of 4)", "bad", "a", 0.01), other: Mark("2 %", "good", "b", 0.02)})
+    second = Judgement("shift", {one: Mark("3 % (5 of 5)", "fair", "c", 0.03)})
+    marks = {one: Mark("3 % (5 of 5); 1 % (3 of 4)", "bad", "c; a", 0.03), other: first.marks[other]}
+    for order in ((first, second), (second, first)):
+        stored = [Stored(str(k), Section(""), judgements=(each,)) for k, each in enumerate(order)]
+        assert judgements_of([*stored, Stored("x", Section(""))]) == [Judgement("shift", marks)]
+    none = Judgement("shift", {one: Mark("none found", "bad")})
+    (row,) = judgements_of([Stored("a", Section(""), judgements=(first, none))])
+    assert row.marks[one] == Mark("none found; 1 % (3 of 4)", "bad", "; a")
 
 
 def decided(*judgements):

@@ -91,7 +91,7 @@ def test_a_report_goes_on_beside_damaged_results(copy_of, studies, tmp_path):
     cut = folder / "restitution" / "exudyn.json"
     cut.write_bytes(cut.read_bytes()[:-1000])
     (folder / "sensitivity" / "exudyn.npz").write_bytes(b"")
-    shutil.copytree(RESULTS / "mistakes", folder / "sliding")
+    shutil.copytree(RESULTS / "mistakes", folder / "statues")
     without_settings(folder)
     write_page(shown, folder)
     pages = {
@@ -102,7 +102,7 @@ def test_a_report_goes_on_beside_damaged_results(copy_of, studies, tmp_path):
     for name, words in {
         "restitution": "restitution/exudyn.json: not JSON",
         "sensitivity": "sensitivity/exudyn.npz: missing or not the one exudyn.json was written with",
-        "sliding": "a result of mistakes; call its folder mistakes",
+        "statues": "a result of mistakes; call its folder mistakes",
         "mistakes": "its page fails (KeyError(",
     }.items():
         assert f"{name} cannot be shown: {words}" in pages[name]

@@ -72,6 +72,11 @@ def test_the_title_counts_outcomes_that_are_changed_and_asks_where_one_kind_was_
     assert title([]) == title([TABLE]) == QUESTION
 
 
+def test_engines_that_are_not_in_question_are_shown_where_no_other_was_run():
+    alone = setups_of(VARIANTS, (Judgement("right", {MORE: Mark("9 of 9", "good")}),))
+    assert [one.engine for one in shown([*SHARES, TABLE], alone)] == ["mujoco"]
+
+
 def test_advice_says_what_its_levels_give_elsewhere_and_where_they_were_not_run():
     found = Glance(advice=ADVICE, asked=("exudyn",), scene="a scene", alike=1.5)
     first, second = advice(found, [PEAKS])

@@ -205,11 +205,10 @@ def test_every_stored_result_is_the_sum_of_its_files(path):
 
 
 FALLEN = {"kind": "crash", "reason": "fell over", "message": ""}
-GRID = overturning.Grid(("rigid ground",), ("one-sine",), (2.0,), (2.0, 6.0), (4, 3), slice(1, 2), 1)
+GRID = overturning.Grid(("rigid ground",), ("one-sine",), (2.0,), (2.0, 6.0), (4, 3), slice(1, 2))
 SMALL: dict[str, dict[str, Any]] = {
     "restitution": {},
-    "random-scenes": {},
-    "sliding": {"scenes": 80},
+    "statues": {"boundaries": 1, "sliders": 80},
     "stability": {"names": ("zeno",)},
     "overturning": {"grid": GRID},
     "fragility": {"scenes": {"free-standing": ("caryatid-rigid", (0.15, 0.3))}, "runs": (40, 3, 1)},

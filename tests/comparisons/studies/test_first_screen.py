@@ -74,9 +74,11 @@ def test_synthetic_motions_count_alike():
 
 
 def test_sliding_blocks_count_alike_and_a_slip_that_differs_is_the_same_end():
-    rows = [{**one, "index": k} for k, one in enumerate((*RUNS, run("differs", "slides", "slides", "peak_slip")))]
+    runs = (*RUNS, run("differs", "slides", "slides", "peak_slip"))
+    rows = [{**one, "index": k, "friction": 0.3} for k, one in enumerate(runs)]
     scenes = [{"part": "scene", "index": row["index"], "outcome": row["model_outcome"]} for row in rows]
-    (first, *counts), left_out = ends("sliding", [*scenes, *rows])
+    free = [{**one, "friction": None} for one in rows]  # which do not count there
+    (first, *counts), left_out = ends("statues", [*scenes, *rows, *free])
     assert (first, left_out) == (7, COUNTED[1]) and tuple(counts) == COUNTED[0][1:]
 
 

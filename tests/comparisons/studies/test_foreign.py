@@ -106,7 +106,7 @@ def test_names_of_this_project_are_its_own():
 def test_a_study_and_the_report_take_an_engine_as_it_comes(tmp_path):
     """Every section that shows runs names it."""
     install_fake_engine(tmp_path)
-    status, _, err = study(tmp_path, *"random-scenes --quick --engine crude --output studies".split())
+    status, _, err = study(tmp_path, *"statues --quick --engine crude --output studies".split())
     assert status == 0, err
     report = "report --engine crude --studies studies --output report"
     status, _, err = python(tmp_path, "-m", "comparisons", *report.split())
@@ -114,7 +114,7 @@ def test_a_study_and_the_report_take_an_engine_as_it_comes(tmp_path):
     rows = read_result(tmp_path / "report" / "scenes.json").rows
     assert [row["outcome"] for row in rows if row["engine"] == "crude"] == ["overturns", "stands"]
     pages = {file.stem: file.read_text() for file in (tmp_path / "report" / "pages").glob("*.html")}
-    assert "random-scenes" in pages and not [name for name, text in pages.items() if "cannot be shown" in text]
+    assert "statues" in pages and not [name for name, text in pages.items() if "cannot be shown" in text]
     assert not [name for name, text in pages.items() if not re.search(r">[^<]*\bcrude\b", text)]
     first = (tmp_path / "report" / "report.html").read_text()
     sections = dict(re.findall(r'<section id="([^"]+)"(.*?)</section>', first, flags=re.DOTALL))

@@ -42,8 +42,7 @@ SHORT = {
     "restitution": {"grid": Grid((0.2,), (None, CARYATID_BASE), (0.6,), ((0.2, None),), 4, ((0.25,), (1.0,), (2.0,)))},
     "fragility": {"scenes": {"free-standing": ("caryatid-rigid", (0.2, 0.3))}, "runs": (40, 6, 2)},
     "sensitivity": {"scenes": {"free-standing": ("caryatid-rigid", (0.2,))}, "motions": (3, 1, 1)},
-    "random-scenes": {"seed": 1},
-    "sliding": {"seed": 1, "scenes": 80},
+    "statues": {"seed": 1, "sliders": 80},
     "stability": {"names": ("uplift 0.99", "critical pulse +0.01")},
     "speed-error": {"keep": lambda entry: entry.engine in ("crude", "analytic"), "repeats": 1},
 }
@@ -93,7 +92,7 @@ def test_a_study_runs_and_shows_it(crude, tmp_path, name):
     section = shown(study, found, tmp_path)
     assert rows_with(section) and (name == "stability" or drawn(section))  # which shows words alone
     # the fake may blow up under scenes of any kind
-    assert name in ("random-scenes", "sliding") or not [row for row in found.rows if row.get("failure")]
+    assert name == "statues" or not [row for row in found.rows if row.get("failure")]
 
 
 FAILURES = (

@@ -14,6 +14,7 @@ from record_files import pairs
 from analytic import SceneError, SettingError, simulate
 from analytic.records import read_record
 from analytic.response import COMPARED, EDGE
+from comparisons.ensembles.motions import peak_velocity
 from comparisons.measuring.statistics import equality
 from comparisons.running.plan import Request
 from comparisons.running.provenance import read_result, write_result
@@ -21,7 +22,6 @@ from comparisons.running.sweep import Row
 from comparisons.showing.parts import where
 from comparisons.showing.wording import ENDS, TURNED
 from comparisons.studies import get_study
-from comparisons.studies.fragility.study import peak_velocity
 from comparisons.studies.recorded.page import summary
 from comparisons.studies.recorded.study import LAWS, RANGES, _errors, _run_row, drawn_scene, of_engine, plan
 from engines import ENGINES, get_engine, installed_engines

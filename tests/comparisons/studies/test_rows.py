@@ -62,16 +62,17 @@ def test_null_where_it_may_be_and_further_columns_of_the_study_are_taken(more):
 
 
 def test_a_row_without_numbers_says_why_and_needs_no_more():
-    row = {"engine": "exudyn", "variant": "x", "tier": "tuned", "index": 3, "class": "failed", "comparable": "yes"}
-    assert wrong_with(row, "random-scenes") == "column 'differences' is missing"
-    assert wrong_with(row | {"failure": {"kind": "crash"}}, "random-scenes") is None
+    row = {"part": "run", "engine": "exudyn", "variant": "x", "tier": "tuned", "index": 3, "friction": None}
+    row |= {"class": "failed", "comparable": "yes"}
+    assert wrong_with(row, "statues") == "column 'differences' is missing"
+    assert wrong_with(row | {"failure": {"kind": "crash"}}, "statues") is None
 
 
 def test_a_result_of_another_study_is_refused_by_name_and_a_foreign_one_is_not_looked_at(tmp_path):
     path = write_result(tmp_path / "r.json", "swings", {}, [{"height": "high"}], modules=["analytic.errors"])
     assert read_study(path).rows == [{"height": "high"}] and read_study(path, "swings").kind == "swings"
-    with pytest.raises(ResultError, match=r"r\.json: a result of swings; give one that rocking study sliding wrote"):
-        read_study(path, "sliding")
+    with pytest.raises(ResultError, match=r"r\.json: a result of swings; give one that rocking study statues wrote"):
+        read_study(path, "statues")
 
 
 def test_a_number_changed_in_a_stored_result_is_seen(tmp_path):

@@ -8,10 +8,11 @@ from scipy.stats import norm
 from analytic import load_scene, simulate, synthetic_motion
 from analytic.bearing import BearingLaw
 from analytic.rocking import RockingModel
+from comparisons.ensembles.motions import with_vertical
 from comparisons.running.plan import Computed, Request
 from comparisons.showing.parts import where
 from comparisons.studies import get_study
-from comparisons.studies.sensitivity.study import FASTER, RATIOS, SPREAD, changes, with_vertical
+from comparisons.studies.sensitivity.study import FASTER, RATIOS, SPREAD, changes
 
 STUDY = get_study("sensitivity")
 SCENES = {"isolated": ("caryatid-isolated", (0.15,))}

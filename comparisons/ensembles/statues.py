@@ -1,21 +1,15 @@
-"""Random scenes within the range of a statue, `engines.statue_range`, and the class of each run."""
+"""Statues in the promised range, `engines.statue_range`, drawn at random: without friction or with it."""
 
 import math
-from typing import Annotated, Any
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
-import typer
 
-from analytic import Base, Bearings, Block, PulseMotion, Response, Scene, Start, simulate
-from engines import get_engine
-from engines.comparison import Reference
-from engines.statue_range import RANGE, in_words
+from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start, synthetic_motion
+from engines.statue_range import RANGE
 
-from ...measuring.statistics import class_of
-from ...running.cases import Case
-from ...running.plan import Batch, Computed, Plan, Request
-from ...running.provenance import commit_seed
-from ...running.sweep import Row
+from .motions import OTHERS, USUAL_RATIO, with_vertical
 
 DENSITY = (200.0, 2e4)  # kg per m3 of R^3: wood to bronze, hollow or solid
 HEAVIEST_BASE = 20.0  # block masses
@@ -26,6 +20,10 @@ SHAPES = ("one-sine", "one-cosine", "half-sine", "rectangular", "ricker")
 PEAKS = (0.5, 6.0)  # of a motion over the uplift acceleration
 FREQUENCIES = (0.5, 6.0)  # over omega_r
 STARTS = 0.95  # most tilt of a released block over its slenderness
+FRICTION = (0.2, 0.8)
+PULSE, SYNTHETIC, RECORDED = MOTIONS = ("pulse", "synthetic", "recorded")
+DRAWN = (PULSE, PULSE, SYNTHETIC, RECORDED)  # one of these
+VERTICAL = 0.25  # share of the scenes with a vertical motion
 
 
 def random_scene(seed: int, index: int) -> Scene:
@@ -92,58 +90,23 @@ def _bearings(rng: np.random.Generator, block: Block, base: Base) -> Bearings:
     return Bearings(law=law, count=count, ka=k * log_uniform(rng, *STIFFER), kb=k, alpha=alpha, damping=damping)
 
 
-SCENES, QUICK_SCENES = 500, 20  # of the engines' main variants
-FEWER = 5  # other variants run one scene in so many, and at least so many
+def random_slider(records: Sequence[SampledMotion], seed: int, index: int) -> tuple[Scene, str]:
+    """(scene number `index` of the ensemble `seed`, one of `MOTIONS`): a statue at rest under a motion, with friction.
 
-SEED = "Of the scenes, without it of the commit; with --check of the draw of runs."
-Seed = Annotated[int | None, typer.Option(min=0, max=2**63, help=SEED)]
-Number = Annotated[int | None, typer.Option(min=1, max=10**6, help="How many are drawn. Default 500, quick 20.")]
-
-
-def plan(request: Request, *, seed: Seed = None, scenes: Number = None) -> Plan:
-    """The plan of the study: scenes of an ensemble that every commit draws anew; seed: of another one."""
-    seed = commit_seed() if seed is None else seed
-    most = scenes or (QUICK_SCENES if request.quick else SCENES)
-    drawn = [random_scene(seed, index) for index in range(most)]
-    reached = [simulate(scene, history=False).peak_tilt_ratio >= RANGE["tilt"][0] for scene in drawn]
-    few = min(most, max(FEWER, most // FEWER))
-    cases = [
-        Case(drawn[k], engine.name, variant, {"history": False, "compare": True}, {"index": k})
-        for engine in map(get_engine, request.engines)
-        for variant in engine.variants
-        for k in range(most if variant == engine.default_variant else few)
-        if reached[k]
-    ]
-    rows = yield Batch(cases, compared, "random scenes")
-    found = [
-        {
-            "engine": row.case.solver,
-            "variant": row.case.variant,
-            "tier": get_engine(row.case.solver).variants[row.case.variant or ""].kind,
-            **row.case.tag,
-            **(_failed(row) if row.failed else row.values),
-        }
-        for row in rows
-    ]
-    settings = {"scenes": most, "below_range": reached.count(False), "range": in_words(), "quick": request.quick}
-    return Computed(settings, found, seed=seed)
-
-
-def _failed(row: Row) -> dict[str, Any]:
-    """What is kept of a run that failed: left out where no run of its scene is judged, of all engines alike."""
-    why = Reference.of(row.case.scene).comparable
-    return {"class": class_of(why, None), "comparable": why, "failure": row.failure}
-
-
-def compared(case: Case, response: Response) -> dict[str, Any]:
-    """Measure: the class of a run, and in what it differs, or why it is left out.
-
-    A scene near an outcome boundary is left out for all engines alike; the differences of its runs are kept.
+    A base without bearings, which no motion of the ground reaches, is left out: the statue stands on rigid ground.
+    records : of which one may be drawn, times a factor; without any a synthetic motion takes its place.
     """
-    quantities = [one.quantity for one in response.differences]
-    return {
-        "class": class_of(response.comparable, quantities),
-        "comparable": response.comparable,
-        "differences": [str(one) for one in response.differences],
-        "quantities": quantities,
-    }
+    rng = np.random.default_rng([seed, index])
+    statue = random_statue(rng, f"sliding {seed}/{index}").with_(friction=float(rng.uniform(*FRICTION)))
+    if statue.bearings is None:
+        statue = statue.with_(base=None)
+    kind, side, raised = str(rng.choice(DRAWN)), float(rng.choice([-1.0, 1.0])), rng.random() < VERTICAL
+    if kind == PULSE:
+        pulse = random_pulse(rng, statue, side)
+        up = PulseMotion(pulse.shape, float(rng.choice([-1.0, 1.0])) * USUAL_RATIO * pulse.amplitude, pulse.frequency)
+        return statue.with_(motion=replace(pulse, vertical=replace(up, start=pulse.start) if raised else None)), kind
+    peak, number = side * random_peak(rng, statue), int(rng.integers(OTHERS))
+    kind = kind if records else SYNTHETIC
+    motion = records[number % len(records)] if kind == RECORDED else synthetic_motion(seed=number)
+    motion = motion.scaled(peak / motion.peak)
+    return statue.with_(motion=with_vertical(motion, number, USUAL_RATIO) if raised else motion), kind

@@ -1,0 +1,362 @@
+"""What is shown of drawn statues: how often engines are right, where their boundaries lie, and what sliding does."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from analytic.response import EDGE
+from engines.comparison import END, PEAK
+from engines.comparison import RESTITUTION as RESTITUTION_LIMIT
+
+from ...measuring.errors import rms
+from ...measuring.statistics import wilson
+from ...running.provenance import Result
+from ...showing.boundaries import (
+    FOUND,
+    LARGEST,
+    MEDIAN,
+    RATINGS,
+    failures,
+    judged,
+    largest,
+    listing,
+    missing,
+    rated,
+    strip,
+    under_jumps,
+)
+from ...showing.charts import Axis, Chart, curve, figure, key_of
+from ...showing.figures import as_it_comes, beside, leading, ranks
+from ...showing.glance import Glance, counted
+from ...showing.parts import (
+    NAME,
+    Column,
+    Figure,
+    Judgement,
+    Mark,
+    Page,
+    grouped,
+    number,
+    percent,
+    table,
+    typeset,
+    where,
+)
+from ...showing.wording import TRUSTED, ends, left_out, listed, tally
+from .study import APART, FREQUENCY
+
+LEAST_RIGHT = 0.95  # share of right runs, of those not left out, from which an engine is good
+LEAST = 1e-3  # that the figure's axis begins at
+TICKS = ((1e-3, "≤ 0.1 %"), (1e-2, "1 %"), (0.1, "10 %"), (1.0, "100 %"))
+WRONG = Column("runs that differ or fail", "wrong", percent=True, within="interval")
+ALL, FALLS = "all", "overturns"
+NONE, DRAWN = "no friction", "friction drawn"  # of a run's scene
+# share: (in words, of which scenes it is one, those scenes in words)
+SHARES = {
+    "slides": ("slides and never lifts", "moves", "that lift or slide"),
+    "saved": ("saved by sliding", "falls_without", "that overturn without sliding"),
+    "overturned": ("overturned by sliding", "upright_without", "that stay upright without sliding"),
+}
+
+
+def page(result: Result) -> Page:
+    cells, counts, settings = where(result.rows, part="cell"), tallies(result), result.settings
+    every = summed(cells, lambda cell: ALL)
+    return Page(
+        _title(result, counts),
+        (
+            "A run that differs from the analytic model is reported as differing wherever it is shown.",
+            *_with_friction(leading(where(counts, friction=DRAWN), settings["variants"])),
+            *under_jumps(result),
+            *(
+                f"In the model sliding saves {row['saved']} of {row['falls_without']} statues that overturn without "
+                f"it, and overturns {row['overturned']} of {row['upright_without']} others."
+                for row in every
+            ),
+        ),
+        first=(
+            beside(
+                strip(result, "statues: shift of the boundary"),
+                ranks(
+                    counts,
+                    NAME,
+                    WRONG,
+                    "Share of runs that differ from the analytic model or fail, with 95 % Wilson intervals. Open "
+                    "marks: defaults; arrowheads: none.",
+                    Axis(WRONG.head, LEAST, 1.0, "log", TICKS),
+                    panel="friction",
+                    opened=as_it_comes,
+                ),
+            ),
+            table(
+                f"Engines: right in the outcome, the time of a fall, the number of impacts, within {percent(PEAK, 1)} "
+                f"of peaks and slip, {RESTITUTION_LIMIT:g} of the restitution and 10 % of an impact's loss",
+                counts,
+                NAME,
+                Column("kind", "tier"),
+                Column("scenes", "friction"),
+                Column("right [-]", "right"),
+                *ends(counts),
+                Column("right, of those not left out", "share", percent=True, within="share_within"),
+                Column("near an outcome boundary, and beyond it", "{beyond} of {edge}"),
+                Column("error of the slip, median", "slip", percent=True),
+                Column("worst", "slip_worst", percent=True),
+                Column("error of restitution by states at slipping impacts, rms [-]", "slipping"),
+                Column("of these missed [-]", "lost"),
+                Column("CPU time over the model's [-]", lambda row: row["cpu"] and f"{number(row['cpu'], 2)} ×"),
+            ),
+            table(
+                "The lowest overturning boundary of each drawn statue under a pulse",
+                rated(result),
+                NAME,
+                Column("rating", lambda row: RATINGS[row["rating"]]),
+                FOUND,
+                MEDIAN,
+                LARGEST,
+            ),
+        ),
+        more=(
+            table(
+                "Runs that differ, without the variants “defaults”",
+                [row for row in _runs(result) if row["class"] == "differs" and row["tier"] != "defaults"],
+                NAME,
+                Column("scene", "index"),
+                Column("friction [-]", "friction", digits=3),
+                Column("in what", lambda row: typeset("; ".join(row["differences"]))),
+            ),
+            listing(
+                "Each drawn statue under one pulse: shift of its lowest boundary",
+                where(result.rows, part="drawn edge"),
+                where(result.rows, part="drawn shift"),
+                Column("slenderness γ [rad]", "slenderness", 3),
+                Column("R [m]", "radius", 3),
+                Column(
+                    "base over block mass [-]", lambda row: "rigid" if row["base_mass"] is None else row["base_mass"]
+                ),
+                Column("bearings", lambda row: row["law"] or "–"),
+                Column("period [s]", "period", 3),
+            ),
+            missing(result),
+            _shares(cells),
+            _sliding([*summed(cells, "support"), *every]),
+            *(f"{NAME.of(row)}: {row['words']}" for row in settings["faults"]),
+        ),
+        how=_how(result),
+        evidence=(
+            *(
+                (f"{NAME.text(row)}, scene {row['index']}: {row['failure']['reason']}", row["failure"]["message"] or "")
+                for row in where(_runs(result), **{"class": "failed"})
+            ),
+            *failures(result),
+        ),
+    )
+
+
+def _runs(result):
+    return where(result.rows, part="run")
+
+
+def _scenes(row):
+    return NONE if row["friction"] is None else DRAWN
+
+
+def _title(result, counts):
+    tuned = where(counts, tier="tuned")
+    right, whole = (
+        {name: sum(row[key] for row in where(tuned, friction=name)) for name in (NONE, DRAWN)}
+        for key in ("right", "runs")
+    )
+    return (
+        f"Random statues: {right[NONE]} of {whole[NONE]} runs of tuned engines are right without friction, "
+        f"{right[DRAWN]} of {whole[DRAWN]} where friction does not suffice; {largest(result)}"
+    )
+
+
+def _with_friction(rows):
+    """What is counted as right, as an outcome, and as an error at slipping impacts: three counts that differ."""
+    rows = [row for row in rows if row["runs"]]
+
+    def each(words):
+        return listed([f"{words(row)} ({row['engine']})" for row in rows])
+
+    if rows:
+        yield (
+            "With friction, engines run only scenes in which it does not suffice. Right in all that is asked are "
+            f"{each(lambda row: '{right} of {runs}'.format(**row))}; the outcome alone is another one or none in "
+            f"{each(lambda row: row['runs'] - row['alike'])}. At impacts with slip, restitution by states is off by "
+            f"{each(lambda row: number(row['slipping'], 2))}, rms; the limit of a trusted engine, {TRUSTED:g}, is one "
+            "for impacts without."
+        )
+
+
+def tallies(result: Result) -> list[dict[str, Any]]:
+    """A row for each variant, without friction and with it: the `tally` of its runs, how many are right, shares with
+    their 95 % intervals, and errors where blocks slide; None where none is judged, or slides."""
+    found = []
+    for (friction, engine, variant), rows in grouped(_runs(result), _scenes, "engine", "variant").items():
+        counts = tally(rows, "index", _turned)
+        runs, right = counts["runs"], counts["runs"] - counts["differing"]
+        sound = [row for row in rows if row["class"] in ("right", "differs")]
+        slips = np.abs([row["slip_error"] for row in sound if row.get("slip_error") is not None])
+        slipping = np.array([error for row in sound for error in row.get("slipping", ())])
+        edge = where(rows, comparable=EDGE)
+        ratios = [row["cpu_ratio"] for row in sound if "cpu_ratio" in row]
+        found.append(
+            {
+                "engine": engine,
+                "variant": variant,
+                "tier": rows[0]["tier"],
+                "friction": friction,
+                **counts,
+                "right": right,
+                "wrong": counts["share"],
+                "share": right / runs if runs else None,
+                "share_within": wilson(right, runs) if runs else None,
+                "beyond": sum(bool(row.get("failure") or row.get("differences")) for row in edge),
+                "alike": sum("outcome" not in row["quantities"] for row in sound),
+                "slip": float(np.median(slips)) if len(slips) else None,
+                "slip_worst": float(slips.max()) if len(slips) else None,
+                "slipping": rms(slipping) if len(slipping) else None,
+                "lost": sum(row["lost"] for row in sound) if friction == DRAWN else None,
+                "cpu": float(np.median(ratios)) if ratios else None,
+            }
+        )
+    return sorted(found, key=lambda row: row["friction"] == DRAWN)
+
+
+def _turned(row):
+    """Whether the sentence on the outcome has one that overturns and one that does not: no row keeps the model's."""
+    return any(words.count("overturns") == 1 for words in row["differences"] if words.startswith("the block "))
+
+
+def judgements(result: Result) -> tuple[Judgement, ...]:
+    """The counts without friction and with it stay apart: together the many would hide the few."""
+    heads = {NONE: "random scenes right", DRAWN: "sliding scenes right"}
+    marks: dict[str, dict[tuple[str, str], Mark]] = {name: {} for name in heads}
+    for row in tallies(result):
+        if row["runs"]:
+            level = "good" if row["share"] >= LEAST_RIGHT else "fair" if row["share"] >= 0.5 else "bad"
+            note = f"outcome right in {row['alike']}; {row['differing'] - row['failed']} differ, {row['failed']} failed"
+            words = f"{row['right']} of {row['runs']}"
+            mark = Mark(words, level, f"{note}; {left_out(row)}", row["share"])
+            marks[row["friction"]][row["engine"], row["variant"]] = mark
+    return (judged(result, "drawn statues"), *(Judgement(head, marks[name]) for name, head in heads.items()))
+
+
+def glance(result: Result) -> Glance:
+    """Of the runs with friction that differ, those that end otherwise: a slip within its tolerance is no other end.
+
+    Those without friction, of which the few that differ would be hidden among many, are not on the first screen.
+    """
+    outcomes = {row["index"]: row["outcome"] for row in where(result.rows, part="scene")}
+    runs = [
+        {
+            **row,
+            "class": "right" if row["class"] == "differs" and not END & set(row["quantities"]) else row["class"],
+            "model_falls": outcomes[row["index"]] == FALLS,
+            "falls": None if row["outcome"] == "failed" else row["outcome"] == FALLS,
+            "changed": "outcome" in row.get("quantities", ()),
+            "group": row["index"],
+        }
+        for row in _runs(result)
+        if row["friction"] is not None
+    ]
+    return Glance(endings=counted("blocks that may slide", runs))
+
+
+def summed(cells: Iterable[Mapping[str, Any]], key: Any) -> list[dict[str, Any]]:
+    """The cells' counts added up by a key, with each of `SHARES`: (how many, of how many, share, its interval)."""
+    found = []
+    for (name,), members in grouped(cells, key).items():
+        row = {k: sum(cell[k] for cell in members) for k, value in members[0].items() if type(value) is int}
+        sound = row["runs"] - row["failed"] - row["undecided"]
+        row |= {"engine": "analytic", "name": name, "upright_without": sound - row["falls_without"]}
+        for share, (_, whole, _) in SHARES.items():
+            one = row[share] / row[whole] if row[whole] else None
+            within = wilson(row[share], row[whole]) if row[whole] else None
+            row |= {f"{share}_share": one, f"{share}_within": within}
+        found.append(row)
+    return found
+
+
+def _sliding(rows):
+    shares = (Column(f"{words}, of those {of}", partial(_counted, share=s)) for s, (words, _, of) in SHARES.items())
+    return table(
+        "The analytic model: random statues with a friction of 0.2 to 0.8 at rest under a motion; with 95 % Wilson "
+        "intervals",
+        rows,
+        Column("support", "name"),
+        Column("scenes [-]", "runs"),
+        Column("that lift or slide [-]", "moves"),
+        Column("that need more than the friction [-]", "lacking"),
+        *shares,
+        Column("undecided, failed [-]", "{undecided}, {failed}"),
+    )
+
+
+def _counted(row, share):
+    within, words = row[f"{share}_within"], f"{row[share]} of {row[SHARES[share][1]]}"
+    return words if within is None else f"{words}, {number(100 * within[0], 2)} to {percent(within[1])}"
+
+
+def _shares(cells: Sequence[Mapping[str, Any]]) -> Figure | None:
+    """Shares over friction, a panel for each support."""
+    looks = {words: curve(rank) for rank, (words, *_) in enumerate(SHARES.values())}
+    limits = [end for cell in cells for end in cell["friction"]]
+    charts = []
+    for (support,), members in grouped(cells, "support").items():
+        chart = Chart(
+            Axis("friction μ [-]", min(limits), max(limits)),
+            Axis("share of scenes [-]", 0.0, 1.0),
+            f"{support}: share of scenes, over friction, in which the block is {', '.join(looks)}.",
+            title=f"{support}: what sliding does",
+            height=300,
+        )
+        rows = summed(members, lambda cell: tuple(cell["friction"]))
+        for share, (words, whole, of) in SHARES.items():
+            drawn = [row for row in rows if row[whole]]
+            xs = [sum(row["name"]) / 2 for row in drawn]
+            ys = [row[f"{share}_share"] for row in drawn]
+            lows, highs = ([row[f"{share}_within"][end] for row in drawn] for end in (0, 1))
+            told = [f"{words}, of those {of}: {_counted(row, share)}" for row in drawn]
+            chart.reach(xs, ys, lows, highs, words, look=looks[words])
+            chart.line(xs, ys, words, look=looks[words])
+            chart.dots(xs, ys, words, says=told, look=looks[words])
+        charts.append(chart)
+    keys = {words: key_of(words, look=look) for words, look in looks.items()}
+    caption = "The analytic model: share of scenes over friction, with 95 % Wilson intervals: " + "; ".join(
+        f"{words}, of those {of}" for words, _, of in SHARES.values()
+    )
+    return figure(charts, f"{caption}.", keys, keys) if charts else None
+
+
+def _how(result: Result) -> tuple[str, ...]:
+    settings, scenes = result.settings, where(result.rows, part="scene")
+    recorded = f"components of {settings['source']}" if settings["source"] else "none, as their package is missing here"
+    low, high = settings["peak"]
+    limits = settings["range"].replace("J_O/(m R^2)", "inertia about a corner over m R²")
+    return (
+        f"Without friction {settings['scenes']} scenes drawn at random (seed {result.provenance['seed']}, of the "
+        f"commit): {limits}; released or under a pulse, until the outcome is decided. {settings['below_range']} whose "
+        f"peak tilt stays below the range are not run. With friction, drawn evenly, {settings['sliders']} scenes at "
+        "rest, on rigid ground or on bearings, as no motion reaches a block whose base has none. Half of the motions "
+        f"are pulses, a quarter synthetic, a quarter recorded ({recorded}), each times a factor: its peak is {low:g} "
+        f"to {high:g} times g tan γ. {percent(settings['vertical'])} have a vertical component, "
+        f"{number(settings['ratio'], 2)} times the horizontal peak. What the shares say depends on how it is drawn.",
+        "Without sliding: the same scene without friction, whose block turns about corners that never slip. It needs "
+        "more than the friction where the demand |H|/N exceeds it before any last fall, or N falls to 0. Undecided: "
+        "the base goes on swinging, so that the end is not certain. Errors of the slip are relative, of blocks that "
+        "stay upright; a slip too small to count is compared as one of 0.005 R. CPU time is that of the stepping over "
+        "that of the model’s march, median over scenes.",
+        f"Engines run the first {len(scenes)} scenes in which the friction does not suffice; variants other than the "
+        f"main ones of the engines in question run one scene in {settings['fewer']}. Left out, of all engines alike: "
+        "the normal force falls to 0 without friction, the friction demand is more than any contact provides, or the "
+        "scene is near an outcome boundary: a change by 10⁻⁴, of the friction too, makes such a difference in the "
+        "model. Beyond it: runs of those scenes that fail, or lie outside what such changes do in the model.",
+        f"Boundaries: of {len(where(result.rows, part='drawn edge'))} of the statues, at rest; shapes of pulses take "
+        f"turns, frequencies are drawn from {FREQUENCY[0]:g} to {FREQUENCY[1]:g} times the rocking frequency; of each "
+        f"the lowest boundary that no other one is nearer to than {percent(APART, 1)}, with the block pressed on its "
+        "base.",
+    )

@@ -1,0 +1,338 @@
+"""Statues drawn at random in the promised range: engines beside the model without friction, with it where it does
+not suffice, and at the overturning boundaries of some; and what sliding does in the model.
+"""
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+
+from analytic import Response, SampledMotion, Scene, SceneError, Start, simulate, simulate_many
+from analytic.bearing import BearingLaw
+from analytic.records.fema import PREFIX
+from analytic.records.folder import folder_motions
+from engines import get_engine
+from engines.checks import LEAST_SLIP
+from engines.comparison import LAST, PEAK, Reference, compare
+from engines.matching import LEAST_TILT, impacts_of, matched
+from engines.statue_range import RANGE, in_words
+
+from ...ensembles.motions import USUAL_RATIO, Folder, source_of
+from ...ensembles.statues import FRICTION, MOTIONS, PEAKS, SHAPES, VERTICAL, random_scene, random_slider
+from ...measuring.boundaries import TOLERANCE, Edge, Runs, edges
+from ...measuring.statistics import class_of
+from ...running.cases import Case, variant_settings
+from ...running.plan import Batch, Computed, Plan, Request
+from ...running.progress import log
+from ...running.provenance import commit_seed
+from ...running.sweep import Row
+
+# scenes without friction; with it, and how many of these engines run; statues whose boundaries are sought
+FULL, QUICK = (500, 20_000, 50, 20), (20, 400, 10, 2)
+FEWER = 5  # variants other than the main ones of the engines in question run one scene in so many
+BINS = 6  # of the friction, in which outcomes are counted
+SUPPORTS = ("rigid ground", "isolated")
+CHUNK = 500  # scenes held at once
+FALLS = "overturns"
+
+SEED = "Of the scenes, without it of the commit; with --check of the draw of runs."
+Seed = Annotated[int | None, typer.Option(min=0, max=2**63, help=SEED)]
+Number = Annotated[int | None, typer.Option(min=1, max=10**6, help="Without friction. Default 500, quick 20.")]
+Sliders = Annotated[int | None, typer.Option(min=1, max=10**7, help="With friction. Default 20000, quick 400.")]
+
+
+def plan(
+    request: Request,
+    boundaries: int | None = None,
+    *,
+    seed: Seed = None,
+    scenes: Number = None,
+    sliders: Sliders = None,
+    records: Folder = None,
+) -> Plan:
+    """The plan of the study.
+
+    Rows by "part": "cell", how many scenes of a support, a kind of motion and an interval of friction have which fate
+    in the model; "scene", one with friction that the engines run, and the model's answer; "run", an engine's run of a
+    scene, friction null where it has none; "drawn edge" and "drawn shift", a statue's boundary in the model and in an
+    engine; "failure", of a run that sought it.
+
+    Parameters
+    ----------
+    request : Request
+    boundaries, scenes, sliders : int, optional
+        How many statues are drawn in place of those of `FULL` or `QUICK`.
+    seed : int, optional
+        Of the scenes.
+    records : str, optional
+        Folder of records, or a set of FEMA P695, in place of all of these.
+    """
+    seed = commit_seed() if seed is None else seed
+    most, sliding, few, count = QUICK if request.quick else FULL
+    most, sliding = scenes or most, sliders or sliding
+    motions, source = _recorded(records)
+    drawn = [Case(random_scene(seed, index), tag={"index": index}) for index in range(most)]
+    reached = [case for case in drawn if simulate(case.scene, history=False).peak_tilt_ratio >= RANGE["tilt"][0]]
+    rows, chosen = _ensemble(motions, seed, sliding, few)
+    model = yield Batch(chosen, of_model, "analytic model")
+    known = {row.case.tag["index"]: row for row in model if not row.failed}
+    rows += [
+        {"part": "scene", "engine": "analytic", "variant": "", **row.case.tag, **row.values} for row in known.values()
+    ]
+    cases = [*_cases(request.engines, reached), *_cases(request.engines, [row.case for row in known.values()])]
+    found = yield Batch(cases, of_engine, "engines")
+    rows += [_run_row(row, known) for row in found]
+    log("analytic boundaries of drawn statues")
+    statues = drawn_edges(count if boundaries is None else boundaries)
+    rows += [{"part": "drawn edge", **vars(edge), **drawn_columns(scene)} for scene, edge in statues]
+    runs = Runs({edge.ground: scene for scene, edge in statues})
+    rows += yield from runs.search_usual("drawn shift", request.engines, [edge for _, edge in statues])
+    variants = [(engine, variant) for engine in request.engines for variant in get_engine(engine).variants]
+    settings = {
+        "quick": request.quick,
+        "scenes": most,
+        "below_range": most - len(reached),
+        "sliders": sliding,
+        "range": in_words(),
+        "source": source,
+        "vertical": VERTICAL,
+        "ratio": USUAL_RATIO,
+        "peak": PEAKS,
+        "fewer": FEWER,
+        "tolerance": TOLERANCE,
+        "variants": list(itertools.starmap(variant_settings, variants)),
+        "faults": [
+            {"engine": engine, "variant": variant, "words": words}
+            for engine, variant in variants
+            if (words := get_engine(engine).variants[variant].faults)
+        ],
+        "default_variants": {engine: get_engine(engine).default_variant for engine in request.engines},
+    }
+    return Computed(settings, rows + runs.failures, seed=seed)
+
+
+def _recorded(folder: str | None) -> tuple[list[SampledMotion], str]:
+    """(recorded motions, where they come from), none where the package that has them is not installed."""
+    try:
+        found, _ = folder_motions(folder or PREFIX)
+    except SceneError:
+        if folder is not None:
+            raise
+        return [], ""
+    return [motion for motions in found.values() for motion in motions if motion.peak], source_of(folder)
+
+
+def _cases(engines: Sequence[str], known: Sequence[Case]) -> Iterator[Case]:
+    """Runs of scenes in engines: of all in the main variants of those in question, of one in `FEWER` in others."""
+    for engine in map(get_engine, engines):
+        for variant in engine.variants:
+            step = 1 if engine.subject and variant == engine.default_variant else FEWER
+            for case in known[::step]:
+                yield Case(case.scene, engine.name, variant, {"history": False}, {"index": case.tag["index"]})
+
+
+def fates(scenes: Sequence[Scene]) -> dict[str, np.ndarray]:
+    """What friction changes, shape (n,) of bool: the scenes as they are against the same without friction.
+
+    failed: the model has no answer to one of the two. undecided: one of the two has no certain end. Of the others:
+    moves: the block lifts or slides. lacking: without sliding it needs more than the friction, before any last fall.
+    slides: it slides and never lifts. falls_without: it overturns without friction. saved: so, but not with it.
+    overturned: with it alone. chosen: lacking, decided, and its peak tilt, if it lifts, within the range of a statue: a
+    scene for engines.
+    """
+    own, plain = simulate_many(scenes), simulate_many([scene.with_(friction=None) for scene in scenes], contact=True)
+    friction = np.array([scene.friction for scene in scenes])
+    slenderness = np.array([scene.block.slenderness for scene in scenes])
+    level = ~own.lifted & (friction < np.tan(slenderness))  # such a block cannot lift: |H| <= mu N < N tan(gamma)
+    failed = own.failed | plain.failed
+    sound = ~failed & (own.decided | level) & plain.decided
+    lacking = sound & ((plain.friction_demand > friction) | (plain.min_normal_ratio <= 0))
+    small = own.lifted & (own.peak_tilt < RANGE["tilt"][0] * slenderness)
+    falls, falls_without = sound & (own.names == FALLS), sound & (plain.names == FALLS)
+    return {
+        "runs": np.ones(len(scenes), dtype=bool),
+        "failed": failed,
+        "undecided": ~failed & ~sound,
+        "moves": sound & ((own.names != "stands") | (plain.names != "stands")),
+        "lacking": lacking,
+        "slides": sound & (own.names == "slides"),
+        "falls_without": falls_without,
+        "saved": falls_without & ~falls,
+        "overturned": falls & ~falls_without,
+        "chosen": lacking & own.decided & ~small,
+    }
+
+
+def _ensemble(
+    records: Sequence[SampledMotion], seed: int, most: int, few: int
+) -> tuple[list[dict[str, Any]], list[Case]]:
+    """(rows of cells, the first `few` scenes with friction for engines)."""
+    counts: dict[tuple[Any, ...], dict[str, int]] = {}
+    chosen: list[Case] = []
+    for begin in range(0, most, CHUNK):
+        numbers = range(begin, min(begin + CHUNK, most))
+        scenes, kinds = zip(*(random_slider(records, seed, index) for index in numbers), strict=True)
+        found = fates(scenes)
+        engines = found.pop("chosen")
+        for k, (index, scene, kind) in enumerate(zip(numbers, scenes, kinds, strict=True)):
+            place = SUPPORTS[scene.base is not None], kind, _bin(scene.friction)
+            cell = counts.setdefault(place, dict.fromkeys(found, 0))
+            for name, values in found.items():
+                cell[name] += int(values[k])
+            if engines[k] and len(chosen) < few:
+                tag = {"index": index, "support": place[0], "motion": kind, "friction": scene.friction}
+                tag |= {"slenderness": scene.block.slenderness, "raised": scene.motion.vertical is not None}
+                chosen.append(Case(scene, settings={"history": False}, tag=tag))
+    ends = np.linspace(*FRICTION, BINS + 1).round(12).tolist()
+    rows = [
+        {"part": "cell", "engine": "analytic", "variant": "", "support": support, "motion": kind}
+        | {"friction": [ends[k], ends[k + 1]], **cell}
+        for support, kind, k in itertools.product(SUPPORTS, MOTIONS, range(BINS))
+        if (cell := counts.get((support, kind, k)))
+    ]
+    return rows, chosen
+
+
+def _bin(friction: float) -> int:
+    low, high = FRICTION
+    return min(int(BINS * (friction - low) / (high - low)), BINS - 1)
+
+
+def of_model(case: Case, response: Response) -> dict[str, Any]:
+    """Measure of the model's run; slip: largest, over the block's half width."""
+    return {
+        "outcome": response.outcome,
+        "comparable": Reference.of(case.scene, response).comparable,
+        "slip": _slip(response) / case.scene.block.half_width,
+        "tilt": response.peak_tilt_ratio,
+    }
+
+
+def of_engine(case: Case, response: Response) -> dict[str, Any]:
+    """Measure of an engine's run: in what it differs from the model; without friction its class, with it its errors.
+
+    slip_error, tilt_error: of the peaks, of a block that stays upright in both; None of a slip that is none, see
+    `engines.checks`. slipping, sticking: errors of the restitution at impacts in which the model's corner slides before
+    or after, and at others; lost: slipping ones without a match.
+    """
+    scene, reference = case.scene, Reference.of(case.scene)
+    differences = compare(scene, response, reference).differences
+    quantities = [one.quantity for one in differences]
+    told = {"differences": [str(one) for one in differences], "quantities": quantities}
+    if scene.friction is None:
+        comparable = reference.comparable
+        return {"class": class_of(comparable, quantities), "comparable": comparable, **told}
+    model, radius = reference.model, scene.block.radius
+    assert model is not None  # of_model had one
+    upright, slips = FALLS not in (response.outcome, model.outcome), (_slip(response), _slip(model))
+    return {
+        "outcome": response.outcome,
+        **told,
+        "slip_error": _error(*slips, LEAST_SLIP / PEAK * radius)
+        if upright and max(slips) >= LEAST_SLIP * radius
+        else None,
+        "tilt_error": _error(response.peak_tilt_ratio, model.peak_tilt_ratio, LEAST_TILT) if upright else None,
+        **_restitutions(scene, model, response, reference.until),
+        "simulated": response.end.time,
+    }
+
+
+def _error(here: float, there: float, least: float) -> float:
+    """Relative error of a peak; one that is too small to count is compared as one that just does."""
+    return (here - there) / max(there, least)
+
+
+def _slip(response: Response) -> float:
+    return response.sliding.peak if response.sliding else 0.0
+
+
+def _restitutions(scene: Scene, model: Response, run: Response, until: float) -> dict[str, Any]:
+    """Errors of the restitution at impacts up to a time, see `of_engine`."""
+    end = min(until, model.end.time, run.end.time) - LAST * 2 * math.pi / scene.rocking_frequency
+    own = impacts_of(run)
+    wanted, partner = matched(scene, impacts_of(model), own, end)
+    slips = np.array([slips_at(model, time) for time in wanted[:, 0]], dtype=bool)
+    met = partner >= 0
+    errors = own[partner[met], 2] / own[partner[met], 1] - wanted[met, 2] / wanted[met, 1]
+    return {
+        "slipping": errors[slips[met]].tolist(),
+        "sticking": errors[~slips[met]].tolist(),
+        "lost": int((slips & ~met).sum()),
+    }
+
+
+def slips_at(model: Response, time: float) -> bool:
+    """Whether the corner slides before or after an impact of the model."""
+    modes = model.sliding.modes if model.sliding else ()
+    before = [mode for when, mode in modes if when < time][-1:]
+    after = [mode for when, mode in modes if when <= time][-1:]
+    return "slide-rock" in (*before, *after)
+
+
+def _run_row(row: Row, known: Mapping[int, Row]) -> dict[str, Any]:
+    """The row of a run; a failed one is left out where no run of its scene is judged, of all engines alike.
+
+    known: the model's runs of the scenes with friction, by their number.
+    """
+    case, values = row.case, dict(row.values)
+    model = None if case.scene.friction is None else known[case.tag["index"]]
+    comparable = model.values["comparable"] if model else Reference.of(case.scene).comparable
+    found = {
+        "part": "run",
+        "engine": case.solver,
+        "variant": case.variant,
+        "tier": get_engine(case.solver).variants[case.variant or ""].kind,
+        "index": case.tag["index"],
+        "friction": case.scene.friction,
+        "class": class_of(comparable, values.get("quantities")),
+        "comparable": comparable,
+    }
+    if row.failed:
+        return {**found, "outcome": "failed", "failure": row.failure}
+    if model:
+        cpu = row.cost["cpu_seconds"]
+        values |= {"cpu_per_second": cpu / values.pop("simulated"), "cpu_ratio": cpu / model.cost["cpu_seconds"]}
+    return {**found, **values}
+
+
+BOUNDARY_SEED = 46
+FREQUENCY = (1.5, 8.0)  # of the pulses over omega_r, evenly over the logarithm
+APART = 0.02  # relative distance of the next boundary, at least: nearer ones alternate as a fractal's do
+
+
+def drawn_edges(count: int) -> list[tuple[Scene, Edge]]:
+    """`count` statues with their lowest boundary at which the model keeps the block pressed on its base.
+
+    Scenes of `random_scene`, at rest; the pulses' shapes take turns. A statue without such a boundary, and one that has
+    another boundary within `APART` of it, is passed over.
+    """
+    found: list[tuple[Scene, Edge]] = []
+    index = 0
+    while len(found) < count:
+        scene = random_scene(BOUNDARY_SEED, index).with_(motion=None, start=Start())
+        low, high = map(math.log, FREQUENCY)
+        frequency = math.exp(np.random.default_rng([BOUNDARY_SEED, index, 1]).uniform(low, high))
+        index += 1
+        for edge in edges(scene, f"drawn block {index}", SHAPES[len(found) % len(SHAPES)], (frequency,)):
+            room = min(1 - edge.low / edge.amplitude, edge.high / edge.amplitude - 1)
+            if edge.rises and edge.min_normal >= 0 and room >= APART:
+                found.append((scene, edge))
+                break
+    return found
+
+
+def drawn_columns(scene: Scene) -> dict[str, Any]:
+    """The columns that say what was drawn; period [s] on the stiffness after yielding."""
+    base, bearings = scene.base, scene.bearings
+    law = BearingLaw.of(bearings)
+    period = 2 * math.pi * math.sqrt(scene.total_mass / (law.count * law.kb)) if bearings else None
+    return {
+        "slenderness": scene.block.slenderness,
+        "radius": scene.block.radius,
+        "base_mass": base and base.mass / scene.block.mass,
+        "law": bearings and bearings.law,
+        "period": period,
+    }

@@ -1,0 +1,292 @@
+"""The study of drawn statues: what is run, which fate a scene has, and that tables, titles and marks count the rows."""
+
+import math
+
+import numpy as np
+import pytest
+from answered import answered, by_model, stored
+from page_numbers import number_in
+from sliding_scenes import LOST, SAVED, SLIDES, scene_of
+
+from analytic import Block, PulseMotion, Scene, SceneError, Start, simulate, synthetic_motion
+from analytic.response import COMPARED, EDGE
+from comparisons.ensembles.statues import SHAPES, random_slider
+from comparisons.measuring.boundaries import pulse
+from comparisons.running.by_solver import read
+from comparisons.running.cases import Case
+from comparisons.running.plan import Request
+from comparisons.running.provenance import RESULTS
+from comparisons.running.sweep import Row
+from comparisons.showing.parts import NAME, number, where
+from comparisons.showing.wording import ENDS, TURNED
+from comparisons.studies import get_study
+from comparisons.studies.statues import study
+from comparisons.studies.statues.page import DRAWN, NONE, SHARES, summed
+from comparisons.studies.statues.study import SUPPORTS, fates
+from engines import ENGINES, get_engine
+from engines.statue_range import outside
+
+NAMES = [name for name, engine in ENGINES.items() if engine.installed][:2]
+RECORDS = (synthetic_motion(seed=1).scaled(0.5), synthetic_motion(seed=2))
+STUDY = get_study("statues")
+STANDS = scene_of(5.0, 0.2, motion=SAVED.motion.scaled(0.2))
+FALLEN = {"kind": "solver", "reason": "fell over", "message": "step 3"}
+
+
+@pytest.fixture(autouse=True)
+def records(monkeypatch):
+    """Two made-up motions in place of the recorded ones, which need not be installed."""
+    monkeypatch.setattr(study, "folder_motions", lambda folder: ({"a": RECORDS[:1], "b": RECORDS[1:]}, []))
+
+
+@pytest.fixture(scope="module")
+def result():
+    return read(RESULTS / "statues")
+
+
+def computed(tmp_path, run=None, engines=NAMES, boundaries=0):
+    plan = STUDY.plan(Request(tuple(engines), True), boundaries, seed=3, scenes=12, sliders=80)
+    return stored(tmp_path, "statues", answered(plan, run or by_model())[-1])
+
+
+def test_without_the_package_of_records_none_is_drawn_and_an_own_folder_must_be_there(monkeypatch):
+    def missing(folder):
+        raise SceneError("motion.record", folder, "not installed", "install it")
+
+    monkeypatch.setattr(study, "folder_motions", missing)
+    assert study._recorded(None) == ([], "")
+    with pytest.raises(SceneError, match="not installed"):
+        study._recorded("mine")
+
+
+@pytest.mark.parametrize("amplitude, word", [(2.0, "failed"), (6.0, "left out")])  # [g]; at 6 g the model's N < 0
+def test_a_run_that_failed_is_left_out_where_no_run_is_compared(amplitude, word):
+    block = Block(mass=1000.0, radius=1.0, slenderness=0.2)
+    scene = Scene(block=block, motion=PulseMotion("one-sine", amplitude * 9.81, 20.0))
+    case = Case(scene, NAMES[0], get_engine(NAMES[0]).default_variant, tag={"index": 0})
+    row = study._run_row(Row(case, {}, FALLEN, {}, False), {})
+    assert row["class"] == word and (row["comparable"] == COMPARED) == (word == "failed")
+
+
+def test_fates_are_those_of_the_known_cases():
+    """19 of the reference cases is saved by sliding, 21 overturned by it; one slides only, one needs less."""
+    scenes = [scene.with_(duration=None) for scene in (SAVED, LOST, SLIDES, STANDS)]
+    found = fates(scenes)
+    counted = [{name for name, values in found.items() if values[k]} for k in range(len(scenes))]
+    shared = {"runs", "moves", "lacking", "chosen"}
+    assert counted[0] == shared | {"falls_without", "saved"}
+    assert counted[1] == shared | {"overturned"}
+    assert counted[2] == shared | {"slides"}
+    assert counted[3] == {"runs"} and simulate(scenes[3], history=False).outcome == "stands"
+
+
+def test_what_a_run_leaves_open_is_undecided_unless_its_block_can_never_lift():
+    """A level block with a friction below tan(gamma) cannot, whatever its slip comes to."""
+    pushed = SLIDES.with_(motion=SLIDES.motion.scaled(6))
+    found = fates([pushed.with_(duration=0.5), pushed.with_(duration=0.2)])  # the motion lasts .52 s
+    assert not simulate(pushed.with_(duration=0.5), history=False).decided
+    assert found["undecided"].tolist() == [False, True] and found["falls_without"].tolist() == [True, False]
+    assert found["slides"].tolist() == [True, False] and not found["chosen"].any()
+
+
+def test_an_impact_slips_where_the_corner_slides_before_or_after():
+    """With mu_c below the friction the impact of a block that did not slide before does not slip."""
+    sticks = simulate(scene_of(0.6, start=Start(tilt=0.168), duration=4.0), history=False)
+    assert sticks.impact_count == 3 and not any(study.slips_at(sticks, impact.time) for impact in sticks.impacts)
+    slides = simulate(LOST, history=False)
+    (impact,) = slides.impacts
+    assert study.slips_at(slides, impact.time)
+    assert "slide-rock" in [mode for when, mode in slides.sliding.modes if when == impact.time]
+
+
+def test_the_model_in_an_engines_place_is_right_without_error():
+    case = Case(LOST.with_(duration=None), NAMES[0], None, {}, {})
+    response = simulate(case.scene, history=False)
+    values = study.of_engine(case, response)
+    assert (values["quantities"], values["slip_error"], values["lost"]) == ([], None, 0)
+    assert values["slipping"] == [0.0] and values["sticking"] == []
+    upright = study.of_engine(Case(SAVED, NAMES[0]), simulate(SAVED, history=False))
+    assert upright["slip_error"] == upright["tilt_error"] == 0.0 and len(upright["sticking"]) == 2
+
+
+def test_errors_of_the_slip_are_relative_and_a_small_one_counts_as_one_that_just_does():
+    case = Case(SLIDES, NAMES[0])
+    less = study.of_engine(case, simulate(SLIDES.with_(friction=0.21), history=False))
+    here, there = (simulate(SLIDES.with_(friction=mu), history=False).sliding.peak for mu in (0.21, 0.2))
+    assert less["slip_error"] == pytest.approx(here / there - 1) and "peak_slip" in less["quantities"]
+    radius = SLIDES.block.radius
+    for friction, low, high in ((0.407, 1e-4, 5e-3), (0.4077, 1e-8, 1e-4)):  # just below the acceleration over g
+        hardly = SLIDES.with_(friction=friction)
+        slip = simulate(hardly, history=False).sliding.peak
+        stuck = study.of_engine(Case(hardly, NAMES[0]), simulate(hardly.with_(friction=0.42), history=False))
+        assert low < slip / radius < high
+        assert stuck["slip_error"] == (None if low < 1e-5 else pytest.approx(-slip / (0.005 * radius)))
+
+
+def test_cells_hold_every_scene_once_and_engines_run_those_that_slide_beside_those_without_a_friction(tmp_path):
+    result = computed(tmp_path)
+    cells, scenes = where(result.rows, part="cell"), where(result.rows, part="scene")
+    assert sum(cell["runs"] for cell in cells) == 80 and len(scenes) == 10
+    drawn = [random_slider(RECORDS, 3, index)[0] for index in range(80)]
+    assert [row["index"] for row in scenes] == np.flatnonzero(fates(drawn)["chosen"]).tolist()[:10]
+    for row in scenes:
+        scene = drawn[row["index"]]
+        assert row["outcome"] == simulate(scene, history=False).outcome and row["friction"] == scene.friction
+    free = 12 - result.settings["below_range"]
+    for name in NAMES:
+        engine = get_engine(name)
+        for variant in engine.variants:
+            mine = where(result.rows, part="run", engine=name, variant=variant)
+            step = 1 if engine.subject and variant == engine.default_variant else 5
+            counts = [sum((row["friction"] is None) == none for row in mine) for none in (True, False)]
+            assert counts == [math.ceil(free / step), math.ceil(10 / step)]
+            assert len(mine) == sum(row["class"] in ("right", "left out") for row in mine)
+    again = computed(tmp_path)
+    assert again.rows == result.rows or _timeless(again.rows) == _timeless(result.rows)
+
+
+def _timeless(rows):
+    return [{key: value for key, value in row.items() if not key.startswith("cpu_")} for row in rows]
+
+
+def test_shares_and_the_lead_count_the_cells(tmp_path):
+    result = computed(tmp_path)
+    cells, page = where(result.rows, part="cell"), STUDY.page(result)
+    (every,) = summed(cells, lambda cell: "all")
+    falls = sum(cell["falls_without"] for cell in cells)
+    others = sum(cell["runs"] - cell["failed"] - cell["undecided"] - cell["falls_without"] for cell in cells)
+    saved, lost = (sum(cell[name] for cell in cells) for name in ("saved", "overturned"))
+    assert f"saves {saved} of {falls} " in page.lead[-1] and f"overturns {lost} of {others} " in page.lead[-1]
+    (table,) = (table for table in page.whole().tables if table.caption.startswith("The analytic model"))
+    assert [row[0] for row in table.rows] == [*SUPPORTS, "all"] and f"{saved} of {falls}, " in " ".join(table.rows[-1])
+    assert every["saved_within"][0] < every["saved_share"] < every["saved_within"][1] and len(SHARES) == 3
+
+
+def test_tables_and_marks_count_the_stored_rows(result):
+    table, judgements = STUDY.page(result).opening().tables[0], STUDY.judgements(result)
+    marks = {NONE: judgements[1].marks, DRAWN: judgements[2].marks}
+    share, edge = (
+        table.columns.index(head)
+        for head in ("right, of those not left out", "near an outcome boundary, and beyond it")
+    )
+    assert len(table.rows) == sum(map(len, marks.values()))
+    for row in table.rows:
+        name, _, scenes = row[:3]
+        mine = [
+            one
+            for one in where(result.rows, part="run")
+            if NAME.of(one) == name and (one["friction"] is None) == (scenes == NONE)
+        ]
+        right, differs, failed, left_out = (
+            len(where(mine, **{"class": word})) for word in ("right", "differs", "failed", "left out")
+        )
+        counts = {head: int(cell) for head, cell in zip(table.columns[3:share], row[3:share], strict=True)}
+        near = where(mine, comparable=EDGE)
+        beyond = sum(bool(one.get("failure") or one.get("differences")) for one in near)
+        assert row[edge] == f"{beyond} of {len(near)}" and all(one["class"] == "left out" for one in near)
+        assert sum(counts.values()) == len(mine)
+        assert (counts.pop("right [-]"), counts.pop("failed [-]")) == (right, failed)
+        assert sum(count for head, count in counts.items() if head.startswith("left out")) == left_out
+        assert counts[ENDS["edge"]] == len(near) and counts[ENDS[TURNED]] == turned(result, mine)
+        judged = right + differs + failed
+        assert number_in(row[share]) == pytest.approx(100 * right / judged, rel=0.06)
+        sound = [one for one in mine if one["class"] in ("right", "differs")]
+        alike = sum("outcome" not in one["quantities"] for one in sound)
+        mark = marks[scenes][tuple(name.split(", "))]
+        assert mark.words == f"{right} of {judged}"
+        assert mark.note == (
+            f"outcome right in {alike}; {differs} differ, {failed} failed; "
+            + f"left out: {len(near)} near an outcome boundary"
+            + f", {left_out - len(near)} otherwise" * (left_out > len(near))
+        )
+
+
+def turned(result, rows):
+    """Runs of which one of engine and model overturns: by the outcomes, or by the sentence where no row keeps them."""
+    model = {row["index"]: row["outcome"] for row in where(result.rows, part="scene")}
+    found = 0
+    for row in where(rows, **{"class": "differs"}):
+        told = [words.split(", in the analytic model it ") for words in row["differences"]]
+        ends = [(first.removeprefix("the block "), *more) for first, *more in told]
+        ends = ends if row["friction"] is None else [(row["outcome"], model[row["index"]])]
+        found += any(len(pair) == 2 and (pair[0] == "overturns") != (pair[1] == "overturns") for pair in ends)
+    return found
+
+
+def test_what_is_right_as_a_whole_in_its_outcome_and_at_slipping_impacts_is_told_apart(result):
+    """From stored rows, counted here by hand: three counts that differ, each with what it counts."""
+    told = STUDY.page(result).lead[1]
+    for name in (name for name, engine in ENGINES.items() if engine.subject):
+        runs = where(result.rows, part="run", engine=name, variant=get_engine(name).default_variant)
+        runs = [row for row in runs if row["class"] != "left out" and row["friction"] is not None]
+        other = sum("failure" in row or "outcome" in row["quantities"] for row in runs)
+        hits = [error for row in runs for error in row["slipping"]]
+        for count in (
+            f"{sum(row['class'] == 'right' for row in runs)} of {len(runs)}",
+            other,
+            number(math.sqrt(np.mean(np.square(hits))), 2),
+        ):
+            assert f" {count} ({name})" in told
+    assert "is one for impacts without" in told
+
+
+def test_every_run_that_failed_is_evidence_and_every_tuned_one_that_differs_is_named(result):
+    section = STUDY.page(result).whole()
+    failed = where(result.rows, **{"class": "failed"})
+    assert [head for head, _ in section.evidence[: len(failed)]] == [
+        f"{NAME.of(row)}, scene {row['index']}: {row['failure']['reason']}" for row in failed
+    ]
+    (table,) = (table for table in section.tables if table.caption.startswith("Runs that differ"))
+    differ = [row for row in where(result.rows, **{"class": "differs"}) if row["tier"] != "defaults"]
+    assert [(row[0], int(row[1])) for row in table.rows] == [(NAME.of(row), row["index"]) for row in differ]
+
+
+def test_without_engines_the_model_alone_is_shown(tmp_path):
+    page = STUDY.page(computed(tmp_path, engines=())).whole()
+    assert page.figures and [table.caption[:18] for table in page.tables] == ["The analytic model"]
+
+
+def test_known_faults_of_variants_that_were_run_are_said(tmp_path, monkeypatch):
+    engine = get_engine(NAMES[0])
+    spec = engine.variants[engine.default_variant]
+    monkeypatch.setitem(vars(spec), "faults", "it slides up hill")
+    page = STUDY.page(computed(tmp_path))
+    assert f"{NAMES[0]}, {engine.default_variant}: it slides up hill" in page.whole().shown
+
+
+def test_drawn_statues_lie_in_the_promised_range_and_have_one_boundary_to_find():
+    found = study.drawn_edges(5)
+    assert [edge.shape for _, edge in found] == list(SHAPES) and len({edge.ground for _, edge in found}) == 5
+    for scene, edge in found:
+        assert scene.motion is None and not any(scene.start.model_dump().values())
+        assert not outside(scene, simulate(scene.with_(duration=1.0), history=False))
+        assert edge.rises and edge.min_normal >= 0 and study.FREQUENCY[0] <= edge.frequency <= study.FREQUENCY[1]
+        assert edge.low < 0.98 * edge.amplitude and edge.high > 1.02 * edge.amplitude
+        outcomes = [
+            simulate(scene.with_(motion=pulse(scene, edge.shape, edge.frequency, edge.amplitude * side))).outcome
+            for side in (0.995, 0.9999, 1.0001, 1.005)
+        ]
+        assert [outcome == "overturns" for outcome in outcomes] == [False, False, True, True]
+    again = study.drawn_edges(2)
+    assert [edge for _, edge in again] == [edge for _, edge in found[:2]]  # as many as one asks, the same first
+
+
+def test_boundaries_of_drawn_statues_are_rated_and_said(tmp_path):
+    """In place of the engines the model, shifted by .3 % under the pulses that a boundary is sought with."""
+    statues = {scene.block for scene, _ in study.drawn_edges(2)}
+
+    def moved(case):
+        sought = case.scene.block in statues and not case.tag
+        return case.scene.with_(motion=case.scene.motion.scaled(1 / 1.003)) if sought else case.scene
+
+    result = computed(tmp_path, by_model(moved), boundaries=2)
+    edges, shifts = where(result.rows, part="drawn edge"), where(result.rows, part="drawn shift")
+    assert len(edges) == 2 and len(shifts) == 2 * 4  # two engines, tuned and as they come
+    for row in shifts:
+        assert row["shift"] == pytest.approx(3e-3, abs=1.01 * row["half_width"])
+    judged, page = STUDY.judgements(result)[0], STUDY.page(result)
+    assert {mark.words for mark in judged.marks.values()} == {"0.30 % (2 of 2 drawn statues)"}
+    (drawn,) = (table for table in page.whole().tables if "Each drawn statue" in table.caption)
+    assert [row[0] for row in drawn.rows] == [edge["ground"] for edge in edges]
+    assert [number_in(row[1]) for row in drawn.rows] == pytest.approx([e["slenderness"] for e in edges], rel=5e-3)
+    assert "0.30 % at most" in page.title
