@@ -329,8 +329,8 @@ OWN_COLUMNS = ("motion", "overturned", "name", "record", "units")
 def read_campaign(
     folder: str | PathLike[str], every: int = 1, progress: Callable[[int, int], None] = lambda done, total: None
 ) -> Campaign:
-    """The campaign in a folder; every: only the first of so many tests that have a motion, or of fewer where these are
-    under one record.
+    """The campaign in a folder; every: only the first of so many tests that have a motion, or of fewer, see
+    `thinned`.
 
     Raises
     ------

@@ -300,7 +300,7 @@ def page(result: Result) -> Page:
             _right_of_engines(engines),
             Head("Each record held out in turn"),
             _scores("Share of right answers and Brier score (smaller is better), with 95 % intervals by record", main),
-            Head("The probability"),
+            Head("Compared in pairs"),
             _pairs(result),
             Head("What is fitted, and what is not known"),
             _fitted(result),

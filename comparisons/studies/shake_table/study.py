@@ -72,7 +72,7 @@ def plan(request: Request, *, data: Data = None) -> Plan:
     found, parts = zip(*(rows_of(campaign, k, one, names) for k, one in enumerate(known)), strict=True)
     rows = [row for part in parts for row in part] + pairs_of(campaign, found)
     settings = _settings(request, campaign, slendernesses) | {"kinds": names}
-    settings["model_runs"] = len(model) * len(kinds) * _grid(campaign)
+    settings["model_runs"] = len(model) * len(kinds) * known[0][0].slendernesses.size
     settings["cpu_seconds"] = float(sum(row.cost["grid_seconds"] for row in model))
     arrays = {
         f"right/{name}": np.array([(one[k].model == one[k].measured[:, None]).sum(axis=0) for one in known])
@@ -95,10 +95,6 @@ def plan(request: Request, *, data: Data = None) -> Plan:
 def _name(kind):
     words = (f"{name} {'' if name == 'friction' else 'times '}{value:g}" for name, value in kind.items())
     return ", ".join(words) or AS_IT_IS
-
-
-def _grid(campaign):
-    return len(campaign.specimens[0].slendernesses())
 
 
 def _variants(name: str) -> list[tuple[str, str, int]]:

@@ -20,6 +20,7 @@ from analytic.records import G
 from analytic.rocking import RockingModel
 from comparisons.measuring.statistics import wilson
 from comparisons.running import provenance
+from comparisons.running.by_solver import check_same, split
 from comparisons.running.plan import Request
 from comparisons.running.run_sample import sample_of
 from comparisons.showing.parts import where
@@ -374,6 +375,14 @@ def test_the_page_says_what_was_counted_and_not_what_is_not_told(found):
     assert "Tuned engines differ from the model in" in " ".join(page.text)
     said = " ".join(part for part in page.parts if isinstance(part, str))
     assert f"the same outcome in {result.settings['agree']}." in said
+
+
+def test_an_engine_may_be_computed_alone_though_the_cpu_time_of_the_model_is_another(found):
+    _, result = found
+    later = dataclasses.replace(result, settings=result.settings | {"cpu_seconds": 1.0})
+    own = get_study("shake-table")
+    assert not own.whole
+    check_same(own, split(result, [ENGINE])["analytic"], later, [ENGINE])
 
 
 def test_without_data_the_page_says_where_they_are_to_be_had(tmp_path):
