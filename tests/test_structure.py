@@ -77,7 +77,7 @@ BROAD = {
     "comparisons.report.answer": 1,  # the page of a result of another version, or of another package's study
     "comparisons.report.detail": 1,  # likewise; raised again where the code is that of the result
     "comparisons.studies": 1,  # another package is imported
-    "comparisons.studies.shake_table.granite": 1,  # openpyxl
+    "comparisons.studies.shake_table.campaign": 1,  # openpyxl
     "comparisons.cli.interrupts": 3,  # the process ends
     "comparisons.cli": 1,  # raised again, unless it is a message for the user
 }

@@ -17,7 +17,6 @@ from .statistics import draws
 
 DRAWS = 2000
 HALF = 0.5
-FEWEST = 5  # cases in a cell that is told
 STEPS, SMALL, SETTLED = 1000, 1e-8, 1e-6  # of the search; of the slope, at its end, a case
 RIDGE = 1e-6  # keeps the slope finite where outcomes are separated
 
@@ -135,24 +134,3 @@ def clustered(values: npt.ArrayLike, groups: Sequence[Any], seed: int = 0) -> li
     weights = draws(DRAWS, len(sizes), seed)
     low, high = np.percentile((weights @ sums) / (weights @ sizes), [2.5, 97.5])
     return [float(low), float(high)]
-
-
-def reliability(probability: npt.ArrayLike, happened: npt.ArrayLike, edges: Sequence[float]) -> list[dict[str, Any]]:
-    """Cells of probability between the edges: how many cases, their mean probability, how many happened.
-
-    A cell of fewer than `FEWEST` cases is joined to the one below it, the first to the one above.
-    """
-    probability, happened = np.asarray(probability, dtype=float), np.asarray(happened, dtype=bool)
-    place = np.clip(np.searchsorted(edges, probability, side="right") - 1, 0, len(edges) - 2)
-    cells: list[np.ndarray] = []
-    for k in range(len(edges) - 1):
-        members = np.flatnonzero(place == k)
-        if cells and (len(members) < FEWEST or len(cells[-1]) < FEWEST):
-            cells[-1] = np.concatenate([cells[-1], members])
-        else:
-            cells.append(members)
-    return [
-        {"size": len(one), "mean": float(probability[one].mean()), "happened": int(happened[one].sum())}
-        for one in cells
-        if len(one) >= FEWEST
-    ]

@@ -81,11 +81,6 @@ ROWS = {
             brier_interval misses false_alarms""",
         "paired": """engine variant specimen forecast beside difference interval more_right more_interval disagree
             right""",
-        "reliability": "engine variant specimen forecast size mean happened",
-        "where": "engine variant specimen among forecast size right",
-        "quarter": "engine variant specimen size ratio overturned mean",
-        "cell": "engine variant specimen size pga ratio overturned mean",
-        "run": "engine variant specimen slenderness outcomes failed cpu_seconds?",
         "engine": """engine variant tier specimen size failed both_stand both_overturn only_a only_b p_value?
             records_a records_b p_records? near on_edge equal interval right? low? high? misses? false_alarms?
             model_right? tilt?""",

@@ -26,6 +26,7 @@ from ...measuring.forecasts import (
     right,
     threshold,
 )
+from .campaign import ALL, Campaign, measures_of, outcomes_of
 
 BY_RECORD, BY_HALVES, IN_SAMPLE = "held out by record", "fitted to every other test", "fitted to the same tests"
 SPREADS = np.arange(1, 21) / 60  # of the normal spread, over the width of the grid of slendernesses
@@ -185,4 +186,77 @@ def paired(one: np.ndarray, other: np.ndarray, measured: np.ndarray, records: Se
         "more_interval": [len(more) * end for end in clustered(more, records)],
         "disagree": int(apart.sum()),
         "right": int(right(one, measured)[apart].sum()),
+    }
+
+
+TWICE = (MODEL, ONE, "PGA, threshold", THRESHOLD, "PGA and PGV, logistic", CURVE)  # judged in both ways
+PAIRS = ((MODEL, THRESHOLD), (MODEL, PGV), (MODEL, CURVE), (BEYOND, CURVE), (BOTH, MODEL), (MODEL, ONE))
+
+
+def rows_of(
+    campaign: Campaign, k: int, kinds: Sequence[Outcomes], names: Sequence[str]
+) -> tuple[dict[str, np.ndarray], list[dict]]:
+    """(probabilities of each forecast of specimen k, held out by record; its rows).
+
+    kinds, names: outcomes of the model over slenderness, of each kind.
+    """
+    tests, main = campaign.tests, kinds[0]
+    measured, records, measures = main.measured, [test.record for test in tests], measures_of(campaign)
+    shared = {"engine": "analytic", "variant": "", "specimen": campaign.specimens[k].name}
+    others = [outcomes_of(tests, other) for other in range(len(campaign.specimens)) if other != k]
+    settings = list(tests[0].authors[k]) if tests[0].authors else []
+    authors = {name: np.array([test.authors[k][name] for test in tests]) for name in settings}
+    found, rows = {}, []
+    for forecast in forecasts(main, measures, others[0] if others else None, authors):
+        ways = (BY_RECORD, *((BY_HALVES,) if forecast.name in TWICE else ()))
+        for how in (*ways, *((IN_SAMPLE,) if forecast.name in (AUTHORS, ONE) else ())):
+            probability = judged(forecast, records, how)
+            found.setdefault(forecast.name, probability)
+            said = score(probability, measured, records, forecast.sure)
+            rows.append({"part": "score", **shared, "forecast": forecast.name, "judged": how, **said})
+    said = score(of_each_record(measures["PGA"], measured, records), measured, records, sure=True)
+    rows.append({"part": "score", **shared, "forecast": EACH, "judged": IN_SAMPLE, **said})
+    rows += [_fit(shared, name, one, records) for name, one in zip(names, kinds, strict=True)]
+    return found, rows
+
+
+def pairs_of(campaign: Campaign, found: Sequence[dict[str, np.ndarray]]) -> list[dict[str, Any]]:
+    """Rows of forecasts in pairs, of each specimen and of all together; under one record they may err alike.
+
+    found: probabilities of each forecast, by specimen.
+    """
+    records, rows = [test.record for test in campaign.tests], []
+    shared = {"part": "paired", "engine": "analytic", "variant": ""}
+    groups = [([k], specimen.name) for k, specimen in enumerate(campaign.specimens)]
+    if len(groups) > 1:
+        groups.append((list(range(len(groups))), ALL))
+    for members, name in groups:
+        measured = np.concatenate([outcomes_of(campaign.tests, k) for k in members])
+        for pair in PAIRS:
+            first, other = (np.concatenate([found[k][which] for k in members]) for which in pair)
+            said = paired(first, other, measured, records * len(members))
+            rows.append({**shared, "specimen": name, "forecast": pair[0], "beside": pair[1], **said})
+    return rows
+
+
+def _fit(shared, name, outcomes, records):
+    """The model of a kind: what is fitted to all tests, and how good it is held out by record."""
+    whole = np.ones(len(records), dtype=bool)
+    mean, spread = outcomes.settings[outcomes.fitted(whole)]
+    alone = outcomes.best(whole)
+    probability = judged(Forecast(MODEL, outcomes.spread), records)
+    said = score(probability, outcomes.measured, records)
+    kept = {key: said[key] for key in ("size", "right", "brier", "brier_interval", "misses", "false_alarms")}
+    best = outcomes.model[:, alone]
+    beside = [place for place in (alone - 1, alone + 1) if 0 <= place < len(outcomes.slendernesses)]
+    return {
+        "part": "fit",
+        **shared,
+        "change": name,
+        "slenderness": float(outcomes.slendernesses[alone]),
+        "centre": float(mean),
+        "spread": float(spread),
+        "alone_right": int((best == outcomes.measured).sum()),
+        "neighbours": [int((outcomes.model[:, place] != best).sum()) for place in beside],
+        **kept,
     }

@@ -2,7 +2,7 @@
 
 Statistics, fixed before this run, though after a prototype on the same tests: right answers with the 95 % interval of a
 bootstrap over records, as tests under one record at several scales are alike; misses and false alarms; of engines the
-sign of their differences to the model (exact test); of probabilities the Brier score, reliability, and differences of
+sign of their differences to the model (exact test); of probabilities the Brier score, and differences of
 forecasts in pairs by the same bootstrap; who is right where two disagree. An engine is equal to the model where the
 upper end of the interval of the share of tests that it ends differently is below `EQUAL`.
 """
@@ -17,23 +17,15 @@ import typer
 from analytic import SceneError, SettingError
 from engines import get_engine
 
-from ...measuring.forecasts import FEWEST
 from ...measuring.statistics import EQUAL
 from ...running.cases import Case, variant_settings
 from ...running.plan import Batch, Computed, Plan, Request
 from ...running.progress import bar
 from ...running.provenance import Result
 from ...running.sweep import Row
-from . import at_hand, granite
-from .campaign import Campaign, outcomes_of
-from .judging import AS_IT_IS, MODEL, Outcomes
-from .reading import read_campaign
-from .runs import engine_rows, run_row
-from .shaking import OVERTURNS, ended, ended_near, leaning, over_slendernesses
-from .told import pairs_of, told_of
-
-# Why one engine's rows cannot be computed anew by themselves, see `Study.whole`.
-WHOLE = "what may be told of an engine's right answers depends on the outcomes of the others"
+from .campaign import WHERE, Campaign, outcomes_of, read_campaign, told
+from .judging import AS_IT_IS, Outcomes, pairs_of, rows_of
+from .runs import OVERTURNS, ended, ended_near, engine_rows, leaning, over_slendernesses
 
 SEED = 0  # of the bootstrap
 QUICK = 20  # of so many tests one
@@ -55,19 +47,18 @@ Data = Annotated[
 def plan(request: Request, *, data: Data = None) -> Plan:
     """The plan of the study; an answer with one variant more each time.
 
-    Rows by "part": "score" (of a forecast, see `judging`), "paired", "reliability", "cell", "quarter", "fit" (of the
-    model to all tests), "where", "run" (a solver's outcomes by test) and "engine" (beside the model's); "absent",
-    alone, without data. Arrays ``right/<kind>``: right answers of the model by specimen and slenderness. What is
-    stored: `telling`.
+    Rows by "part": "score" (of a forecast, see `judging`), "paired", "fit" (of the model to all tests), "engine"
+    (beside the model) and "failure"; "absent", alone, without data. Arrays ``right/<kind>``: right answers of the model
+    by specimen and slenderness. What is stored of the tests: `campaign.told`.
 
     Parameters
     ----------
     request : Request
     data : str, optional
-        Folder of the tests, see `reading`.
+        Folder of the tests, see `campaign`.
     """
     if data is None:
-        reason = f"--data is missing: {granite.WHERE}"
+        reason = f"--data is missing: {WHERE}"
         row = {"part": "absent", "engine": "analytic", "variant": "", "reason": reason}
         return Computed({"quick": request.quick, "campaign": "", "variants": []}, [row])
     with bar("reading the tests") as progress:
@@ -78,27 +69,23 @@ def plan(request: Request, *, data: Data = None) -> Plan:
     places = [one[0].best(np.ones(len(campaign.tests), dtype=bool)) for one in known]
     slendernesses = [float(one[0].slendernesses[place]) for one, place in zip(known, places, strict=True)]
     names = [_name(kind) for kind in kinds]
-    told, parts = zip(*(told_of(campaign, k, one, names) for k, one in enumerate(known)), strict=True)
-    rows = [row for part in parts for row in part] + pairs_of(campaign, told)
-    at_hand.keep(campaign, [one.forecasts[MODEL] for one in told])
+    found, parts = zip(*(rows_of(campaign, k, one, names) for k, one in enumerate(known)), strict=True)
+    rows = [row for part in parts for row in part] + pairs_of(campaign, found)
     settings = _settings(request, campaign, slendernesses) | {"kinds": names}
-    settings["model_runs"] = len(model) * len(kinds) * _grid(campaign)
-    settings["model_seconds"] = float(sum(row.cost["grid_seconds"] for row in model))
+    settings["model_runs"] = len(model) * len(kinds) * known[0][0].slendernesses.size
+    settings["cpu_seconds"] = float(sum(row.cost["grid_seconds"] for row in model))
     arrays = {
         f"right/{name}": np.array([(one[k].model == one[k].measured[:, None]).sum(axis=0) for one in known])
         for k, name in enumerate(names)
     }
     own = yield Batch(_at(campaign, slendernesses, "analytic", None, 1), ended_near, "model")
-    rows += [run_row(campaign, k, own, slendernesses[k]) for k in range(len(known))]
     answer = Computed(settings, rows, arrays, seed=SEED)
     yield answer
     for engine, variant, every in [one for name in request.engines for one in _variants(name)]:
-        found = yield Batch(
+        ran = yield Batch(
             _at(campaign, slendernesses, engine, variant, every), ended, f"{engine}, {variant}", TIME_LIMIT
         )
-        runs = [run_row(campaign, k, found, slendernesses[k]) for k in range(len(known))]
-        rows = [*rows, *runs, *engine_rows(campaign, runs, rows, (own, found))]
-        rows = [*rows, *(_failure(row) for row in found if row.failed)]
+        rows = [*rows, *engine_rows(campaign, own, ran), *(_failure(row) for row in ran if row.failed)]
         settings = {**settings, "variants": [*settings["variants"], variant_settings(engine, variant)]}
         answer = Computed(settings, rows, arrays, seed=SEED)
         yield answer
@@ -108,10 +95,6 @@ def plan(request: Request, *, data: Data = None) -> Plan:
 def _name(kind):
     words = (f"{name} {'' if name == 'friction' else 'times '}{value:g}" for name, value in kind.items())
     return ", ".join(words) or AS_IT_IS
-
-
-def _grid(campaign):
-    return len(campaign.specimens[0].slendernesses())
 
 
 def _variants(name: str) -> list[tuple[str, str, int]]:
@@ -224,13 +207,13 @@ def _missing(campaign):
     """Of the tests without a motion: how many there are and, where it says nothing of single ones, how many of them
     overturned; and geometric means of PGV/PGA [s] of them and of the others, where they are stated."""
     tests = campaign.missing
-    found: dict[str, Any] = {"tests": len(tests), "overturned": None, "ratios": None}
-    if len(tests) >= FEWEST:
+    found: dict[str, Any] = {"overturned": None, "ratios": None}
+    if tests:
         found["overturned"] = [int(outcomes_of(tests, k).sum()) for k in range(len(campaign.specimens))]
         if all("ratio" in test.stated for test in (*tests, *campaign.tests)):
             sides = ([test.stated["ratio"] for test in some] for some in (tests, campaign.tests))
             found["ratios"] = [float(np.exp(np.log(one).mean())) for one in sides]
-    return found
+    return {"tests": len(tests), **told(found, len(tests))}
 
 
 def _agree(tests):

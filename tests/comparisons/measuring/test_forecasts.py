@@ -1,14 +1,11 @@
 """Forecasts of a yes or no: scores, fits and intervals, against values by hand and by brute force."""
 
-import itertools
-
 import numpy as np
 import pytest
 from scipy.optimize import minimize
 
 from comparisons.measuring.forecasts import (
     DRAWS,
-    FEWEST,
     bent,
     brier,
     clustered,
@@ -17,7 +14,6 @@ from comparisons.measuring.forecasts import (
     held_out,
     logistic,
     middle,
-    reliability,
     right,
     threshold,
 )
@@ -120,21 +116,3 @@ def test_groups_widen_an_interval_and_do_not_where_each_is_alone():
     assert alone == pytest.approx([0.5 - 0.098, 0.5 + 0.098], abs=0.015)  # 1.96 sqrt(.25/100)
     assert together[1] - together[0] > 2.5 * (alone[1] - alone[0])  # sqrt(10) of it
     assert clustered(values, range(100)) == alone and clustered(values, range(100), seed=1) != alone
-
-
-@pytest.mark.parametrize("seed", range(6))
-def test_no_cell_of_reliability_is_small_and_none_of_the_cases_is_lost(seed):
-    rng = np.random.default_rng(seed)
-    size = int(rng.integers(5, 60))
-    probability = rng.beta(0.3, 0.3, size)
-    happened = rng.random(size) < probability
-    cells = reliability(probability, happened, (0.0, 0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 0.98, 1.0))
-    assert all(cell["size"] >= FEWEST for cell in cells)
-    assert sum(cell["size"] for cell in cells) == size and sum(cell["happened"] for cell in cells) == happened.sum()
-    assert all(one["mean"] < other["mean"] for one, other in itertools.pairwise(cells))
-
-
-def test_a_cell_of_reliability_by_hand():
-    cells = reliability([0.1] * 4 + [0.2] + [0.9] * 5, [False] * 4 + [True] + [True] * 4 + [False], (0.0, 0.5, 1.0))
-    assert [cell.pop("mean") for cell in cells] == pytest.approx([0.12, 0.9])
-    assert cells == [{"size": 5, "happened": 1}, {"size": 5, "happened": 4}]

@@ -7,8 +7,8 @@ import pytest
 from comparisons.measuring.statistics import wilson
 from comparisons.running.provenance import Result
 from comparisons.studies import get_study
+from comparisons.studies.shake_table.campaign import ALL
 from comparisons.studies.shake_table.judging import BY_RECORD, CURVE, FREQUENT, IN_SAMPLE, MODEL, ONE, THRESHOLD
-from comparisons.studies.shake_table.runs import ALL
 
 ENGINE = {"part": "run", "engine": "e", "variant": "v", "tier": "tuned"}
 VARIANT = {"engine": "e", "variant": "v", "tier": "tuned", "parameter": "step", "default": 1e-3}

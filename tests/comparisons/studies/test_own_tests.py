@@ -9,9 +9,8 @@ from table_tests import NAMES, SCENE, book, fell, labview, own, published, pulse
 from analytic import SceneError, SettingError
 from comparisons.running.plan import Request
 from comparisons.studies import get_study
-from comparisons.studies.shake_table import at_hand, campaign, granite, study
-from comparisons.studies.shake_table.measures import PADDED
-from comparisons.studies.shake_table.reading import read_campaign
+from comparisons.studies.shake_table import campaign, study
+from comparisons.studies.shake_table.campaign import FEWEST, PADDED, read_campaign
 from engines import ENGINES
 
 TESTS, ALL = 8, "motion,overturned,record\n"
@@ -73,7 +72,7 @@ DAMAGE = {
     "an empty list": (table(""), ("row 1", "no column 'motion'")),
     "no test": (table(ALL), ("no test has a motion",)),
     "no text": (table(b"\xff\xfe\x00"), ("tests.csv", "cannot be read")),
-    "no list": ({"tests.csv": None}, (granite.RESULTS, "tests.csv", granite.REPOSITORY)),
+    "no list": ({"tests.csv": None}, (campaign.RESULTS, "tests.csv", campaign.REPOSITORY)),
     "one test": (listed("0.csv,1,a"), ("tests.csv, record = 'a'", "1 in all", "add tests under a second record")),
     "one record": (
         listed(*(f"{n}.csv,{fell(n, 0)},a" for n in range(TESTS))),
@@ -82,6 +81,10 @@ DAMAGE = {
     "one motion under two records": (
         listed("0.csv,1,a", "1.csv,0,b", "0.csv,0,c"),
         ("tests.csv, row 4, record = 'c'", "row 2", "'a'", "one record"),
+    ),
+    "four tests": (
+        listed(*(f"{n}.csv,{n % 2},{n}" for n in range(FEWEST - 1))),
+        ("tests.csv: 4 tests", "fewer than 5 are not told", "add tests"),
     ),
     "at rest": (motion([0] * 50), ("tests.csv, row 4, motion = '2.csv'", "0 m/s2 throughout", "remove the test")),
     "constant": (motion([0.1] * 50), ("row 4, motion = '2.csv'", "0.1 m/s2 throughout", "remove the test")),
@@ -143,14 +146,11 @@ def test_the_command_ends_with_exit_code_2_and_writes_nothing(folder, rocking, t
     assert not list(out.glob("*.json"))
 
 
-def read_back(folder, place, monkeypatch):
-    """The result as the study's reader reads it, after its page was written with the tests at hand and without."""
+def read_back(folder, place):
+    """The result as the study's reader reads it, after its page was written."""
     answer = answered(study.plan(Request((ENGINE,)), data=str(folder)), by_model())[-1]
     result = stored(place, "shake-table", answer)
-    page = get_study("shake-table").page
-    assert page(result).whole().tables
-    monkeypatch.setattr(at_hand, "_READ", {})
-    assert page(result).whole().tables and result.rows == answer.rows
+    assert get_study("shake-table").page(result).whole().tables and result.rows == answer.rows
     return result
 
 
@@ -160,8 +160,8 @@ LITTLE = {
     "none overturned": listed(*(f"{n}.csv,0,{NAMES[n % 3]}" for n in range(TESTS))),
     "all overturned": listed(*(f"{n}.csv,1,{NAMES[n % 3]}" for n in range(TESTS))),
     "the smaller ones overturned": listed(*(f"{n}.csv,{int(n < 4)},{n}" for n in range(TESTS))),
-    "two tests": listed("0.csv,0,a", "7.csv,1,b"),
-    "two tests that end alike": listed("0.csv,0,a", "7.csv,0,b"),
+    "five tests": listed(*(f"{n}.csv,{int(n > 2)},{n}" for n in range(FEWEST))),
+    "five tests that end alike": listed(*(f"{n}.csv,0,{n}" for n in range(FEWEST))),
     "two records": listed(*(f"{n}.csv,{int(n % 3 == 0)},{n // 4}" for n in range(TESTS))),
     "two records, each of one outcome": listed(*(f"{n}.csv,{int(n > 3)},{n // 4}" for n in range(TESTS))),
     "one peak, which is the last sample": {f"{n}.csv": motion([0.5] * (9 + n) + [2.0])["2.csv"] for n in range(TESTS)},
@@ -175,31 +175,32 @@ LITTLE = {
 
 @pytest.mark.parametrize("files", LITTLE.values(), ids=LITTLE)
 @pytest.mark.filterwarnings("error::RuntimeWarning")
-def test_sound_tests_go_all_the_way_and_are_read_back(folder, files, tmp_path, monkeypatch):
-    result = read_back(damaged(folder, files), tmp_path, monkeypatch)
+def test_sound_tests_go_all_the_way_and_are_read_back(folder, files, tmp_path):
+    result = read_back(damaged(folder, files), tmp_path)
     assert len(result.settings["tests"]) == len((folder / "tests.csv").read_text().splitlines()) - 1
 
 
-def test_no_restitution_is_changed_of_a_block_that_slides(folder, tmp_path, monkeypatch):
+def test_no_restitution_is_changed_of_a_block_that_slides(folder, tmp_path):
     """The model knows none: with it, runs of the grid would fail, and count as standing."""
-    kinds = read_back(damaged(folder, scene("", "friction = 0.05\n")), tmp_path, monkeypatch).settings["kinds"]
+    kinds = read_back(damaged(folder, scene("", "friction = 0.05\n")), tmp_path).settings["kinds"]
     assert kinds == ["as it is", "friction 0.5"]
 
 
-def test_a_quick_look_keeps_two_records(folder):
-    assert len(read_campaign(folder, every=20).tests) == 2
-    damaged(folder, listed(*(f"{n}.csv,{fell(n, 0)},{int(n in (3, 6))}" for n in range(TESTS))))
-    assert [test.name for test in read_campaign(folder, every=5).tests] == ["1", "4", "7"]
+def test_a_quick_look_keeps_five_tests_and_two_records(tmp_path):
+    place = own(tmp_path, range(12), rate=50)
+    assert [test.name for test in read_campaign(place, every=20).tests] == ["1", "3", "5", "7", "9", "11"]
+    damaged(place, listed(*(f"{n}.csv,{fell(n, 0)},{int(n == 3)}" for n in range(12))))
+    assert len(read_campaign(place, every=20).tests) == 12
 
 
 def test_published_tests_are_asked_the_same(tmp_path):
     place = published(tmp_path, range(11, 14), packed=False, without=(12, 13))
-    with pytest.raises(SettingError, match=rf"{granite.RECORDS}, record = 'RSN4': no test .* \(1 in all\)"):
+    with pytest.raises(SettingError, match=rf"{campaign.RECORDS}, record = 'RSN4': no test .* \(1 in all\)"):
         read_campaign(place)
     write(place, labview(*pulse(0.0, 200)), "Test011.txt")
     with pytest.raises(SettingError, match=r"Test011.txt: is 0 m/s2 throughout, .* its file is left out\)"):
         read_campaign(place)
     titles = ["Test No. ", "Ground Motion", "PGV/PGA", "Scaled PGA (g)"]
-    book(place / granite.RECORDS, {"Sheet1": [titles, *([n, f"RSN{n}", 0.1, int(n > 11)] for n in range(11, 14))]})
-    with pytest.raises(SettingError, match=rf"{granite.RECORDS}, row 2, Scaled PGA \(g\) = 0: not above 0; fetch"):
+    book(place / campaign.RECORDS, {"Sheet1": [titles, *([n, f"RSN{n}", 0.1, int(n > 11)] for n in range(11, 14))]})
+    with pytest.raises(SettingError, match=rf"{campaign.RECORDS}, row 2, Scaled PGA \(g\) = 0: not above 0; fetch"):
         read_campaign(place)

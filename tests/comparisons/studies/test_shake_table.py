@@ -3,7 +3,6 @@ is what was counted. The real tests, where they are at hand: `REAL`."""
 
 import dataclasses
 import gzip
-import itertools
 import json
 import math
 import sys
@@ -19,16 +18,16 @@ from analytic import simulate
 from analytic.errors import SettingError
 from analytic.records import G
 from analytic.rocking import RockingModel
-from comparisons.measuring.forecasts import FEWEST, right
 from comparisons.measuring.statistics import wilson
 from comparisons.running import provenance
+from comparisons.running.by_solver import check_same, split
 from comparisons.running.plan import Request
 from comparisons.running.run_sample import sample_of
 from comparisons.showing.parts import where
 from comparisons.studies import get_study
 from comparisons.studies.rows import ROWS, read_study, wrong_with
-from comparisons.studies.shake_table import at_hand, campaign, granite, study
-from comparisons.studies.shake_table.campaign import outcomes_of
+from comparisons.studies.shake_table import campaign, study
+from comparisons.studies.shake_table.campaign import ALL, FEWEST, outcomes_of, read_campaign, told
 from comparisons.studies.shake_table.judging import (
     BY_RECORD,
     MODEL,
@@ -39,11 +38,7 @@ from comparisons.studies.shake_table.judging import (
     paired,
     score,
 )
-from comparisons.studies.shake_table.reading import read_campaign
-from comparisons.studies.shake_table.runs import ALL, answers, differences
-from comparisons.studies.shake_table.shaking import leaning, over_slendernesses
-from comparisons.studies.shake_table.telling import array_of, cell_rows, cells, may_be_told, quarter_rows, text_of
-from comparisons.studies.shake_table.told import ALIKE
+from comparisons.studies.shake_table.runs import answers, differences, leaning, over_slendernesses
 from engines import ENGINES
 
 RESULT = provenance.RESULTS / "shake-table"
@@ -88,9 +83,9 @@ def found(folder, small, tmp_path):
 @pytest.mark.parametrize("packed", [True, False])
 @pytest.mark.parametrize("rate", [200, 800])
 def test_the_published_layout_is_read_at_any_sampling(tmp_path, rate, packed):
-    place = published(tmp_path, range(11, 15), rate, packed, without=(13,))
+    place = published(tmp_path, range(11, 17), rate, packed, without=(13,))
     one = read_campaign(place)
-    assert [test.name for test in one.tests] == ["11", "12", "14"] and len(one.missing) == 1
+    assert [test.name for test in one.tests] == ["11", "12", "14", "15", "16"] and len(one.missing) == 1
     for test in one.tests:
         number = int(test.name)
         assert test.motion.dt == pytest.approx(1 / rate, rel=1e-12)
@@ -104,15 +99,15 @@ def test_the_published_layout_is_read_at_any_sampling(tmp_path, rate, packed):
 def test_a_checkout_of_the_repository_and_the_folder_in_it_are_one_campaign(tmp_path):
     place = tmp_path / "data" / "Shake_Table_Response"
     place.mkdir(parents=True)
-    published(place, range(11, 14))
+    published(place, range(11, 16))
     assert read_campaign(tmp_path).digest() == read_campaign(place).digest()
 
 
 def test_a_record_has_one_name_however_it_is_written():
     for words in ("'RSN1114_KOBE.xlsx'", " RSN1114_KOBE-NS.AT2 ", "RSN1114_KOBEx.xlsx'", "RSN1114_KOBE_A-2--T"):
-        assert granite.record_of(words) == "RSN1114"
-    assert granite.record_of("Somewhere ") == granite.record_of(" Somewhere") == "Somewhere"
-    assert granite.record_of("RSN11140_X") != "RSN1114"
+        assert campaign.record_of(words) == "RSN1114"
+    assert campaign.record_of("Somewhere ") == campaign.record_of(" Somewhere") == "Somewhere"
+    assert campaign.record_of("RSN11140_X") != "RSN1114"
 
 
 def test_ones_own_tests_are_read_with_the_slenderness_of_their_scene_as_a_hint(tmp_path):
@@ -122,7 +117,6 @@ def test_ones_own_tests_are_read_with_the_slenderness_of_their_scene_as_a_hint(t
     assert one.tests[3].motion.peak == pytest.approx(peak_of(3) * G, rel=1e-3)
     (block,) = one.specimens
     assert block.span == pytest.approx((0.055, 0.165)) and block.scene.motion is None
-    assert len(read_campaign(tmp_path, every=4).tests) == 2
 
 
 def refused(folder, *words):
@@ -136,7 +130,7 @@ def test_no_folder_and_a_folder_of_something_else_are_refused(tmp_path):
     refused(write(tmp_path, "", "file"), "no such folder")
     empty = tmp_path / "empty"
     empty.mkdir()
-    refused(empty, RESULTS, "tests.csv", granite.REPOSITORY)
+    refused(empty, RESULTS, "tests.csv", campaign.REPOSITORY)
 
 
 # what is done to the rows of the results: words of the message
@@ -174,7 +168,7 @@ def test_a_damaged_or_missing_workbook_a_missing_sheet_and_a_missing_reader_are_
 
 
 def test_damaged_motions_are_refused_and_missing_ones_left_out(tmp_path):
-    published(tmp_path, range(11, 14), packed=False)
+    published(tmp_path, range(11, 17), packed=False)
     text = labview(*pulse(0.2, 200))
     write(tmp_path, text.replace("\n0.5\t", "\n0.x\t", 1), "Test012.txt")
     refused(tmp_path, "Test012.txt: line ")
@@ -191,15 +185,15 @@ def test_damaged_motions_are_refused_and_missing_ones_left_out(tmp_path):
 
 
 def test_a_block_of_another_slenderness_keeps_its_height_and_its_inertia_about_its_centre():
-    for boulder, (mass, height, _) in zip(granite.specimens(), granite.BOULDERS.values(), strict=True):
+    for boulder, (mass, height, _) in zip(campaign.specimens(), campaign.BOULDERS.values(), strict=True):
         for angle in (0.04, 0.12, 0.24):
             block = leaning(boulder.scene, angle).block
             assert block.half_height == pytest.approx(height) and block.slenderness == angle
-            assert block.centre_inertia == pytest.approx(granite.INERTIA * granite.DENSITY) and block.mass == mass
+            assert block.centre_inertia == pytest.approx(campaign.INERTIA * campaign.DENSITY) and block.mass == mass
     scene = leaning(boulder.scene, 0.1, restitution=0.9, inertia=1.1, friction=0.4)
     plain = leaning(boulder.scene, 0.1, inertia=1.1)
     assert scene.block.restitution == pytest.approx(0.9 * RockingModel.of(plain).restitution) and scene.friction == 0.4
-    assert plain.block.centre_inertia == pytest.approx(1.1 * granite.INERTIA * granite.DENSITY)
+    assert plain.block.centre_inertia == pytest.approx(1.1 * campaign.INERTIA * campaign.DENSITY)
 
 
 def test_the_digits_over_slendernesses_are_those_of_single_runs(folder, small):
@@ -208,7 +202,7 @@ def test_the_digits_over_slendernesses_are_those_of_single_runs(folder, small):
         found = over_slendernesses(case, None)["outcomes"]
         for kind, text in zip(case.tag["kinds"], found, strict=True):
             single = [simulate(leaning(case.scene, one, **kind), history=False) for one in case.tag["slendernesses"]]
-            assert text == text_of(one.outcome for one in single)
+            assert text == "".join(str(int(one.outcome == "overturns")) for one in single)
 
 
 def test_the_probability_is_the_share_of_a_normal_spread_that_overturns():
@@ -240,61 +234,46 @@ def test_paired_differences_by_hand():
     assert said["difference"] == pytest.approx((0.16 - 0.01 + 0.49 - 0.04 + 0.64 - 0.36 + 0.01 - 0.16) / 4)
     low, high = said["interval"]
     assert (said["disagree"], said["right"]) == (1, 1) and low < said["difference"] < high
+    alone = score(one, np.array([True, False, False, False]), ["a", "b", "c", "d"])
+    assert (alone["right"], alone["misses"], alone["false_alarms"]) == (3, 0, 1)
     assert said["more_right"] == 1 and said["more_interval"] == pytest.approx([0, 3])  # of 4 groups one may come thrice
 
 
 def test_differences_of_an_engine_and_their_sign_by_hand():
     ours, theirs = "1111110000", "0000110x0-"
-    said = differences(theirs, ours, ["a", "a", "a", "b", "b", "c", "c", "d", "d", "e"], np.arange(10) < 2)
+    said = differences(
+        np.array(list(theirs)),
+        np.array(list(ours)),
+        np.arange(10) < 2,
+        ["a", "a", "a", "b", "b", "c", "c", "d", "d", "e"],
+    )
     assert (said["size"], said["failed"], said["only_a"], said["only_b"]) == (9, 1, 4, 0)
     assert (said["both_overturn"], said["both_stand"]) == (2, 2) and said["p_value"] == pytest.approx(0.125)
     assert (said["records_a"], said["records_b"], said["p_records"]) == (2, 0, pytest.approx(0.5))
     assert said["on_edge"] == 2 and said["interval"] == pytest.approx(wilson(5 / 9 * 4, 4))
 
 
+@pytest.mark.parametrize("sizes, few", [((5,), False), ((12, 0), False), ((4,), True), ((12, 1), True), ((0, 4), True)])
+def test_a_sum_over_fewer_than_five_tests_is_not_told(sizes, few):
+    assert told({"right": 3, "low": 0.1}, *sizes) == ({"right": None, "low": None} if few else {"right": 3, "low": 0.1})
+
+
 @pytest.mark.parametrize(
-    "text, others, told",
+    "engine, right, misses",
     [
-        ("1111100000", ["0000000000"], True),
-        ("1111000000", ["0000000000"], False),
-        ("0000000000", ["0000000000"], True),
-        ("11111-----", ["0000-00000"], False),
-        ("111110000x", ["1111100000"], False),
-        ("1111100000", ["0000000000", "1111110000"], False),
+        ("111111000000", 12, 0),  # as the model: its sums say no more
+        ("011111000000", None, None),  # beside the model's, its right answers say how one test ended
+        ("000000000000", 6, 6),
+        ("000000x00000", 5, None),  # misses and false alarms would say how the failed test ended
+        ("111111x00000", None, None),
+        ("11xxxxx00000", 7, 0),
+        ("1111--------", None, None),  # run on four tests
     ],
 )
-def test_right_answers_are_told_where_they_say_nothing_of_fewer_than_five_tests(text, others, told):
-    assert may_be_told(text, others) == told
-
-
-def test_a_failed_run_is_not_right_and_keeps_misses_and_false_alarms_back():
+def test_right_answers_are_told_where_no_difference_of_sums_is_of_fewer_than_five_tests(engine, right, misses):
     measured = np.array([True] * 6 + [False] * 6)
-    model = {"part": "run", "engine": "analytic", "variant": "", "specimen": "b", "outcomes": "111111000000"}
-    said = answers("000000x00000", [model], [], measured, list(range(12)))
-    assert (said["right"], said["model_right"], said["misses"], said["false_alarms"]) == (5, 12, None, None)
-    said = answers("000000000000", [model], [], measured, list(range(12)))
-    assert (said["right"], said["misses"], said["false_alarms"]) == (6, 6, 0)
-    assert answers("111111x00000", [model], [], measured, list(range(12)))["right"] is None
-
-
-@pytest.mark.parametrize("count", [5, 19, 20, 61, 490])
-def test_every_test_is_in_one_cell_of_five_or_more(count):
-    rng = np.random.default_rng(count)
-    x, y = rng.lognormal(size=(2, count))
-    found = cells(x, y)
-    assert sorted(np.concatenate(found).tolist()) == list(range(count)) and min(map(len, found)) >= FEWEST
-    rows = cell_rows((x, y), x > 1, np.where(x > 1, 0.9, 0.1))
-    assert sum(row["size"] for row in rows) == count and sum(row["overturned"] for row in rows) == (x > 1).sum()
-
-
-def test_quarters_hold_every_test_once_and_few_tests_have_none():
-    rng = np.random.default_rng(1)
-    ratio, fell_over = rng.lognormal(size=50), rng.random(50) < 0.4
-    rows = quarter_rows(ratio, fell_over, np.full(50, 0.25))
-    assert [row["size"] for row in rows] == [13, 13, 12, 12] and [row["mean"] for row in rows] == [0.25] * 4
-    assert sum(row["overturned"] for row in rows) == fell_over.sum()
-    assert [row["ratio"] for row in rows] == sorted(row["ratio"] for row in rows)
-    assert quarter_rows(ratio[:16], fell_over[:16], ratio[:16]) == []
+    said = answers(np.array(list(engine)), np.array(list("111111000000")), measured, list(range(12)))
+    assert (said["right"], said["misses"]) == (right, misses)
 
 
 def test_a_threshold_for_each_record_is_right_where_the_scale_alone_decides():
@@ -315,103 +294,32 @@ def test_what_the_missing_tests_did_is_told_as_sums_where_they_are_many(tmp_path
     assert "7 tests have no motion at hand" in words and "published at 800 Hz" in words
 
 
-# What a row may have of what was measured: sums over all tests, and over cells; by test there are our own outcomes.
-STORED = {
-    "score": {
-        "size",
-        "right",
-        "low",
-        "high",
-        "misses",
-        "false_alarms",
-        "brier",
-        "brier_interval",
-        "forecast",
-        "judged",
-    },
-    "fit": {
-        "change",
-        "slenderness",
-        "centre",
-        "spread",
-        "alone_right",
-        "neighbours",
-        "size",
-        "right",
-        "brier",
-        "brier_interval",
-    }
-    | {"misses", "false_alarms"},
-    "paired": {"forecast", "beside", "difference", "interval", "more_right", "more_interval", "disagree", "right"},
-    "reliability": {"forecast", "size", "mean", "happened"},
-    "where": {"among", "forecast", "size", "right"},
-    "quarter": {"size", "ratio", "overturned", "mean"},
-    "cell": {"size", "pga", "ratio", "overturned", "mean"},
-    "run": {"slenderness", "outcomes", "failed", "cpu_seconds"},
-    "engine": {"tier", "size", "failed", "both_stand", "both_overturn", "only_a", "only_b", "p_value", "records_a"}
-    | {
-        "records_b",
-        "p_records",
-        "near",
-        "on_edge",
-        "equal",
-        "interval",
-        "right",
-        "low",
-        "high",
-        "misses",
-        "false_alarms",
-        "model_right",
-    }
-    | {"tilt"},
-    "failure": {"test", "kind", "reason", "message"},
-    "absent": {"reason"},
-}
+# What there is of a campaign: sums over all tests, and over those that an engine ran.
 SETTINGS = {"quick", "campaign", "digest", "cite", "tests", "records", "missing", "steps", "overturned", "agree"}
-SETTINGS |= {"published", "specimens", "kinds", "equal", "others", "variants", "model_runs", "model_seconds"}
-OF_ALL = {"part", "engine", "variant", "specimen"}
+SETTINGS |= {"published", "specimens", "kinds", "equal", "others", "variants", "model_runs", "cpu_seconds"}
 
 
 @pytest.fixture(params=["computed here", "stored"])
-def told(request):
+def kept(request):
     """A result that was just computed of made-up tests, and the one that this project stores, of real ones."""
     if request.param == "stored":
         return read_study(RESULT)
     return request.getfixturevalue("found")[1]
 
 
-def test_no_column_is_stored_that_could_hold_what_was_measured_in_one_test(told):
-    assert ROWS["shake-table"].keys() == STORED.keys()
-    for row in told.rows:
-        assert row.keys() <= OF_ALL | STORED[row["part"]] and wrong_with(row, "shake-table") is None
-    assert told.settings.keys() == SETTINGS | {"changed_while_running"}
-    grid = len(told.settings["specimens"][0]["grid"])
-    assert {*told.arrays} == {f"right/{kind}" for kind in told.settings["kinds"]}  # sums over all tests
-    assert all(array.shape == (2, grid) for array in told.arrays.values()) and told.runs == []
-    for row in where(told.rows, part={"cell", "reliability", "quarter", "where"}):
-        assert row["size"] >= FEWEST
-    for row in where(told.rows, part="run"):
-        assert {*row["outcomes"]} <= set("01x-") and len(row["outcomes"]) == len(told.settings["tests"])
-
-
-def test_no_sum_beside_outcomes_by_test_says_what_was_measured_in_a_few(told):
-    for specimen in ("boulder 1", "boulder 2"):
-        runs = where(told.rows, part="run", specimen=specimen)
-        shown = [runs[0], *(run for run in runs[1:] if _row_of(told, run)["right"] is not None)]
-        for one, other in itertools.combinations(shown, 2):
-            pair = array_of(one["outcomes"]), array_of(other["outcomes"])
-            apart = int(((pair[0] != pair[1]) & (pair[0] != "-") & (pair[1] != "-")).sum())
-            assert apart == 0 or apart >= FEWEST
-
-
-def test_a_sum_that_says_too_much_is_kept_back(found):
-    _, result = found
-    assert any(row["right"] is None for row in where(result.rows, part="engine", specimen={"boulder 1", "boulder 2"}))
-
-
-def _row_of(result, run):
-    (row,) = where(result.rows, part="engine", **{key: run[key] for key in ("engine", "variant", "specimen")})
-    return row
+def test_nothing_is_stored_that_could_hold_what_was_measured_in_one_test(kept):
+    assert ROWS["shake-table"].keys() == {"score", "fit", "paired", "engine", "failure", "absent"}
+    for row in kept.rows:
+        assert wrong_with(row, "shake-table") is None and row.get("size", FEWEST) >= FEWEST
+        assert all(len(value) <= 2 for value in row.values() if isinstance(value, list))  # no series by test
+    assert kept.settings.keys() == SETTINGS | {"changed_while_running"}
+    grid = len(kept.settings["specimens"][0]["grid"])
+    assert {*kept.arrays} == {f"right/{kind}" for kind in kept.settings["kinds"]}  # sums over all tests
+    assert all(array.shape == (2, grid) for array in kept.arrays.values()) and kept.runs == []
+    for row in where(kept.rows, part="engine", specimen={"boulder 1", "boulder 2"}):
+        apart = row["only_a"] + row["only_b"] + row["failed"]
+        assert (row["right"] is None) == (0 < apart < FEWEST)
+        assert (row["misses"] is None) == (0 < apart < FEWEST or 0 < row["failed"] < FEWEST)
 
 
 def test_no_motion_of_a_table_is_stored_with_the_runs(folder, small):
@@ -438,60 +346,50 @@ def test_rows_of_the_study_are_what_was_counted(found, folder):
     assert result.settings["missing"] == {"tests": 2, "overturned": None, "ratios": None}  # too few to tell
     assert len(result.settings["tests"]) == len(one.tests) == 22
     for k, specimen in enumerate(("boulder 1", "boulder 2")):
-        measured = outcomes_of(one.tests, k)
         (row,) = where(result.rows, part="score", specimen=specimen, forecast=MODEL, judged=BY_RECORD)
-        hit = right(at_hand.of(result.settings).probabilities[k], measured)
-        assert row["right"] == hit.sum() and row["misses"] == (measured & ~hit).sum()
         assert row["misses"] + row["false_alarms"] == 22 - row["right"]
         (fit,) = where(result.rows, part="fit", specimen=specimen, change="as it is")
         grid = result.settings["specimens"][k]["grid"]
         best, counts = grid.index(fit["slenderness"]), result.arrays["right/as it is"][k]
-        assert counts[best] == fit["alone_right"] == counts.max()
-        ours = where(result.rows, part="run", engine="analytic", specimen=specimen)[0]
-        assert int((array_of(ours["outcomes"]) == np.where(measured, "1", "0")).sum()) == fit["alone_right"]
-        assert sum(cell["overturned"] for cell in where(result.rows, part="cell", specimen=specimen)) == measured.sum()
+        blocks = [leaning(one.specimens[k].scene, fit["slenderness"]).with_(motion=test.motion) for test in one.tests]
+        ended = np.array([simulate(block, history=False).outcome == "overturns" for block in blocks])
+        assert counts[best] == fit["alone_right"] == counts.max() == (ended == outcomes_of(one.tests, k)).sum()
         for row in where(result.rows, part="engine", specimen=specimen):
             assert row["failed"] == (specimen == "boulder 2") and row["only_b"] == 0 < row["only_a"] <= 2
     apart = sum(fell(n, 0) != fell(n, 1) for n in range(11, 35) if n not in (13, 20))
-    assert result.settings["agree"] == 22 - apart and 0 < apart < FEWEST
-    assert not where(result.rows, part="where", among=ALIKE)  # the rest would be few
+    assert result.settings["agree"] == 22 - apart
     for row in where(result.rows, part="engine", specimen=ALL):
         parts = where(result.rows, part="engine", engine=row["engine"], variant=row["variant"])
         assert row["only_a"] == sum(part["only_a"] for part in parts if part["specimen"] != ALL)
     assert len(where(result.rows, part="failure")) == len(result.settings["variants"]) > 1
 
 
-def test_the_page_with_the_campaign_at_hand_draws_every_test_and_without_it_cells(found, monkeypatch):
+def test_the_page_says_what_was_counted_and_not_what_is_not_told(found):
     _, result = found
-    page = get_study("shake-table").page(result)
-    text = page.whole()
-    here = "".join(figure.svg.decode() for figure in text.figures)
-    assert here.count("test 11: ") == 2 and "Every test: filled" in "".join(one.caption for one in text.figures)
-    assert "–" not in _right_of_engines(text)
-    monkeypatch.setattr(at_hand, "_READ", {})
-    bare = get_study("shake-table").page(result).whole()
-    cells_drawn = "".join(figure.svg.decode() for figure in bare.figures)
-    assert "test 11: " not in cells_drawn and "overturned; model" in cells_drawn
-    assert "–" in _right_of_engines(bare)
-    assert "slenderness, fitted to all tests" in bare.figures[0].caption and granite.DOI in " ".join(bare.measured)
-    assert "Tuned engines differ from the model in" in " ".join(bare.text)
-    said = " ".join(part for part in bare.parts if isinstance(part, str))
+    page = get_study("shake-table").page(result).whole()
+    (table,) = [one for one in page.tables if "beside what was measured" in one.caption]
+    places = [place for place, head in enumerate(table.columns) if head.endswith(": right")]
+    assert {row[place] for row in table.rows for place in places} == {"–"} and len(places) == 2
+    assert "slenderness, fitted to all tests" in page.figures[0].caption and campaign.DOI in " ".join(page.measured)
+    assert f"{ENGINE}, " not in page.figures[0].svg.decode()
+    assert "Tuned engines differ from the model in" in " ".join(page.text)
+    said = " ".join(part for part in page.parts if isinstance(part, str))
     assert f"the same outcome in {result.settings['agree']}." in said
 
 
-def _right_of_engines(section):
-    """Right answers of engines, as the page has them, of both specimens."""
-    (one,) = [one for one in section.tables if "beside what was measured" in one.caption]
-    places = [place for place, head in enumerate(one.columns) if head.endswith(": right")]
-    assert len(places) == 2
-    return [row[place] for row in one.rows for place in places]
+def test_an_engine_may_be_computed_alone_though_the_cpu_time_of_the_model_is_another(found):
+    _, result = found
+    later = dataclasses.replace(result, settings=result.settings | {"cpu_seconds": 1.0})
+    own = get_study("shake-table")
+    assert not own.whole
+    check_same(own, split(result, [ENGINE])["analytic"], later, [ENGINE])
 
 
 def test_without_data_the_page_says_where_they_are_to_be_had(tmp_path):
     (answer,) = answered(study.plan(Request(())), by_model())
     result = stored(tmp_path, "shake-table", answer)
     page = get_study("shake-table").page(result)
-    assert granite.REPOSITORY in " ".join(page.lead) and page.opening() is None
+    assert campaign.REPOSITORY in " ".join(page.lead) and page.opening() is None
     assert study.problems(result) and get_study("shake-table").judgements(result) == ()
 
 
@@ -501,18 +399,13 @@ def test_tests_of_ones_own_go_all_the_way(tmp_path, small):
     plan = study.plan(Request((ENGINE,)), data=str(own(place)))
     result = stored(tmp_path, "shake-table", answered(plan, by_model())[-1])
     assert result.settings["agree"] is None and result.settings["cite"] == ""
-    assert not where(result.rows, among=ALIKE) and not where(result.rows, specimen=ALL)
+    assert not where(result.rows, specimen=ALL)
     whole = get_study("shake-table").page(result).whole()
     words = " ".join((*whole.text, *whole.measured, *(part for part in whole.shown if isinstance(part, str)))).lower()
     assert whole.figures and "one campaign" in words
     assert not [word for word in ("granite", "boulder", "mesh", "referee", "first second") if word in words]
     assert len(get_study("shake-table").judgements(result)) == 1
     assert json.dumps(result.settings).find(str(tmp_path)) == -1  # no place of anyone's machine
-
-
-def test_quick_takes_one_test_in_twenty(folder, small):
-    answer = answered(study.plan(Request((), quick=True), data=str(folder)), by_model())[-1]
-    assert answer.settings["tests"] == ["11", "33"] or len(answer.settings["tests"]) == 2
 
 
 def test_real_runs_of_the_model_are_those_of_the_study(tmp_path, folder, monkeypatch):
