@@ -1,6 +1,7 @@
 """The house: three floors without a stair back up, no circle of modules, few parameters in what is compiled."""
 
 import ast
+from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
@@ -18,17 +19,21 @@ FILES = {
     for floor in FLOORS
     for file in (PROJECT / floor).rglob("*.py")
 }
-TREES = {name: ast.parse(file.read_text(encoding="utf-8")) for name, file in FILES.items()}
 PEAKS = ("peak_tilt", "peak_base_displacement", "peak_slip")
 IMPACTS = ("restitution", "impact_loss", "missing_impacts", "extra_impacts")
 MOST = 8  # parameters of a compiled function
+
+
+@cache
+def trees():
+    return {name: ast.parse(file.read_text(encoding="utf-8")) for name, file in FILES.items()}
 
 
 def imported(name):
     """Modules of the project that a module imports, wherever in it, for a type checker too."""
     package = name if FILES[name].name == "__init__.py" else name.rpartition(".")[0]
     found = set()
-    for node in ast.walk(TREES[name]):
+    for node in ast.walk(trees()[name]):
         if isinstance(node, ast.Import):
             found.update(alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -39,18 +44,20 @@ def imported(name):
     return (found & FILES.keys()) - {name}
 
 
-GRAPH = {name: imported(name) for name in FILES}
+@cache
+def graph():
+    return {name: imported(name) for name in FILES}
 
 
 def test_no_floor_imports_one_above_it():
-    for name, others in GRAPH.items():
+    for name, others in graph().items():
         floor = FLOORS.index(name.partition(".")[0])
         assert all(FLOORS.index(other.partition(".")[0]) <= floor for other in others), name
 
 
 def test_no_modules_import_each_other_in_a_circle():
     """`graphlib.CycleError` names the modules of a circle."""
-    assert len(list(TopologicalSorter(GRAPH).static_order())) == len(FILES) > 200
+    assert len(list(TopologicalSorter(graph()).static_order())) == len(FILES) > 200
 
 
 def test_no_study_imports_another_study():
@@ -60,7 +67,7 @@ def test_no_study_imports_another_study():
         parts = module.split(".")
         return parts[2] if parts[:2] == ["comparisons", "studies"] and len(parts) > 3 else None
 
-    pairs = {(study(name), study(other)) for name, others in GRAPH.items() for other in others}
+    pairs = {(study(name), study(other)) for name, others in graph().items() for other in others}
     assert not [pair for pair in pairs if None not in pair and len(set(pair)) > 1] and ("statues", "statues") in pairs
 
 
@@ -85,7 +92,7 @@ BROAD = {
 
 def test_any_exception_is_caught_only_where_foreign_code_runs_or_it_is_raised_again():
     found = {}
-    for name, tree in TREES.items():
+    for name, tree in trees().items():
         for node in ast.walk(tree):
             caught = [node.type] if isinstance(node, ast.ExceptHandler) else []
             if isinstance(node, ast.Call) and getattr(node.func, "attr", "") == "suppress":
@@ -97,7 +104,7 @@ def test_any_exception_is_caught_only_where_foreign_code_runs_or_it_is_raised_ag
 
 def test_sets_of_words_that_are_written_as_json_stand_in_one_place():
     """A schema takes its words from the list that the code goes by; `peak_slip` stood in one of two lists."""
-    for name, tree in TREES.items():
+    for name, tree in trees().items():
         for node in ast.walk(tree):
             if isinstance(node, ast.Subscript) and getattr(node.value, "id", "") == "Literal":
                 words = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
@@ -116,7 +123,7 @@ def test_what_is_keyed_by_a_set_of_words_has_all_of_them():
 def test_no_compiled_function_takes_more_parameters_than_one_can_keep_in_order():
     compiled = {"inner", "inlined", "entry", "njit"}
     found = {}
-    for name, tree in TREES.items():
+    for name, tree in trees().items():
         for node in ast.walk(tree):
             if isinstance(node, ast.FunctionDef):
                 decorators = {getattr(getattr(one, "func", one), "id", "") for one in node.decorator_list}
