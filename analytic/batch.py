@@ -25,9 +25,8 @@ from .solver import REST_RATE, TOLERANCE, ground, options, parameters
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from .layout import Ground, Options
+    from .layout import Contact, Ground, Options
     from .motion import Motion
-    from .sliding.layout import Contact
 
 # Chunks per worker, so that a slow chunk does not leave the other cores idle.
 CHUNKS_PER_WORKER = 8
@@ -78,7 +77,7 @@ class Outcomes:
             column(layout.CERTAIN) > 0,
             column(layout.FRICTION) if contact else np.full(shape, np.nan),
             column(layout.NORMAL) if contact else np.full(shape, np.nan),
-            column(layout.SLID) > 0,
+            column(layout.PATH) > 0,
             column(layout.PEAK_SLIP),
         )
 

@@ -89,6 +89,39 @@ def upper_bound(phi, s, order, h):
 
 
 @inner
+def find_passage(gamma, s, tilt, sooner, order, P, work):
+    """(kind, time) of the first passage of the slenderness or of pi/2; sooner : (kind, time) of another event, else
+    returned."""
+    (found, h), phi, event = sooner, P[L.PHI], P[L.EVENT]
+    top = upper_bound(phi, s, order, h)
+    if top > gamma > s * tilt:
+        root = find_fall(phi, -s, gamma, order, h, event, work)
+        if root >= 0:
+            found, h = L.PASSAGE, root
+    if top > 0.5 * math.pi:
+        root = find_fall(phi, -s, 0.5 * math.pi, order, h, event, work)
+        if root >= 0:
+            found, h = L.OVERTURNING, root
+    return found, h
+
+
+@inner
+def find_turn(direction, corner, sooner, order, P, work):
+    """(kind, time) of the first reversal or corner of the bearings; direction : of the base velocity; sooner : as in
+    `find_passage`."""
+    found, h = sooner
+    if direction != 0:
+        root = find_fall(P[L.V], direction, 0.0, order, h, P[L.EVENT], work)
+        if root > 0:
+            found, h = L.REVERSAL, root
+        if corner < math.inf:
+            root = find_fall(P[L.Q], -direction, corner, order, h, P[L.EVENT], work)
+            if root >= 0:
+                found, h = L.CORNER, root
+    return found, h
+
+
+@inner
 def direction_from_rest(par, body, gravity, highest, A, force):
     """Sign of the motion that a base at rest begins: that of its first derivative that is not zero.
 

@@ -20,8 +20,9 @@ import math
 import platform
 import time
 from collections import namedtuple
+from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numba
 import numpy as np
@@ -86,7 +87,8 @@ def simulate_time_stepping(scene: Scene, *, step: float, history: bool = True) -
         steps, least = scene.duration / step, scene.duration / most
         raise SettingError(f"step = {step!r}: {steps:.3g} steps; give at least {least:.3g} s")
     par, count, columns = parameters(scene), math.ceil(scene.duration / step * (1 - 1e-12)), 6
-    h, shaking, march = step, _samples, _march
+    march: Callable[..., Any] = _march
+    h, shaking = step, _samples
     if scene.friction is not None:
         if scene.block.restitution is not None:
             words = "not used where the block slides"
@@ -105,7 +107,7 @@ def simulate_time_stepping(scene: Scene, *, step: float, history: bool = True) -
     if history:
         kept = rows[: response.steps + 1].T
         level = np.zeros(kept.shape[1]) if scene.motion is None else scene.motion.acceleration(kept[0])
-        response = replace(response, history=History(*kept[:6], level, *kept[6:]))
+        response = replace(response, history=History(*kept[:6], level, *kept[6:]))  # type: ignore[call-arg]  # of eight at most
     return replace(response, decided=is_decided(scene, response))
 
 

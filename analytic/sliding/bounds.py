@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from .layout import Contact
+from ..layout import Contact
 
 if TYPE_CHECKING:
     from ..layout import Parameters

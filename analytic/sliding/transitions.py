@@ -4,12 +4,10 @@ import math
 
 from .. import layout as L
 from ..compiled import inner
-from ..events import TOUCH, find_fall, upper_bound
+from ..events import TOUCH, find_fall, find_passage, find_turn
+from ..layout import CONE, FLIGHT, LANDING, LEVEL, LOSS, ROCK, SLIDE, SLIDE_ROCK, STICK, STOP, Block
 from ..polynomial import first_root
-from . import layout as S
-from .choice import choose
-from .equations import accelerations
-from .layout import CONE, FLIGHT, LANDING, LEVEL, LOSS, ROCK, SLIDE, SLIDE_ROCK, STICK, STOP, Block
+from .equations import accelerations, choose
 
 # Share of the friction, or of the threshold of uplift, by which a jump of the ground exceeds it if it is no rounding.
 ONSET = 1e-9
@@ -20,7 +18,7 @@ GRAZE = 1e-6
 @inner
 def crossing(limit, side, refused, order, h, P, work):
     """First time at which limit N + side H falls below 0 in the step, or -1."""
-    event, across, normal = P[L.EVENT], P[S.H], P[S.N]
+    event, across, normal = P[L.EVENT], P[L.H], P[L.N]
     for k in range(order + 1):
         event[k] = limit * normal[k] + side * across[k]
     if refused and abs(event[0]) <= TOUCH * limit * abs(normal[0]):
@@ -33,20 +31,11 @@ def crossing(limit, side, refused, order, h, P, work):
 @inner
 def tilt_event(par, block, step, P, work):
     """(kind, time) of the first event of the tilt, which passes 0, the slenderness or pi/2; NONE and the step's end."""
-    found, h, order, event, phi, s = L.NONE, step.h, step.order, P[L.EVENT], P[L.PHI], block.s
-    root = find_fall(phi, s, 0.0, order, h, event, work)
+    found, h, order, s = L.NONE, step.h, step.order, block.s
+    root = find_fall(P[L.PHI], s, 0.0, order, h, P[L.EVENT], work)
     if root >= 0 and not (block.mode == FLIGHT and root == 0):
         found, h = LEVEL if block.mode == FLIGHT else L.IMPACT, root
-    top = upper_bound(phi, s, order, h)
-    if top > par.gamma > s * block.tilt:
-        root = find_fall(phi, -s, par.gamma, order, h, event, work)
-        if root >= 0:
-            found, h = L.PASSAGE, root
-    if top > 0.5 * math.pi:
-        root = find_fall(phi, -s, 0.5 * math.pi, order, h, event, work)
-        if root >= 0:
-            found, h = L.OVERTURNING, root
-    return found, h
+    return find_passage(par.gamma, s, block.tilt, (found, h), order, P, work)
 
 
 @inner
@@ -54,7 +43,7 @@ def contact_event(par, contact, block, refused, sooner, order, P, work):
     """(kind, time, side) of the first event of the contact; sooner : (kind, time) of another one, else returned."""
     (found, h), side, event = sooner, 0.0, P[L.EVENT]
     if block.mode == FLIGHT:
-        root = find_fall(P[S.GAP], 1.0, 0.0, order, h, event, work)
+        root = find_fall(P[L.GAP], 1.0, 0.0, order, h, event, work)
         if root >= 0:
             found, h = LANDING, root
     elif block.sigma == 0:
@@ -65,10 +54,10 @@ def contact_event(par, contact, block, refused, sooner, order, P, work):
             if root >= 0:
                 found, h, side = kind, root, sign
     else:
-        root = find_fall(P[S.SPEED], block.sigma, 0.0, order, h, event, work)
+        root = find_fall(P[L.SPEED], block.sigma, 0.0, order, h, event, work)
         if root >= 0:
             found, h = STOP, root
-        root = find_fall(P[S.N], 1.0, 0.0, order, h, event, work)
+        root = find_fall(P[L.N], 1.0, 0.0, order, h, event, work)
         if root >= 0 and refused != LOSS:
             found, h = LOSS, root
     return found, h, side
@@ -77,18 +66,11 @@ def contact_event(par, contact, block, refused, sooner, order, P, work):
 @inner
 def next_event(par, contact, block, refused, direction, step, P, work):
     """(kind of the first event in the step, its time since the start, side)."""
-    found, h, order, event = L.NONE, step.h, step.order, P[L.EVENT]
+    found, h, order = L.NONE, step.h, step.order
     if block.s != 0:
         found, h = tilt_event(par, block, step, P, work)
     found, h, side = contact_event(par, contact, block, refused, (found, h), order, P, work)
-    if direction != 0:
-        root = find_fall(P[L.V], direction, 0.0, order, h, event, work)
-        if root > 0:
-            found, h = L.REVERSAL, root
-        if step.corner < math.inf:
-            root = find_fall(P[L.Q], -direction, step.corner, order, h, event, work)
-            if root >= 0:
-                found, h = L.CORNER, root
+    found, h = find_turn(direction, step.corner, (found, h), order, P, work)
     return found, h, side
 
 
@@ -111,14 +93,14 @@ def impossible(par, contact, block, start):
 def fresh_series(fresh, block, P):
     """Sets to 0 what is 0 at an onset that was just located; returns whether it is no onset, but a graze."""
     if fresh == CONE:
-        P[S.SPEED, 0], P[S.SPEED, 1], P[S.SLIP, 1], P[S.SLIP, 2] = 0.0, 0.0, 0.0, 0.0
-        return not block.sigma * P[S.SPEED, 2] > 0
+        P[L.SPEED, 0], P[L.SPEED, 1], P[L.SLIP, 1], P[L.SLIP, 2] = 0.0, 0.0, 0.0, 0.0
+        return not block.sigma * P[L.SPEED, 2] > 0
     if fresh == L.UPLIFT:
         P[L.W, 0], P[L.W, 1], P[L.PHI, 1], P[L.PHI, 2] = 0.0, 0.0, 0.0, 0.0
         return not block.s * P[L.W, 2] > 0
     if fresh == LOSS:
-        P[S.RISE, 0], P[S.RISE, 1], P[S.GAP, 0], P[S.GAP, 1], P[S.GAP, 2] = 0.0, 0.0, 0.0, 0.0, 0.0
-        return not P[S.RISE, 2] > 0
+        P[L.RISE, 0], P[L.RISE, 1], P[L.GAP, 0], P[L.GAP, 1], P[L.GAP, 2] = 0.0, 0.0, 0.0, 0.0, 0.0
+        return not P[L.RISE, 2] > 0
     return False
 
 

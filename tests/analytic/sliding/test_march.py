@@ -8,8 +8,8 @@ import pytest
 from sliding_scenes import GRAVITY, random_slider, scene_of
 
 from analytic import PulseMotion, simulate
+from analytic import layout as S
 from analytic.rocking import RockingModel
-from analytic.sliding import layout as S
 from analytic.sliding.bounds import contact_of, slipping_friction, slipping_restitution
 from analytic.sliding.run import marched
 from analytic.solver import ground, options, parameters

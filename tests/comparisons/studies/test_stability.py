@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from analytic import PulseMotion, Scene, SceneError, simulate
+from analytic import PulseMotion, Scene, SceneError, layout, simulate
 from analytic.response import Failure
 from analytic.rocking import momentum_restitution, restitution
-from analytic.sliding import layout
 from analytic.sliding.bounds import contact_of, slipping_friction
 from analytic.sliding.run import marched
 from analytic.solver import TOLERANCE, ground, options, parameters
