@@ -40,7 +40,7 @@ The history as arrays, for numpy or matplotlib; `comparisons.showing.plots.draw_
 True
 """
 
-from ._cache import kernel_cache
+from .compiled import kernel_cache
 from .errors import EngineNotInstalled, SceneError, SettingError
 from .motion import PulseMotion, SampledMotion
 from .records import read_record
@@ -52,7 +52,6 @@ with kernel_cache():
     from .batch import Outcomes, overturning_map, rocking_spectrum, simulate_many
     from .scene import Base, Bearings, Block, Scene, Start
     from .scene_file import load_scene, shipped_scenes
-    from .sliding import march  # noqa: F401 as above
     from .solver import simulate
 
 __all__ = [

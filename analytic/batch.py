@@ -19,7 +19,7 @@ from .laws import Constants
 from .layout import Parameters, Shaking
 from .motion import PulseMotion, SampledMotion
 from .scene import Block, Scene
-from .sliding.bounds import contact_of
+from .sliding import run as sliding
 from .solver import REST_RATE, TOLERANCE, ground, options, parameters
 
 if TYPE_CHECKING:
@@ -111,9 +111,6 @@ def run_rows(
             if contact is not None:
                 slide(i, contact)
 
-    if any(contacts):
-        from .sliding import run as sliding
-
     with compiling():
         run(slice(0, 1))  # compiled or loaded before threads start
     size = max(1, -(-n // (workers * CHUNKS_PER_WORKER)))
@@ -181,7 +178,7 @@ def simulate_many(
         shakings = [ground(scenes[i].motion, factors[i]) for i in members]
         rows = np.array([row_of(parameters(scenes[i])) for i in members], dtype=ROW)
         pulses = np.array([shaking.shaking for shaking in shakings])
-        contacts = [contact_of(scenes[i]) for i in members]
+        contacts = [sliding.contact_of(scenes[i]) for i in members]
         totals[members] = run_rows(rows, pulses, shakings[0], chosen, workers, contacts)
     return Outcomes.of(totals, (len(scenes),), contact)
 
@@ -229,7 +226,7 @@ def overturning_map(
     rows = np.full(len(pulses), np.array(row_of(parameters(scene)), dtype=ROW))
     if scene.duration is None:
         rows["duration"] = pulses[:, Shaking._fields.index("end")] + longest_duration(scene.with_(motion=None))
-    contacts, rubbing = [contact_of(scene)] * len(rows), []
+    contacts, rubbing = [sliding.contact_of(scene)] * len(rows), []
     if scene.friction is not None:
         slowest = PulseMotion(shape, 1.0, float(frequencies.min()))
         rubbing = [scene.with_(motion=slowest)]

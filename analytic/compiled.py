@@ -4,14 +4,19 @@ A function that is called only by compiled code is `inner`: without wrappers for
 compile than most functions themselves, and without reference counts of arrays, an atomic operation at each call. It
 must therefore not allocate an array. It is not optimised and compiled to machine code on its own, as numba does with
 every function at every level of calls: its intermediate code is linked into the calling `entry`, which is optimised as
-a whole. An entry is a function that Python calls; it is cached on disk, see `_cache`.
+a whole. An entry is a function that Python calls; it is cached on disk, see `kernel_cache`.
 """
 
 import gc
+import hashlib
+import os
+import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
+import numba
 from numba import _dynfunc, njit  # type: ignore[attr-defined]  # _dynfunc is of C
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
@@ -113,3 +118,37 @@ def compiling() -> Iterator[None]:
     finally:
         if enabled:
             gc.enable()
+
+
+def _folder() -> str:
+    """The folder of numba's cache: one per state of the compiled source.
+
+    Numba checks only the file of the function itself, so that after a change in taylor.py a stale kernel would be used.
+    """
+    source = Path(__file__).parent
+    digest = hashlib.sha256()
+    for file in sorted(source.rglob("*.py")):
+        text = file.read_bytes()
+        if b"compiled" in text or b"numba" in text:  # at least all files with compiled functions
+            digest.update(str(file.relative_to(source)).encode() + text)
+    name = f"numba-{digest.hexdigest()[:16]}"
+    for parent in (source / "__pycache__", Path.home() / ".cache" / "rocking", Path(tempfile.gettempdir())):
+        try:
+            (parent / name).mkdir(parents=True, exist_ok=True)
+            if os.access(parent / name, os.W_OK):
+                return str(parent / name)
+        except OSError:
+            continue
+    return ""
+
+
+@contextmanager
+def kernel_cache() -> Iterator[None]:
+    """Functions decorated inside are cached in a folder of this source; NUMBA_CACHE_DIR, if set, wins."""
+    before = numba.config.CACHE_DIR  # type: ignore[attr-defined]  # made when numba is imported
+    if not before:
+        numba.config.CACHE_DIR = _folder()  # type: ignore[attr-defined]  # as above
+    try:
+        yield
+    finally:
+        numba.config.CACHE_DIR = before  # type: ignore[attr-defined]  # as above

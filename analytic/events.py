@@ -8,7 +8,7 @@ import math
 
 from . import layout as L
 from .compiled import inner
-from .polynomial import first_root
+from .polynomial import bound, first_root
 
 # An impact slower than rest_rate omega_r ends in rest if the next swing is short, too [1/omega_r]: while the ground
 # acceleration is close to uplift, a slow impact can still begin a long swing.
@@ -34,11 +34,7 @@ def find_uplift(shape, vertical, refused, step, P, work):
     threshold, slope, G = step.gravity * shape.slope, shape.slope, P[L.GRAVITY]
     if abs(row[0]) > threshold and not refused:
         return 0.0
-    size, power = abs(row[0]), 1.0
-    for k in range(1, order + 1):
-        power *= h
-        size += abs(row[k]) * power
-    found, least = -1.0, threshold
+    size, found, least = bound(row, order, h), -1.0, threshold
     if vertical is not None:
         least, power = slope * G[0], slope
         for k in range(1, highest + 1):

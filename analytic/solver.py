@@ -21,7 +21,8 @@ from .motion import SampledMotion
 from .pulses import SERIES
 from .response import Energy, Failure, History, Impact, Response, State
 from .rocking import RockingModel
-from .sliding.bounds import contact_of
+from .sliding.run import contact_of, is_needed
+from .sliding.run import slid as march
 from .taylor import LINEAR_GROUND, PULSE, QUIET, SHORT_ORDER
 
 if TYPE_CHECKING:
@@ -185,10 +186,8 @@ def simulate(
     energies = _stored(par, *totals[layout.END_TILT : layout.END_V + 1]) - _stored(
         par, par.tilt, par.rate, par.x, par.v
     )
-    if contact := contact_of(scene):
-        from .sliding import run
-
-        slid = run.slid(scene, par, contact, shaking, chosen) if run.is_needed(par, contact, totals) else None
+    if (contact := contact_of(scene)) and is_needed(par, contact, totals):
+        slid = march(scene, par, contact, shaking, chosen)
     if slid:
         cpu, totals, result, energies, sliding = slid
     elif totals[layout.WILL_OVERTURN] and totals[layout.MODE] == layout.ROCK:  # ends during the fall

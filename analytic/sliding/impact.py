@@ -10,7 +10,7 @@ upward, D the horizontal velocity of the centre of mass from the base and Y its 
 
 An impact with the level is the first of these that is admissible: the new corner sticks; it slips; both corners stay
 and stick; both stay and slip. From rest exactly one is; with several the block slid before at a friction below mu_c
-(`bounds`), where laws of impact differ.
+(`run.slipping_friction`), where laws of impact differ.
 """
 
 import math

@@ -1,6 +1,6 @@
 """March through the modes of a block that may slide: a Taylor series integrator with events, as the kernel (compiled).
 
-Modes, their equations and ends: `equations`, `transitions`, `impact`. Between two events all is smooth, and events are
+Modes, their equations and ends: `equations`, `impact`. Between two events all is smooth, and events are
 located as roots of the step's polynomials. The outcome is decided by the rules of `decision`.
 """
 
@@ -12,9 +12,28 @@ from .. import layout as L
 from ..compiled import entry, inner
 from ..decision import largest_force, peaks_are_final, recoverable_energy
 from ..events import find_fall
-from ..layout import CONE, FALLEN, FLIGHT, LANDING, LEVEL, LOSS, ROCK, SLIDE, STICK, STOP, Block, Start, Velocity
-from ..polynomial import MAX_ORDER, SCRATCH, value
-from ..readings import gravity_at
+from ..layout import (
+    CLIMB,
+    CONE,
+    DRIFT,
+    FALLEN,
+    FLIGHT,
+    LANDING,
+    LEVEL,
+    LOSS,
+    ROCK,
+    SLIDE,
+    SPEED,
+    STICK,
+    STOP,
+    Block,
+    H,
+    N,
+    Start,
+    Velocity,
+)  # fmt: skip
+from ..polynomial import MAX_ORDER, SCRATCH, bound, largest, value
+from ..readings import PROBES, gravity_at, integral_of_product, read_bearings, top, write_history
 from ..steps import (
     FARTHEST,
     PATIENCE,
@@ -27,10 +46,8 @@ from ..steps import (
     stretch_of_ground,
 )
 from ..taylor import QUIET, allowed_step
-from .equations import accelerations, choose, mode_series
+from .equations import accelerations, after_event, choose, fresh_series, impossible, mode_series, next_event
 from .impact import kinetic, struck
-from .reading import read
-from .transitions import after_event, fresh_series, impossible, next_event
 
 
 def arrays(capacity, outputs):
@@ -134,6 +151,61 @@ def noted(block, last, t, into):
             changes[number, 0], changes[number, 1] = t, block.mode
         totals[L.CHANGES] += 1
     return block.mode
+
+
+@inner
+def read(par, contact, upright, block, step, options, into, written):
+    """Write the step to history, diagnostics and ledger; returns the rows of the history written."""
+    P, rows = into.P, into.history
+    first, written = written, write_history(par, block, step, options.output_step, into, written)
+    for k in range(first, written):
+        d = min(max(rows[k, 0] - step.t, 0.0), step.h)
+        rows[k, 6], rows[k, 7] = value(P[L.SLIP], step.order, d), value(P[SPEED], step.order, d)
+    if options.record and step.h > 0:
+        forces(par, contact, block, step, P, into.totals, into.work)
+        ledger(par, upright, block, step, P, into.totals)
+    return written
+
+
+@inner
+def forces(par, contact, block, step, P, totals, work):
+    """Peak absolute base acceleration, friction demand |H|/N and least N/(m g) within the step."""
+    h, order = step.h, step.order
+    row, last = (L.ABSOLUTE, order) if par.on_base else (L.GROUND, step.highest)
+    known = totals[L.PEAK_ACCELERATION]
+    if last >= 0 and bound(P[row], last, h) > known:
+        known = largest(P[row], 1.0, last, h, known, P[L.EVENT], work)
+        totals[L.PEAK_ACCELERATION] = largest(P[row], -1.0, last, h, known, P[L.EVENT], work)
+    if block.sigma != 0:
+        totals[L.FRICTION] = contact.mu
+    demand, demand_before, lift, lift_before = 0.0, 0.0, 0.0, 0.0
+    for probe in range(PROBES + 1):
+        across, normal = value(P[H], order, h * probe / PROBES), value(P[N], order, h * probe / PROBES)
+        held = normal > 0 and block.sigma == 0 and block.mode != FLIGHT
+        here, low = abs(across) / normal if held else 0.0, -normal / (par.m * par.g)
+        if probe > 1:
+            reached = min(top(demand_before, demand, here), contact.mu)  # where it is more, an event ends the step
+            totals[L.FRICTION] = max(totals[L.FRICTION], reached)
+            totals[L.NORMAL] = min(totals[L.NORMAL], -top(lift_before, lift, low))
+        demand_before, demand, lift_before, lift = demand, here, lift, low
+
+
+@inner
+def ledger(par, upright, block, step, P, totals):
+    """Work of ground, bearings and friction within the step [J]."""
+    h, order, highest, momentum, part = step.h, step.order, step.highest, P[L.PRODUCT_A], P[L.PRODUCT_B]
+    if highest >= 0:  # -int a_g (M x' + m drift) + a_v m climb dt
+        for k in range(order + 1):
+            momentum[k] = par.m * P[DRIFT, k] + (par.M * P[L.V, k] if par.on_base else 0.0)
+        totals[L.INPUT] -= integral_of_product(P[L.GROUND], min(highest, order), momentum, order, h)
+    if upright is not None:
+        for k in range(max(highest, 0) + 1):
+            part[k] = P[L.GRAVITY, k]
+        part[0] -= par.g
+        totals[L.INPUT] -= par.m * integral_of_product(part, max(highest, 0), P[CLIMB], order, h)
+    if block.sigma != 0:
+        totals[L.FRICTION_WORK] -= integral_of_product(P[H], order, P[SPEED], order, h)
+    read_bearings(par, step, P, totals)
 
 
 @inner

@@ -15,7 +15,6 @@ from ..decision import longest_duration
 from ..errors import SceneError
 from ..response import Sliding
 from ..rocking import momentum_restitution
-from .bounds import paradoxical_friction, slipping_friction
 from .march import arrays, march
 
 if TYPE_CHECKING:
@@ -27,8 +26,35 @@ if TYPE_CHECKING:
 # share of the friction the march decides, at 3 to 12 times the kernel's CPU time.
 NEAR = 0.9
 GIVEN = "block.restitution"
-STICKS = 1e6  # a friction at which no block slides that carries weight
 ABOVE = 1.0006  # factor of a limit that is told in four digits, so that what is told is beyond it
+
+
+def contact_of(scene: Scene) -> L.Contact | None:
+    """The numbers of the contact; None without a friction."""
+    if scene.friction is None:
+        return None
+    mass = scene.base.mass if scene.base else math.inf
+    return L.Contact(float(scene.friction), mass, scene.block.centre_inertia, scene.block.restitution is not None)
+
+
+def slipping_friction(par: Parameters) -> float:
+    """mu_c: horizontal over vertical impulse of the impact of a block that does not slide, the friction that it needs.
+
+    (1 - e) (h - arm)/((1 + e) b), from the velocities of the centre of mass before and after it and the base's jump,
+    eq. (8): with e of eq. (7) m b h/(J_G + m h^2 + J_G m/m_b), on rigid ground without the last term. That is always
+    below tan(gamma), so that a block that lifts from rest does not slip at its impacts unless it slid before.
+    """
+    b, h = par.R * math.sin(par.gamma), par.R * math.cos(par.gamma)
+    return (1 - par.e) * (h - par.arm) / ((1 + par.e) * b)
+
+
+def paradoxical_friction(par: Parameters, contact: L.Contact) -> float:
+    """Friction above which a sliding corner may have no motion, or several (Painleve): 2 sqrt(k (1 + k)).
+
+    k = J_G/(m R^2); 4/3 for a rectangle.
+    """
+    k = contact.centre / (par.m * par.R**2)
+    return 2 * math.sqrt(k * (1 + k))
 
 
 def is_needed(par: Parameters, contact: L.Contact, totals: np.ndarray) -> bool:
@@ -104,28 +130,25 @@ def problem(par: Parameters, contact: L.Contact, totals: np.ndarray) -> tuple[st
 def remedies(key: str, scene: Scene, par: Parameters, contact: L.Contact, ground: Ground, options: Options) -> str:
     """What to give instead, in words; each is tried, the motion of the block is then determined.
 
-    A friction is named that suffices for the impacts, or else for all of the motion up to the fall, so that the block
-    does not slide before; or one at the bound of Painleve. Without a friction the motion is always determined.
+    A friction is named that suffices for the impacts, or one at the bound of Painleve. Without a friction the motion is
+    always determined.
     """
 
     def tried(par, contact):
         totals, *_ = marched(par, contact, ground, options._replace(record=False, output_step=0.0))
-        sound = totals[L.STATUS] in (L.COMPLETE, L.DECIDED) and problem(par, contact, totals) is None
-        return float(totals[L.FRICTION]) if sound else None
+        return totals[L.STATUS] in (L.COMPLETE, L.DECIDED) and problem(par, contact, totals) is None
 
     words, of, own = [], "a friction of " if key == GIVEN else "", max(momentum_restitution(scene), 0.0)
-    if key == GIVEN and tried(par._replace(e=own), contact._replace(given=False)) is not None:
+    if key == GIVEN and tried(par._replace(e=own), contact._replace(given=False)):
         words.append("leave it out")
-    limit, asked = slipping_friction(par), tried(par, contact._replace(mu=STICKS))
-    least = [limit, *((max(limit, asked), max(limit, asked / NEAR)) if asked is not None else ())]
-    for mu in (float(f"{one * ABOVE:.4g}") for one in least if one * ABOVE > contact.mu):
-        if tried(par, contact._replace(mu=mu)) is not None:
-            words.append(f"give {of}{mu:.4g} or more")
-            break
-    mu = float(f"{paradoxical_friction(par, contact) / ABOVE:.4g}")
-    if key != GIVEN and mu < contact.mu and tried(par, contact._replace(mu=mu)) is not None:
-        words.append(f"give {mu:.4g} or less")
-    if key != GIVEN and tried(par._replace(tilt=0.0, rate=0.0), contact) is not None:
+    least, most = (
+        float(f"{mu:.4g}") for mu in (slipping_friction(par) * ABOVE, paradoxical_friction(par, contact) / ABOVE)
+    )
+    if least > contact.mu and tried(par, contact._replace(mu=least)):
+        words.append(f"give {of}{least:.4g} or more")
+    if key != GIVEN and most < contact.mu and tried(par, contact._replace(mu=most)):
+        words.append(f"give {most:.4g} or less")
+    if key != GIVEN and tried(par._replace(tilt=0.0, rate=0.0), contact):
         words.append("let the block start at rest")
     return ", or ".join(words) or f"leave {'the friction' if key == GIVEN else 'it'} out"
 

@@ -12,7 +12,7 @@ from analytic import PulseMotion, SceneError, load_scene, overturning_map, simul
 from analytic.decision import RIGID_BEARINGS
 from analytic.response import Response
 from analytic.rocking import RockingModel
-from analytic.sliding.bounds import slipping_friction
+from analytic.sliding.run import slipping_friction
 from analytic.solver import parameters
 from analytic.synthetic import synthetic_motion
 from analytic.time_stepping import simulate_time_stepping
