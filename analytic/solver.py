@@ -183,9 +183,8 @@ def simulate(
     if most > chosen.capacity:
         totals, *result = kernel.run(par, shaking, chosen._replace(capacity=most))
     cpu, slid, sliding = time.process_time() - begin, None, None
-    energies = _stored(par, *totals[layout.END_TILT : layout.END_V + 1]) - _stored(
-        par, par.tilt, par.rate, par.x, par.v
-    )
+    at_end = totals[layout.END_TILT : layout.END_V + 1].tolist()
+    energies = _stored(par, *at_end) - _stored(par, par.tilt, par.rate, par.x, par.v)
     if (contact := contact_of(scene)) and is_needed(par, contact, totals):
         slid = march(scene, par, contact, shaking, chosen)
     if slid:
