@@ -52,7 +52,6 @@ with kernel_cache():
     from .batch import Outcomes, overturning_map, rocking_spectrum, simulate_many
     from .scene import Base, Bearings, Block, Scene, Start
     from .scene_file import load_scene, shipped_scenes
-    from .sliding import march, moreau  # noqa: F401 as above
     from .solver import simulate
 
 __all__ = [

@@ -19,15 +19,14 @@ from .laws import Constants
 from .layout import Parameters, Shaking
 from .motion import PulseMotion, SampledMotion
 from .scene import Block, Scene
-from .sliding.bounds import contact_of
+from .sliding import run as sliding
 from .solver import REST_RATE, TOLERANCE, ground, options, parameters
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from .layout import Ground, Options
+    from .layout import Contact, Ground, Options
     from .motion import Motion
-    from .sliding.layout import Contact
 
 # Chunks per worker, so that a slow chunk does not leave the other cores idle.
 CHUNKS_PER_WORKER = 8
@@ -78,7 +77,7 @@ class Outcomes:
             column(layout.CERTAIN) > 0,
             column(layout.FRICTION) if contact else np.full(shape, np.nan),
             column(layout.NORMAL) if contact else np.full(shape, np.nan),
-            column(layout.SLID) > 0,
+            column(layout.PATH) > 0,
             column(layout.PEAK_SLIP),
         )
 
@@ -111,9 +110,6 @@ def run_rows(
         for i, contact in enumerate(contacts[part], part.start):
             if contact is not None:
                 slide(i, contact)
-
-    if any(contacts):
-        from .sliding import run as sliding
 
     with compiling():
         run(slice(0, 1))  # compiled or loaded before threads start
@@ -182,7 +178,7 @@ def simulate_many(
         shakings = [ground(scenes[i].motion, factors[i]) for i in members]
         rows = np.array([row_of(parameters(scenes[i])) for i in members], dtype=ROW)
         pulses = np.array([shaking.shaking for shaking in shakings])
-        contacts = [contact_of(scenes[i]) for i in members]
+        contacts = [sliding.contact_of(scenes[i]) for i in members]
         totals[members] = run_rows(rows, pulses, shakings[0], chosen, workers, contacts)
     return Outcomes.of(totals, (len(scenes),), contact)
 
@@ -230,7 +226,7 @@ def overturning_map(
     rows = np.full(len(pulses), np.array(row_of(parameters(scene)), dtype=ROW))
     if scene.duration is None:
         rows["duration"] = pulses[:, Shaking._fields.index("end")] + longest_duration(scene.with_(motion=None))
-    contacts, rubbing = [contact_of(scene)] * len(rows), []
+    contacts, rubbing = [sliding.contact_of(scene)] * len(rows), []
     if scene.friction is not None:
         slowest = PulseMotion(shape, 1.0, float(frequencies.min()))
         rubbing = [scene.with_(motion=slowest)]

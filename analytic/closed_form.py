@@ -19,15 +19,6 @@ def swing_energy(slenderness: float, peak: float) -> float:
     return math.sin(slenderness - peak / 2) * math.sin(peak / 2)
 
 
-def swing_peak(slenderness: float, energy: float) -> float:
-    """|phi| [rad] at the peak of a swing of the given `swing_energy`."""
-    s = math.sin(slenderness / 2)
-    # u = gamma - |phi| has sin(u/2) = root; then sin((gamma - u)/2) without cancellation
-    root = math.sqrt(max(s * s - energy, 0.0))
-    sine = energy / (s * math.sqrt(1 - root * root) + root * math.cos(slenderness / 2))
-    return 2 * math.asin(sine)
-
-
 def quarter_period(omega_r: float, slenderness: float, energy: float) -> float:
     """Time from the peak of a swing, at rest, to the impact [s].
 
@@ -54,13 +45,12 @@ def quarter_period(omega_r: float, slenderness: float, energy: float) -> float:
 class FreeRocking:
     """Free rocking on rigid ground: arrays of shape (n,), one entry per impact.
 
-    times [s]; rates_before, rates_after: |tilt rate| [rad/s]; peaks: |tilt| [rad] of the swings that follow.
+    times [s]; rates_before, rates_after: |tilt rate| [rad/s].
     """
 
     times: np.ndarray
     rates_before: np.ndarray
     rates_after: np.ndarray
-    peaks: np.ndarray
 
 
 def free_rocking(omega_r: float, slenderness: float, restitution: float, tilt: float, count: int) -> FreeRocking:
@@ -79,8 +69,7 @@ def free_rocking(omega_r: float, slenderness: float, restitution: float, tilt: f
     quarters = np.array([quarter_period(omega_r, slenderness, energy) for energy in energies[:-1]])
     flights = np.concatenate([quarters[:1], 2 * quarters[1:]])
     rates = 2 * omega_r * np.sqrt(energies)
-    peaks = np.array([swing_peak(slenderness, energy) for energy in energies[1:]])
-    return FreeRocking(np.cumsum(flights), rates[:-1], rates[1:], peaks)
+    return FreeRocking(np.cumsum(flights), rates[:-1], rates[1:])
 
 
 def impacts_to_rest(omega_r: float, slenderness: float, restitution: float, tilt: float, rest_rate: float) -> int:

@@ -19,6 +19,8 @@ from .laws import Constants
 from .polynomial import MAX_ORDER, SCRATCH, value
 from .readings import gravity_at, write_history
 from .steps import (
+    PATIENCE,
+    ROUNDING,
     bearing_of_step,
     contact_of_step,
     end_of_base,
@@ -32,13 +34,9 @@ from .steps import (
 )
 from .taylor import QUIET
 
-# Guard against an endless loop of events at one time; never seen.
-PATIENCE = 1000
 # Impacts of a nearly elastic block lose almost no energy: below this fraction of omega_r there are millions per second,
 # with swings of some 1e-9 rad.
 ELASTIC_REST_RATE = 1e-4
-# Steps shorter than this fraction of the time are below its rounding.
-ROUNDING = 4e-16
 # Acceleration this close to the threshold, over g tan(gamma), counts as uplift: the onset is of third order, phi'' = 0.
 ONSET = 1e-9
 
@@ -108,9 +106,9 @@ def _integrate(par, ground, upright, options, arrays):
     totals[:] = 0.0
     totals[L.UNSTABLE_TIME], totals[L.NORMAL] = 0.0 if abs(par.tilt) >= par.gamma else -1.0, 1.0
     tilt, rate, base = par.tilt, par.rate, L.Base(par.x, par.v, par.z)
-    status, mode, s, t = L.COMPLETE, L.CONTACT, 0.0, 0.0
+    status, mode, s, t = L.COMPLETE, L.STICK, 0.0, 0.0
     if tilt != 0 or rate != 0:
-        mode, s = L.ROCKING, math.copysign(1.0, tilt if tilt != 0 else rate)
+        mode, s = L.ROCK, math.copysign(1.0, tilt if tilt != 0 else rate)
     no, none = math.isnan(0.0), math.floor(0.0)  # a literal argument would compile a function once more
     fresh, refused = no, no  # onset just located: phi'' = 0 exactly; onset refused: a touch (graze) of the threshold
     shape = L.Shape(par.gamma, par.slope, par.on_base)
@@ -120,7 +118,7 @@ def _integrate(par, ground, upright, options, arrays):
     segment, begin, written, idle, steps, highest = none, 0.0, none, none, none, none
     rest_rate = max(options.rest_rate, ELASTIC_REST_RATE) if par.e > NEARLY_ELASTIC else options.rest_rate
     rest_rate *= math.sqrt(par.p2)
-    while begin < par.duration and mode != L.OVERTURNED and status == L.COMPLETE:
+    while begin < par.duration and mode != L.FALLEN and status == L.COMPLETE:
         stretch = stretch_of_ground(ground, upright, segment, begin, options.order, par.duration)
         kind, finish, order = stretch.kind, stretch.end, stretch.order
         after = kind == QUIET and begin >= shaking.end  # the motion is over
@@ -164,7 +162,7 @@ def _integrate(par, ground, upright, options, arrays):
             if s != 0:
                 used, h = rocking_of_step(par, upright, kind, body, fresh, step, options.tolerance, P)
                 if fresh and not s * P[L.PHI, 3] > 0:  # a graze of the threshold: no uplift
-                    mode, s, fresh, refused = L.CONTACT, 0.0, False, True
+                    mode, s, fresh, refused = L.STICK, 0.0, False, True
                     totals[L.UPLIFTS] -= 1
                     continue
             else:
@@ -200,7 +198,7 @@ def _integrate(par, ground, upright, options, arrays):
 
             if found == L.UPLIFT:
                 onset = value(P[L.ABSOLUTE if par.on_base else L.GROUND], used, h)
-                mode, s, tilt, rate = L.ROCKING, -math.copysign(1.0, onset), 0.0, 0.0
+                mode, s, tilt, rate = L.ROCK, -math.copysign(1.0, onset), 0.0, 0.0
                 fresh = abs(onset) < (gravity_at(par, upright, P, highest, h) + ONSET * par.g) * par.slope
                 if totals[L.UPLIFTS] < arrays.uplifts.shape[0]:
                     arrays.uplifts[int(totals[L.UPLIFTS])] = t
@@ -209,19 +207,19 @@ def _integrate(par, ground, upright, options, arrays):
                 level = value(P[L.GROUND], highest, h) if highest >= 0 else 0.0
                 gravity = gravity_at(par, upright, P, highest, h)
                 rate, v, stays = land(par, rate, base, gravity, level, rest_rate, t, arrays)
-                mode, s, tilt, base = L.ROCKING, math.copysign(1.0, rate), 0.0, L.Base(base.x, v, base.z)
+                mode, s, tilt, base = L.ROCK, math.copysign(1.0, rate), 0.0, L.Base(base.x, v, base.z)
                 if stays:
-                    mode, s = L.CONTACT, 0.0
+                    mode, s = L.STICK, 0.0
             elif found == L.OVERTURNING:
                 tilt, peak_tilt = s * 0.5 * math.pi, 0.5 * math.pi
-                mode, will_overturn = L.OVERTURNED, True
+                mode, will_overturn = L.FALLEN, True
                 break
             if not (math.isfinite(tilt) and math.isfinite(base.x)):
                 status = L.NOT_FINITE
                 break
-        if mode != L.OVERTURNED and status == L.COMPLETE:
+        if mode != L.FALLEN and status == L.COMPLETE:
             begin, t = finish, finish
-    if mode == L.OVERTURNED:
+    if mode == L.FALLEN:
         totals[L.FRICTION], totals[L.NORMAL], totals[L.PEAK_ACCELERATION], peak_x, totals[L.FALL_TIME] = held
     totals[L.STATUS], totals[L.MODE], totals[L.TIME], totals[L.STEPS] = status, mode, t, steps
     totals[L.PEAK_TILT], totals[L.PEAK_X], totals[L.WILL_OVERTURN] = peak_tilt, peak_x, will_overturn
@@ -248,7 +246,7 @@ def _is_final(par, options, body, base, peak_tilt, peak_x, totals):
 @inner
 def _conclude(par, end_of_motion, body, base, totals):
     """Whether the outcome at the end is certain; fills the rest of `totals`."""
-    lifted, overturned = _lifted(par, totals), totals[L.MODE] == L.OVERTURNED
+    lifted, overturned = _lifted(par, totals), totals[L.MODE] == L.FALLEN
     certain = overturned or totals[L.STATUS] == L.DECIDED
     if totals[L.STATUS] == L.COMPLETE and not certain and totals[L.TIME] >= end_of_motion:
         certain = will_not_overturn(par, body, base, lifted)

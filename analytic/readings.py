@@ -120,7 +120,7 @@ def read_lifting(par, step, P, totals):
 def read_energy(par, body, step, P, totals):
     """Work of the ground, of the hysteretic and of the viscous bearing force within the step [J]."""
     h, order, highest = step.h, step.order, step.highest
-    momentum, hysteretic = P[L.PRODUCT_A], P[L.PRODUCT_B]
+    momentum = P[L.PRODUCT_A]
     if highest >= 0:  # -int a_g (M x' + m c phi') dt
         for k in range(order + 1):
             turning = 0.0
@@ -129,6 +129,13 @@ def read_energy(par, body, step, P, totals):
                     turning += P[L.C, j] * P[L.W, k - j]
             momentum[k] = par.m * par.R * turning + (par.M * P[L.V, k] if par.on_base else 0.0)
         totals[L.INPUT] -= integral_of_product(P[L.GROUND], min(highest, order), momentum, order, h)
+    read_bearings(par, step, P, totals)
+
+
+@inner
+def read_bearings(par, step, P, totals):
+    """Work of the hysteretic and of the viscous bearing force within the step [J]."""
+    h, order, hysteretic = step.h, step.order, P[L.PRODUCT_B]
     if par.count > 0:
         for k in range(order + 1):
             hysteretic[k] = P[L.F, k] - par.count * (par.kb * P[L.X, k] + par.damping * P[L.V, k])

@@ -66,8 +66,7 @@ from pydantic import BeforeValidator, Field, ValidationError
 
 from .errors import SceneError
 from .files import read_plain
-from .motion import PulseMotion, SampledMotion
-from .pairing import paired
+from .motion import PulseMotion, SampledMotion, paired
 from .part import Part, missing, scene_error
 from .pulses import PULSES
 from .records import UNITS, fema, read_record

@@ -5,8 +5,8 @@ from __future__ import annotations
 import functools
 import math
 import time
-from dataclasses import astuple, replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import astuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,7 +21,8 @@ from .motion import SampledMotion
 from .pulses import SERIES
 from .response import Energy, Failure, History, Impact, Response, State
 from .rocking import RockingModel
-from .sliding.bounds import contact_of
+from .sliding.run import contact_of, is_needed
+from .sliding.run import slid as march
 from .taylor import LINEAR_GROUND, PULSE, QUIET, SHORT_ORDER
 
 if TYPE_CHECKING:
@@ -181,23 +182,18 @@ def simulate(
         raise too_long(scene, f"{most} impacts, of which no more than {EVENTS} are kept")
     if most > chosen.capacity:
         totals, *result = kernel.run(par, shaking, chosen._replace(capacity=most))
-    cpu = time.process_time() - begin
-    if contact := contact_of(scene):
-        from .sliding import run as sliding
-
-        if sliding.is_needed(par, contact, totals):
-            known = dict(settings=settings, versions=dict(versions()), scene=scene.name)
-            if slid := sliding.response(scene, par, contact, shaking, chosen, known):
-                response, table = slid
-                end = response.end, response.sliding.end  # type: ignore[union-attr]  # it has one
-                return replace(response, history=_history(scene, table[:, :7], *end) if history else None)
-    response = _response(scene, par, totals, result, cpu, settings, history)
-    if totals[layout.WILL_OVERTURN] and totals[layout.MODE] == layout.ROCKING:  # ends during the fall
+    cpu, slid, sliding = time.process_time() - begin, None, None
+    at_end = totals[layout.END_TILT : layout.END_V + 1].tolist()
+    energies = _stored(par, *at_end) - _stored(par, par.tilt, par.rate, par.x, par.v)
+    if (contact := contact_of(scene)) and is_needed(par, contact, totals):
+        slid = march(scene, par, contact, shaking, chosen)
+    if slid:
+        cpu, totals, result, energies, sliding = slid
+    elif totals[layout.WILL_OVERTURN] and totals[layout.MODE] == layout.ROCK:  # ends during the fall
         later = par._replace(duration=par.duration + longest_duration(scene))
-        totals, *_ = kernel.run(later, shaking, options(tolerance, rest_rate=rest_rate))
-        over, fall = float(totals[layout.TIME]), float(totals[layout.FALL_TIME])
-        response = replace(response, outcome="overturns", overturning_time=over, fall_time=fall)
-    return response
+        further, *_ = kernel.run(later, shaking, options(tolerance, rest_rate=rest_rate))
+        totals[[layout.OVER_TIME, layout.FALL_TIME]] = further[[layout.TIME, layout.FALL_TIME]]
+    return _response(scene, totals, result, energies, sliding, settings, cpu, history)
 
 
 def _output_step(scene, asked, history):
@@ -246,43 +242,46 @@ def versions() -> dict[str, str]:
     return {"numpy": np.__version__, "numba": numba.__version__}
 
 
-def _response(
-    scene: Scene, par: Parameters, totals: np.ndarray, result: Any, cpu: float, settings: dict[str, Any], history: bool
-) -> Response:
+_LEDGER = [layout.INPUT, layout.HYSTERETIC, layout.VISCOUS, layout.IMPACT_LOSS, layout.FRICTION_WORK]
+_REASONS = {
+    layout.STUCK: "the step became too small to advance",
+    layout.NOT_FINITE: "the state is not finite",
+    layout.SPENT: "too many steps",
+    layout.NO_MODE: "not exactly one mode of contact is admissible",
+}
+
+
+def _response(scene, totals, result, energies, sliding, settings, cpu, history):
+    """The `Response` of a run of the kernel, or, with a `Sliding`, of the march of a block that may slide."""
     impacts, uplifts, rests, table = result
     tilt, rate, x, v, z = totals[layout.END_TILT : layout.END_Z + 1].tolist()
-    law = BearingLaw.of(scene.bearings)
-    end = State(float(totals[layout.TIME]), tilt, rate, x, v, law.force(x, z, v))
-    gamma, status = scene.block.slenderness, int(totals[layout.STATUS])
+    end = State(float(totals[layout.TIME]), tilt, rate, x, v, BearingLaw.of(scene.bearings).force(x, z, v))
+    status, over = int(totals[layout.STATUS]), float(totals[layout.OVER_TIME])
     failure = None
-    if status in (layout.STUCK, layout.NOT_FINITE):
-        reason = {layout.STUCK: "the step became too small to advance", layout.NOT_FINITE: "the state is not finite"}
-        failure = Failure(reason[status], last_state=end)
-    overturned = int(totals[layout.MODE]) == layout.OVERTURNED
-    if failure:
-        outcome = "failed"
-    elif overturned:
-        outcome = "overturns"
-    else:
-        outcome = "rocks" if totals[layout.LIFTED] else "stands"
-    unstable = float(totals[layout.UNSTABLE_TIME])
+    if status not in (layout.COMPLETE, layout.DECIDED):
+        failure = Failure(_REASONS[status], last_state=end)
+    fallen = over > 0 or totals[layout.MODE] == layout.FALLEN
+    upright = "rocks" if totals[layout.LIFTED] else "slides" if totals[layout.PATH] > 0 else "stands"
+    unstable, peak_x = float(totals[layout.UNSTABLE_TIME]), float(totals[layout.PEAK_X])
+    demand, normal = float(totals[layout.FRICTION]), float(totals[layout.NORMAL])
+    slip = 0.0 if fallen else float(totals[layout.PEAK_SLIP])
     return Response(
         engine="analytic",
         variant="kernel",
         scene=scene.name,
-        outcome=outcome,
-        overturning_time=end.time if overturned else None,
+        outcome="failed" if failure else "overturns" if fallen else upright,
+        overturning_time=(over or end.time) if fallen else None,
         unstable_time=unstable if unstable >= 0 else None,
-        fall_time=float(totals[layout.FALL_TIME]) if overturned else None,
+        fall_time=float(totals[layout.FALL_TIME]) if fallen else None,
         peak_tilt=float(totals[layout.PEAK_TILT]),
-        peak_tilt_ratio=float(totals[layout.PEAK_TILT]) / gamma,
-        peak_base_displacement=float(totals[layout.PEAK_X]),
+        peak_tilt_ratio=float(totals[layout.PEAK_TILT]) / scene.block.slenderness,
+        peak_base_displacement=peak_x,
         peak_base_acceleration=float(totals[layout.PEAK_ACCELERATION]),
-        impacts=tuple(Impact(*map(float, row)) for row in impacts),
+        impacts=tuple(Impact(*row) for row in impacts.tolist()),
         uplifts=tuple(uplifts.tolist()),
         rests=tuple(rests.tolist()),
-        friction_demand=float(totals[layout.FRICTION]),
-        min_normal_ratio=float(totals[layout.NORMAL]),
+        friction_demand=demand,
+        min_normal_ratio=normal,
         end=end,
         cpu_seconds=cpu,
         steps=int(totals[layout.STEPS]),
@@ -290,38 +289,22 @@ def _response(
         versions=dict(versions()),
         failure=failure,
         decided=failure is None and bool(totals[layout.CERTAIN]),
-        warnings=run_warnings(
-            scene, float(totals[layout.FRICTION]), float(totals[layout.NORMAL]), float(totals[layout.PEAK_X]), v
-        ),
-        energy=_energy(scene, par, totals, end),
-        history=_history(scene, table, end) if history else None,
+        warnings=run_warnings(scene, demand, normal, peak_x, v, slides=sliding is not None, peak_slip=slip),
+        energy=Energy(*energies.tolist(), *totals[_LEDGER].tolist()),
+        sliding=sliding,
+        history=_history(scene, table, end, *([] if sliding is None else [sliding.end])) if history else None,
     )
 
 
-def _energy(scene: Scene, par: Parameters, totals: np.ndarray, end: State) -> Energy:
-    start = scene.start
+def _stored(par, tilt, rate, x, v):
+    """(kinetic, potential) energy [J] of a block that does not slide, in the ground's frame."""
+    side = math.copysign(1.0, tilt if tilt != 0 else rate)
+    c = par.R * math.cos(side * par.gamma - tilt)
+    moving = 0.5 * par.M * v * v + par.m * c * v * rate if par.on_base else 0.0
+    # cos(gamma - |tilt|) - cos(gamma) without cancellation
+    rise = 2 * math.sin(par.gamma - 0.5 * abs(tilt)) * math.sin(0.5 * abs(tilt))
     bearing_kb = par.count * par.kb
-
-    def kinetic(tilt, rate, v):
-        side = math.copysign(1.0, tilt if tilt != 0 else rate)
-        c = par.R * math.cos(side * par.gamma - tilt)
-        moving = 0.5 * par.M * v * v + par.m * c * v * rate if par.on_base else 0.0
-        return 0.5 * par.J * rate * rate + moving
-
-    def potential(tilt, x):
-        # cos(gamma - |tilt|) - cos(gamma) without cancellation
-        rise = 2 * math.sin(par.gamma - 0.5 * abs(tilt)) * math.sin(0.5 * abs(tilt))
-        return par.m * par.g * par.R * rise + 0.5 * bearing_kb * x * x
-
-    return Energy(
-        kinetic=kinetic(end.tilt, end.tilt_rate, end.base_velocity)
-        - kinetic(start.tilt, start.tilt_rate, start.base_velocity),
-        potential=potential(end.tilt, end.base_displacement) - potential(start.tilt, start.base_displacement),
-        input=float(totals[layout.INPUT]),
-        hysteretic=float(totals[layout.HYSTERETIC]),
-        viscous=float(totals[layout.VISCOUS]),
-        impact_loss=float(totals[layout.IMPACT_LOSS]),
-    )
+    return np.array([0.5 * par.J * rate * rate + moving, par.m * par.g * par.R * rise + 0.5 * bearing_kb * x * x])
 
 
 def _history(scene: Scene, table: np.ndarray, end: State, *slip: float) -> History:

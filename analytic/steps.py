@@ -9,7 +9,7 @@ import numpy as np
 
 from . import layout as L
 from .compiled import inlined, inner
-from .events import direction_from_rest, find_fall, find_uplift, hop_deceleration, upper_bound
+from .events import direction_from_rest, find_fall, find_passage, find_turn, find_uplift, hop_deceleration
 from .laws import law_function
 from .polynomial import bound, bracketed_root, derivative, largest, value
 from .readings import read_contact, read_energy, read_lifting, write_history
@@ -28,6 +28,11 @@ from .taylor import (
 
 # First trial length of a step of a rocking block [1/omega_r]: no step is longer at a useful tolerance.
 FARTHEST = 4.0
+
+# Guard against an endless loop of events at one time; never seen.
+PATIENCE = 1000
+# Steps shorter than this fraction of the time are below its rounding.
+ROUNDING = 4e-16
 
 # Functions of the bearing law, see `laws.Law`.
 mark, begin_step, reached = law_function("mark"), law_function("begin"), law_function("reached")
@@ -84,14 +89,24 @@ def gravity_of_step(shaking, g, stretch, tau, G):
 def bearing_of_step(par, body, base, branch, gravity, highest, P):
     """Base and bearing at the start of a step; fills x, v, q and F of order 0.
 
-    gravity : g + a_v [m/s2]. Returns (branch, factors of the bearing's series, the bearing's next corner).
+    gravity : g + a_v [m/s2]. Returns what `branch_of` does.
     """
-    (x, v, z), (direction, x_c, mark_c) = base, branch
+    x, v, z = base
     P[L.X, 0], P[L.V, 0] = x, v
     P[L.F, 0] = par.count * (par.kb * x + z + par.damping * v)
     moving = math.copysign(1.0, v)
     if v == 0:
         moving = direction_from_rest(par, body, gravity, highest, P[L.GROUND], P[L.F, 0])
+    return branch_of(par, moving, base, branch, P)
+
+
+@inlined
+def branch_of(par, moving, base, branch, P):
+    """(branch, factors of the bearing's series, the bearing's next corner) of a base that moves to the side `moving`.
+
+    Fills q of order 0.
+    """
+    (x, _, z), (direction, x_c, mark_c) = base, branch
     if moving != direction and moving != 0:
         direction, x_c = moving, x
         mark_c = mark(par.law, direction, z, par.constants)
@@ -154,33 +169,17 @@ def first_event(shape, upright, body, refused, direction, step, P, work):
     refused : the last onset of uplift was a graze; direction : of the base velocity.
     """
     s, tilt, _ = body
-    found, h, order, event, phi = L.NONE, step.h, step.order, P[L.EVENT], P[L.PHI]
+    found, h, order = L.NONE, step.h, step.order
     if s == 0:
         root = find_uplift(shape, upright, refused, step, P, work)
         if root >= 0:
             found, h = L.UPLIFT, root
     else:
-        root = find_fall(phi, s, 0.0, order, h, event, work)
+        root = find_fall(P[L.PHI], s, 0.0, order, h, P[L.EVENT], work)
         if root >= 0:
             found, h = L.IMPACT, root
-        top = upper_bound(phi, s, order, h)
-        if top > shape.gamma > s * tilt:
-            root = find_fall(phi, -s, shape.gamma, order, h, event, work)
-            if root >= 0:
-                found, h = L.PASSAGE, root
-        if top > 0.5 * math.pi:
-            root = find_fall(phi, -s, 0.5 * math.pi, order, h, event, work)
-            if root >= 0:
-                found, h = L.OVERTURNING, root
-    if direction != 0:
-        root = find_fall(P[L.V], direction, 0.0, order, h, event, work)
-        if root > 0:
-            found, h = L.REVERSAL, root
-        if step.corner < math.inf:
-            root = find_fall(P[L.Q], -direction, step.corner, order, h, event, work)
-            if root >= 0:
-                found, h = L.CORNER, root
-    return found, h
+        found, h = find_passage(shape.gamma, s, tilt, (found, h), order, P, work)
+    return find_turn(direction, step.corner, (found, h), order, P, work)
 
 
 @inlined

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from analytic.layout import FLIGHT, MODES
 from analytic.rocking import RockingModel
-from analytic.sliding.layout import FLIGHT, MODES
 
 if TYPE_CHECKING:
     from analytic import Response, Scene

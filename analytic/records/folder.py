@@ -9,8 +9,7 @@ from pathlib import Path
 
 from ..budget import MOST_STEPS
 from ..errors import SceneError, SettingError
-from ..motion import Motion, SampledMotion
-from ..pairing import paired
+from ..motion import Motion, SampledMotion, paired
 from ..scene import Scene
 from . import Channel, fema, read_channels
 

@@ -1,7 +1,7 @@
 """March through the modes of a block that may slide: a Taylor series integrator with events, as the kernel (compiled).
 
-Modes, their equations and ends: `equations`, `choice`, `impact`. Between two events all is smooth, and events are
-located as roots of the step's polynomials.
+Modes, their equations and ends: `equations`, `impact`. Between two events all is smooth, and events are
+located as roots of the step's polynomials. The outcome is decided by the rules of `decision`.
 """
 
 import math
@@ -10,44 +10,63 @@ import numpy as np
 
 from .. import layout as L
 from ..compiled import entry, inner
+from ..decision import largest_force, peaks_are_final, recoverable_energy
 from ..events import find_fall
-from ..laws import law_function
-from ..polynomial import MAX_ORDER, SCRATCH, value
-from ..readings import gravity_at
-from ..steps import end_of_base, end_of_block, gravity_of_step, ground_of_step, stretch_of_ground
+from ..layout import (
+    CLIMB,
+    CONE,
+    DRIFT,
+    FALLEN,
+    FLIGHT,
+    LANDING,
+    LEVEL,
+    LOSS,
+    ROCK,
+    SLIDE,
+    SPEED,
+    STICK,
+    STOP,
+    Block,
+    H,
+    N,
+    Start,
+    Velocity,
+)  # fmt: skip
+from ..polynomial import MAX_ORDER, SCRATCH, bound, largest, value
+from ..readings import PROBES, gravity_at, integral_of_product, read_bearings, top, write_history
+from ..steps import (
+    FARTHEST,
+    PATIENCE,
+    ROUNDING,
+    branch_of,
+    end_of_base,
+    end_of_block,
+    gravity_of_step,
+    ground_of_step,
+    stretch_of_ground,
+)
 from ..taylor import QUIET, allowed_step
-from . import layout as S
-from .choice import choose
-from .ending import at_rest, conclude
-from .equations import accelerations, mode_series
-from .layout import CONE, FALLEN, FLIGHT, LANDING, LEVEL, LOSS, ROCK, STICK, STOP, Block, Start
-from .reading import read
-from .strike import struck
-from .transitions import after_event, fresh_series, impossible, next_event
-
-PATIENCE = 1000
-ROUNDING = 4e-16
-FARTHEST = 4.0
-mark, begin_step = law_function("mark"), law_function("begin")
+from .equations import accelerations, after_event, choose, fresh_series, impossible, mode_series, next_event
+from .impact import kinetic, struck
 
 
 def arrays(capacity, outputs):
     """Workspace of a run: `capacity` events of a kind are kept, and rows of the history."""
-    return (
-        np.zeros((S.ROWS, MAX_ORDER + 2)),
+    return L.Marched(
+        np.zeros((L.ROWS, MAX_ORDER + 2)),
         np.empty(SCRATCH),
         np.empty((capacity, 6)),
         np.empty((capacity, 2)),
         np.empty((outputs, 8)),
-        np.zeros(S.TOTALS),
+        np.zeros(L.TOTALS),
     )
 
 
 @inner
 def state_series(block, P):
     """State of the block as entries 0."""
-    P[L.PHI, 0], P[L.W, 0], P[S.SLIP, 0], P[S.SPEED, 0] = block.tilt, block.rate, block.slip, block.speed
-    P[S.GAP, 0], P[S.RISE, 0] = block.gap, block.rise
+    P[L.PHI, 0], P[L.W, 0], P[L.SLIP, 0], P[L.SPEED, 0] = block.tilt, block.rate, block.slip, block.speed
+    P[L.GAP, 0], P[L.RISE, 0] = block.gap, block.rise
 
 
 @inner
@@ -56,7 +75,7 @@ def usable_step(par, block, order, h, tolerance, P):
     if block.s != 0:
         h = allowed_step(P[L.W], order, tolerance, min(h, FARTHEST / math.sqrt(par.p2)))
     if block.sigma != 0 or block.mode == FLIGHT:
-        h = allowed_step(P[S.DRIFT], order, tolerance, h)
+        h = allowed_step(P[L.DRIFT], order, tolerance, h)
     if block.mode == FLIGHT:  # the tilt rate is constant, its sine is not
         h = allowed_step(P[L.S], order, tolerance, allowed_step(P[L.C], order, tolerance, h))
     if par.on_base:
@@ -75,20 +94,14 @@ def acting(par, base, upright, highest, h, P):
 @inner
 def bearing_of_step(par, contact, block, base, branch, start, highest, P):
     """As `steps.bearing_of_step`: (branch, factors of the bearing's series, the bearing's next corner)."""
-    (x, v, z), (direction, x_c, mark_c) = base, branch
-    P[L.X, 0], P[L.V, 0], P[L.F, 0], moving = x, v, start.force, math.copysign(1.0, v)
-    if v == 0:  # that of the first derivative that is not zero
+    P[L.X, 0], P[L.V, 0], P[L.F, 0], moving = base.x, base.v, start.force, math.copysign(1.0, base.v)
+    if base.v == 0:  # that of the first derivative that is not zero
         _, _, _, across, _ = accelerations(par, contact, block, start)
         begins = -(start.force + across) / contact.mb - start.ground
         if begins == 0 and highest >= 1:
             begins = -P[L.GROUND, 1]
         moving = 0.0 if begins == 0 else math.copysign(1.0, begins)
-    if moving != direction and moving != 0:
-        direction, x_c = moving, x
-        mark_c = mark(par.law, direction, z, par.constants)
-    travel = mark_c + direction * (x - x_c)
-    P[L.Q, 0], factors, corner = begin_step(par.law, direction, z, travel, par.constants)
-    return L.Branch(direction, x_c, mark_c), factors, corner
+    return branch_of(par, moving, base, branch, P)
 
 
 @inner
@@ -96,36 +109,29 @@ def end_of_step(par, block, found, step, P, totals, work):
     """The block at the end of a step, in its old mode; keeps peaks and the way that it slid."""
     tilt, rate, order, h = block.tilt, block.rate, step.order, step.h
     if block.s != 0:
-        tilt, rate, totals[S.PEAK_TILT] = end_of_block(L.Body(block.s, tilt, rate), step, totals[S.PEAK_TILT], P, work)
-    slip, speed, gap, rise = value(P[S.SLIP], order, h), value(P[S.SPEED], order, h), 0.0, 0.0
+        tilt, rate, totals[L.PEAK_TILT] = end_of_block(L.Body(block.s, tilt, rate), step, totals[L.PEAK_TILT], P, work)
+    slip, speed, gap, rise = value(P[L.SLIP], order, h), value(P[L.SPEED], order, h), 0.0, 0.0
     if block.mode == FLIGHT:
-        gap, rise = value(P[S.GAP], order, h), value(P[S.RISE], order, h)
-        root = find_fall(P[S.SPEED], math.copysign(1.0, block.speed), 0.0, order, h, P[L.EVENT], work)
+        gap, rise = value(P[L.GAP], order, h), value(P[L.RISE], order, h)
+        root = find_fall(P[L.SPEED], math.copysign(1.0, block.speed), 0.0, order, h, P[L.EVENT], work)
         if root > 0:  # in contact the slip turns back at an event
-            totals[S.PEAK_SLIP] = max(totals[S.PEAK_SLIP], abs(value(P[S.SLIP], order, root)))
+            totals[L.PEAK_SLIP] = max(totals[L.PEAK_SLIP], abs(value(P[L.SLIP], order, root)))
     elif block.sigma != 0:
-        totals[S.PATH] += abs(slip - block.slip)
+        totals[L.PATH] += abs(slip - block.slip)
     else:
         speed = 0.0
-    totals[S.PEAK_SLIP] = max(totals[S.PEAK_SLIP], abs(slip))
+    totals[L.PEAK_SLIP] = max(totals[L.PEAK_SLIP], abs(slip))
     if block.mode >= ROCK:
-        totals[S.LIFTED] = 1.0
+        totals[L.LIFTED] = 1.0
     if found == L.PASSAGE:
         tilt = block.s * par.gamma
-        if totals[S.UNSTABLE_TIME] < 0:
-            totals[S.UNSTABLE_TIME] = step.t + h
+        if totals[L.UNSTABLE_TIME] < 0:
+            totals[L.UNSTABLE_TIME] = step.t + h
     elif found == L.IMPACT or found == LEVEL:
         tilt = 0.0
     elif found == STOP:
         speed = 0.0
     return Block(block.mode, block.s, block.sigma, tilt, rate, slip, speed, gap, rise)
-
-
-@inner
-def hold(t, totals):
-    """Keeps peaks before what may be the last fall."""
-    totals[S.FALL_TIME], totals[S.HELD_X], totals[S.HELD_FRICTION] = t, totals[S.PEAK_X], totals[S.FRICTION]
-    totals[S.HELD_NORMAL], totals[S.HELD_ACCELERATION] = totals[S.NORMAL], totals[S.PEAK_ACCELERATION]
 
 
 @inner
@@ -138,13 +144,113 @@ def fallen(block, none):
 @inner
 def noted(block, last, t, into):
     """Stores the time at which a mode began; returns the mode."""
-    changes, totals = into[3], into[5]
+    changes, totals = into.changes, into.totals
     if block.mode != last:
-        number = int(totals[S.CHANGES])
+        number = int(totals[L.CHANGES])
         if number < changes.shape[0]:
             changes[number, 0], changes[number, 1] = t, block.mode
-        totals[S.CHANGES] += 1
+        totals[L.CHANGES] += 1
     return block.mode
+
+
+@inner
+def read(par, contact, upright, block, step, options, into, written):
+    """Write the step to history, diagnostics and ledger; returns the rows of the history written."""
+    P, rows = into.P, into.history
+    first, written = written, write_history(par, block, step, options.output_step, into, written)
+    for k in range(first, written):
+        d = min(max(rows[k, 0] - step.t, 0.0), step.h)
+        rows[k, 6], rows[k, 7] = value(P[L.SLIP], step.order, d), value(P[SPEED], step.order, d)
+    if options.record and step.h > 0:
+        forces(par, contact, block, step, P, into.totals, into.work)
+        ledger(par, upright, block, step, P, into.totals)
+    return written
+
+
+@inner
+def forces(par, contact, block, step, P, totals, work):
+    """Peak absolute base acceleration, friction demand |H|/N and least N/(m g) within the step."""
+    h, order = step.h, step.order
+    row, last = (L.ABSOLUTE, order) if par.on_base else (L.GROUND, step.highest)
+    known = totals[L.PEAK_ACCELERATION]
+    if last >= 0 and bound(P[row], last, h) > known:
+        known = largest(P[row], 1.0, last, h, known, P[L.EVENT], work)
+        totals[L.PEAK_ACCELERATION] = largest(P[row], -1.0, last, h, known, P[L.EVENT], work)
+    if block.sigma != 0:
+        totals[L.FRICTION] = contact.mu
+    demand, demand_before, lift, lift_before = 0.0, 0.0, 0.0, 0.0
+    for probe in range(PROBES + 1):
+        across, normal = value(P[H], order, h * probe / PROBES), value(P[N], order, h * probe / PROBES)
+        held = normal > 0 and block.sigma == 0 and block.mode != FLIGHT
+        here, low = abs(across) / normal if held else 0.0, -normal / (par.m * par.g)
+        if probe > 1:
+            reached = min(top(demand_before, demand, here), contact.mu)  # where it is more, an event ends the step
+            totals[L.FRICTION] = max(totals[L.FRICTION], reached)
+            totals[L.NORMAL] = min(totals[L.NORMAL], -top(lift_before, lift, low))
+        demand_before, demand, lift_before, lift = demand, here, lift, low
+
+
+@inner
+def ledger(par, upright, block, step, P, totals):
+    """Work of ground, bearings and friction within the step [J]."""
+    h, order, highest, momentum, part = step.h, step.order, step.highest, P[L.PRODUCT_A], P[L.PRODUCT_B]
+    if highest >= 0:  # -int a_g (M x' + m drift) + a_v m climb dt
+        for k in range(order + 1):
+            momentum[k] = par.m * P[DRIFT, k] + (par.M * P[L.V, k] if par.on_base else 0.0)
+        totals[L.INPUT] -= integral_of_product(P[L.GROUND], min(highest, order), momentum, order, h)
+    if upright is not None:
+        for k in range(max(highest, 0) + 1):
+            part[k] = P[L.GRAVITY, k]
+        part[0] -= par.g
+        totals[L.INPUT] -= par.m * integral_of_product(part, max(highest, 0), P[CLIMB], order, h)
+    if block.sigma != 0:
+        totals[L.FRICTION_WORK] -= integral_of_product(P[H], order, P[SPEED], order, h)
+    read_bearings(par, step, P, totals)
+
+
+@inner
+def at_rest(resting, block, base, totals):
+    """After the motion: whether the block lies still for good, and no peak of the base can grow."""
+    level, acceleration = L.Body(0.0, 0.0, 0.0), totals[L.PEAK_ACCELERATION]
+    peaks = totals[L.PEAK_TILT], totals[L.PEAK_X], acceleration if acceleration > 0 else -1.0
+    return block.mode == STICK and block.s == 0 and peaks_are_final(resting, level, base, peaks)
+
+
+@inner
+def remaining(par, contact, block, base):
+    """Energy [J] that can still reach the block; see `decision`."""
+    angle = block.s * par.gamma - block.tilt if block.s != 0 else par.gamma
+    c, n = par.R * math.cos(angle), par.R * math.sin(angle)
+    velocity = Velocity(block.rate, block.speed + c * block.rate, block.rise + n * block.rate)
+    moving = kinetic(par, contact, velocity, base.v)
+    height = c - par.R * math.cos(par.gamma) + block.gap
+    stored = 0.5 * par.kb * base.x**2 + recoverable_energy(par.law, par.constants, base.z) if par.count > 0 else 0.0
+    return moving + par.m * par.g * height + par.count * stored
+
+
+@inner
+def conclude(par, resting, contact, end_of_motion, block, base, held, totals):
+    """Whether the outcome is certain; fills the rest of `totals`. held : peaks before a last fall, and its time."""
+    mode, status = block.mode, totals[L.STATUS]
+    certain = mode == FALLEN or status == L.DECIDED
+    if not certain and status == L.COMPLETE and totals[L.TIME] >= end_of_motion:
+        energy = remaining(par, contact, block, base)
+        upright = mode != FLIGHT and abs(block.tilt) < par.gamma
+        if totals[L.LIFTED] > 0:
+            certain = upright and energy < par.m * par.g * par.R * (1 - math.cos(par.gamma))  # (a)
+        elif totals[L.PATH] > 0 and contact.mu < par.slope:
+            certain = True  # a level block cannot lift, as |H| <= mu N < N tan(gamma)
+        elif mode == SLIDE:
+            certain = not par.on_base or largest_force(par, energy) < par.M * par.g * par.slope  # (b)
+        else:
+            certain = not par.on_base or largest_force(par, energy) < resting.M * par.g * resting.slope  # (b)
+    totals[L.CERTAIN], totals[L.MODE] = certain, mode
+    totals[L.END_TILT], totals[L.END_RATE], totals[L.END_SLIP] = block.tilt, block.rate, block.slip
+    totals[L.END_SPEED], totals[L.END_GAP], totals[L.END_RISE] = block.speed, block.gap, block.rise
+    totals[L.END_X], totals[L.END_V], totals[L.END_Z] = base
+    if mode == FALLEN:
+        totals[L.PEAK_TILT] = 0.5 * math.pi
+        totals[L.FRICTION], totals[L.NORMAL], totals[L.PEAK_ACCELERATION], totals[L.PEAK_X], totals[L.FALL_TIME] = held
 
 
 # One long function, as two loops share their state.
@@ -155,15 +261,15 @@ def march(par, resting, contact, ground, upright, options, into):
     resting : `par` with the smaller of slope and friction in place of the slope: what a level block bears at rest.
     upright : an argument of its own, see steps.py.
     """
-    P, work, totals, shaking = into[0], into[1], into[5], ground.shaking
+    P, work, totals, shaking = into.P, into.work, into.totals, ground.shaking
     base, branch, none = L.Base(par.x, par.v, par.z), L.Branch(0.0, par.x, 1.0), math.floor(0.0)
     s = math.copysign(1.0, par.tilt if par.tilt != 0 else par.rate) if par.tilt != 0 or par.rate != 0 else 0.0
     block = Block(none + STICK, s, 0.0 * s, par.tilt, par.rate, 0.0 * s, 0.0 * s, 0.0 * s, 0.0 * s)
     previous, fresh, refused, last = block, none + L.NONE, none + L.NONE, none - 1
     status, t, segment, begin, written, idle, steps, highest = L.COMPLETE, 0.0, none, 0.0, none, none, none, none
-    totals[S.UNSTABLE_TIME], totals[S.NORMAL] = 0.0 if abs(par.tilt) >= par.gamma else -1.0, 1.0
-    totals[S.PEAK_TILT], totals[S.PEAK_X] = abs(par.tilt), abs(par.x)
-    hold(0.0, totals)
+    totals[L.UNSTABLE_TIME], totals[L.NORMAL] = 0.0 if abs(par.tilt) >= par.gamma else -1.0, 1.0
+    totals[L.PEAK_TILT], totals[L.PEAK_X] = abs(par.tilt), abs(par.x)
+    held = 0.0, 1.0, 0.0, abs(par.x), 0.0  # friction demand, N/(m g), peaks of the base, time: up to |tilt| = gamma
     rest_rate = options.rest_rate * math.sqrt(par.p2)
     while begin < par.duration and block.mode != FALLEN and status == L.COMPLETE:
         stretch = stretch_of_ground(ground, upright, segment, begin, options.order, par.duration)
@@ -191,7 +297,7 @@ def march(par, resting, contact, ground, upright, options, into):
             if steps == 1 or fresh == L.NONE and refused == L.NONE and impossible(par, contact, block, start):
                 block, count = choose(par, contact, block, start)
                 if count != 1:
-                    status = S.NO_MODE
+                    status = L.NO_MODE
                     break
             factors, corner = (0.0, 0.0, 0.0), math.inf
             if par.on_base:
@@ -217,9 +323,9 @@ def march(par, resting, contact, ground, upright, options, into):
             block = end_of_step(par, block, found, step, P, totals, work)
             if par.on_base:
                 base = end_of_base(par, found, base, branch, step, P)
-                totals[S.PEAK_X] = max(totals[S.PEAK_X], abs(base.x))
+                totals[L.PEAK_X] = max(totals[L.PEAK_X], abs(base.x))
             if abs(block.tilt) <= par.gamma:
-                hold(step.t + h, totals)
+                held = totals[L.FRICTION], totals[L.NORMAL], totals[L.PEAK_ACCELERATION], totals[L.PEAK_X], step.t + h
             if h > 0:
                 fresh, refused = none + L.NONE, none + L.NONE
             tau = length if found == L.NONE and h == length - tau else tau + h
@@ -236,12 +342,12 @@ def march(par, resting, contact, ground, upright, options, into):
                 if found == CONE or found == L.UPLIFT or found == LOSS:
                     fresh = none + (LOSS if block.mode == FLIGHT else found)
             if status == L.COMPLETE and count != 1:
-                status = S.NO_MODE
+                status = L.NO_MODE
             if not (math.isfinite(block.tilt) and math.isfinite(base.x) and math.isfinite(block.slip)):
                 status = L.NOT_FINITE
             if status != L.COMPLETE:
                 break
         if block.mode != FALLEN and status == L.COMPLETE:
             begin, t = finish, finish
-    totals[S.STATUS], totals[S.TIME], totals[S.STEPS], totals[S.WRITTEN] = status, t, steps, written
-    conclude(par, resting, contact, shaking.end, block, base, totals)
+    totals[L.STATUS], totals[L.TIME], totals[L.STEPS], totals[L.WRITTEN] = status, t, steps, written
+    conclude(par, resting, contact, shaking.end, block, base, held, totals)

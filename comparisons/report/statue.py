@@ -7,9 +7,8 @@ from typing import Any
 
 from analytic import Scene, SceneError, simulate
 from analytic.limits import scene_warnings
-from analytic.margins import SPAN, STEP, TILT, limit_states, margins
+from analytic.margins import SHARE, SPAN, STEP, TILT, cliffs, limit_states, margins, nearby
 from analytic.motion import Motion
-from analytic.nearby import SHARE, cliffs, nearby
 from analytic.records.folder import reversed_sign, same_reversed
 from analytic.response import JUDGED, about_record
 

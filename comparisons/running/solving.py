@@ -162,7 +162,7 @@ def simulate(
 
 def near_motion(scene: Scene) -> tuple[Caution, ...]:
     """`near` a scene's motion, shown while it is looked for; none without a motion."""
-    from analytic.nearby import SHARE
+    from analytic.margins import SHARE
 
     if scene.motion is None:
         return ()
@@ -171,8 +171,8 @@ def near_motion(scene: Scene) -> tuple[Caution, ...]:
 
 
 def near(scene: Scene) -> tuple[Caution, ...]:
-    """`analytic.nearby.cliffs` of a scene with a motion, or that it was not looked for."""
-    from analytic.nearby import SHARE, cliffs, nearby
+    """`analytic.margins.cliffs` of a scene with a motion, or that it was not looked for."""
+    from analytic.margins import SHARE, cliffs, nearby
     from analytic.response import Caution
 
     try:

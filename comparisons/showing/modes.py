@@ -4,7 +4,7 @@ import math
 
 from markupsafe import Markup
 
-from analytic.sliding.layout import FLIGHT, MODES, ROCK, SLIDE, SLIDE_ROCK, STICK
+from analytic.layout import FLIGHT, MODES, ROCK, SLIDE, SLIDE_ROCK, STICK
 
 from .diagrams import Drawing, Place
 

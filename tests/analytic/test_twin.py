@@ -15,8 +15,7 @@ from analytic.motion import PulseMotion, SampledMotion
 from analytic.problems import problem_a, problem_b
 from analytic.records import read_record
 from analytic.scene import Block, Scene, Start
-from analytic.segments import segments
-from analytic.twin import simulate_twin
+from analytic.twin import segments, simulate_twin
 
 P, GAMMA = 2.60, 0.25
 HOUSNER = 1 - 1.5 * math.sin(GAMMA) ** 2
@@ -113,7 +112,7 @@ def test_rest_limit_is_the_same_whenever_impacts_are_declared_accumulated():
 
 
 def test_restitution_of_one_fails_instead_of_bouncing_for_ever(monkeypatch):
-    monkeypatch.setattr("analytic.twin.run.IMPACT_LIMIT", 100)
+    monkeypatch.setattr("analytic.twin.IMPACT_LIMIT", 100)
     run = simulate_twin(problem_a().with_(block={"restitution": 1.0}, start=Start(tilt=1e-9)))
     assert run.outcome == "failed" and "pile up" in run.failure.reason
     assert run.failure.last_state.time < 7
@@ -131,7 +130,7 @@ def test_event_that_scipy_cannot_find_is_a_failure_with_scipys_words(monkeypatch
 
     scene = Scene(block=SLENDER, base=BASE, bearings=LRB, start=Start(tilt=0.1), duration=3.0)
     whole = simulate_twin(scene, method="LSODA", rtol=1e-8)
-    monkeypatch.setattr("analytic.twin.run.solve_ivp", third_call_raises)
+    monkeypatch.setattr("analytic.twin.solve_ivp", third_call_raises)
     run = simulate_twin(scene, method="LSODA", rtol=1e-8)
     assert whole.outcome == "rocks" and run.outcome == "failed"
     assert (run.failure.reason, run.to_json()["failure"]["message"]) == ("scipy could not find an event", words)

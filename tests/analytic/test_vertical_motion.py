@@ -13,7 +13,7 @@ from analytic.batch import simulate_many
 from analytic.caryatid import BASE, caryatid_block
 from analytic.caryatid import BEARINGS as LRB
 from analytic.decision import RIGID_BEARINGS
-from analytic.pairing import paired
+from analytic.motion import paired
 from analytic.records import read_record
 from analytic.synthetic import synthetic_motion
 from analytic.time_stepping import simulate_time_stepping

@@ -16,7 +16,7 @@ from sliding_scenes import SAVED, SLIDES
 import analytic
 from analytic import Bearings, PulseMotion, SampledMotion, load_scene
 from analytic.errors import SceneError, SettingError
-from analytic.pairing import paired
+from analytic.motion import paired
 from analytic.rocking import RockingModel
 from analytic.synthetic import synthetic_motion
 from engines import ENGINES, get_engine

@@ -62,7 +62,7 @@ MUTATIONS = {
         f"{HOLDS}[bearing impulse in the motion: exudyn, compliant-corners, isolated Caryatid, synthetic motion]",
     ),
     "twin: nobody counts its impacts": Mutation(
-        "analytic.twin.run",
+        "analytic.twin",
         "if self.stalled > STALL_LIMIT or len(self.impacts) > IMPACT_LIMIT:",
         "if False:",
         "tests/analytic/test_twin.py::test_restitution_of_one_fails_instead_of_bouncing_for_ever",

@@ -16,7 +16,7 @@ from analytic.rocking import (
     momentum_restitution,
     restitution,
 )
-from analytic.twin.run import Event
+from analytic.twin import Event
 from engines import get_engine
 
 from ...measuring.autopsy import CAUSES, LEAST, diagnosis

@@ -20,7 +20,7 @@ from analytic import Response, Scene, State, kernel, layout
 from analytic.problems import problem_a, problem_b
 from analytic.rocking import RockingModel
 from analytic.solver import REST_RATE, ground, options, parameters
-from analytic.twin.run import Event
+from analytic.twin import Event
 
 from ...running.cases import Case
 

@@ -9,8 +9,8 @@ import numpy as np
 from analytic import Response, SampledMotion, Scene, simulate
 from analytic.closed_form import free_rocking_tilt, rest_time
 from analytic.rocking import restitution
-from analytic.sliding.moreau import Slid, simulate_moreau
 from analytic.solver import HISTORY_POINTS
+from analytic.time_stepping import simulate_time_stepping
 from analytic.twin import simulate_twin
 from engines.comparison import outcome_of
 from engines.copies import changed_copies
@@ -121,14 +121,12 @@ def beyond_range(name: str) -> dict[str, float]:
 SLIPS = ("peak slip", "end slip")
 
 
-def slips(run: Response | Slid) -> tuple[float, float]:
+def slips(run: Response) -> tuple[float, float]:
     """(largest |slip|, slip at the end) [m]; 0 of a block that does not slide."""
-    if isinstance(run, Slid):
-        return run.peak_slip, run.slip
     return (run.sliding.peak, run.sliding.end) if run.sliding else (0.0, 0.0)
 
 
-def slip_errors(hard: HardCase, run: Response | Slid, judge: Response | Slid, unit: float) -> dict[str, float]:
+def slip_errors(hard: HardCase, run: Response, judge: Response, unit: float) -> dict[str, float]:
     """Errors of the slips of a `run`, over `unit` [m]: against those known beforehand, else those of the judge."""
     found = zip(SLIPS, slips(run), slips(judge), strict=True)
     return {name: abs(own - hard.expected.get(name, other)) / unit for name, own, other in found}
@@ -140,9 +138,10 @@ def slip_unit(scene: Scene, model: Response) -> float:
 
 
 @functools.cache
-def stepped(name: str) -> list[Slid]:
+def stepped(name: str) -> list[Response]:
     """Runs of a case with friction by Moreau's time stepping: the one that judges, and those of coarser steps."""
-    return [simulate_moreau(hard_cases()[name].scene, step=STEP * factor) for factor in (1, *COARSER)]
+    scene = hard_cases()[name].scene
+    return [simulate_time_stepping(scene, step=STEP * factor, history=False) for factor in (1, *COARSER)]
 
 
 def stepping_errors(hard: HardCase, model: Response) -> dict[str, float]:
@@ -163,7 +162,7 @@ def stepping_errors(hard: HardCase, model: Response) -> dict[str, float]:
     return errors | {"judge's doubt": doubt}
 
 
-def _apart(hard: HardCase, run: Response | Slid, judge: Slid, unit: float) -> dict[str, float]:
+def _apart(hard: HardCase, run: Response, judge: Response, unit: float) -> dict[str, float]:
     """{measure: distance of a run from the one that judges}; of tilt and displacement at peak and end."""
     found, falls = slip_errors(hard, run, judge, unit), judge.overturning_time is not None
     if run.overturning_time is not None and judge.overturning_time is not None:

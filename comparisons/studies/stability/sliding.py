@@ -4,7 +4,7 @@ import math
 
 from analytic import PulseMotion, Scene, Start
 from analytic.caryatid import MASS, caryatid_block
-from analytic.sliding.bounds import slipping_friction
+from analytic.sliding.run import slipping_friction
 from analytic.solver import parameters
 
 from .basis import BLOCK, GAMMA, ISOLATED, THRESHOLD, HardCase

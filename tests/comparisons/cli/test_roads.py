@@ -14,7 +14,7 @@ import pytest
 from lying_engine import FAULTS, LIES, SHARE, liars
 from roads import KINDS, REFUSED, write_records
 
-from analytic import Base, Bearings, bearing_scan, load_scene, margins, nearby, simulate
+from analytic import Base, Bearings, bearing_scan, load_scene, margins, simulate
 from analytic.design import properties
 from analytic.response import DIFFERENCES, JUDGED, Difference
 from analytic.rocking import restitution
@@ -31,7 +31,7 @@ SCHEMAS = schemas()
 USUAL = {
     "margin": (margin.STEPS, margins.BISECTIONS),
     "design": (bearing_scan.PERIOD_STEP, bearing_scan.DAMPING_STEP),
-    "report": (statue.STEP, next_step.STEP, nearby.STEP),
+    "report": (statue.STEP, next_step.STEP, margins.STEP),
 }
 ERROR = re.compile(r"^Error: (?P<file>\S+): (?P<field>[\w.]+)(?: = (?P<value>.+?))?: (?P<problem>.+); (?P<remedy>.+)$")
 RECORDS = 3  # of the folder that are earthquakes
@@ -75,7 +75,7 @@ def road(rocking, tmp_path, monkeypatch):
     monkeypatch.setattr(bearing_scan, "DAMPING_STEP", 0.05)
     monkeypatch.setattr(statue, "STEP", 0.1)
     monkeypatch.setattr(next_step, "STEP", 0.2)
-    monkeypatch.setattr(nearby, "STEP", 0.0125)
+    monkeypatch.setattr(margins, "STEP", 0.0125)
     monkeypatch.setattr("comparisons.running.study.Processes", Here)
     monkeypatch.setattr(
         import_module("comparisons.advice.choose"), "Processes", Here

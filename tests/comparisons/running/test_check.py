@@ -9,7 +9,7 @@ from fake_solvers import cases, scene
 
 from analytic import PulseMotion, SampledMotion, synthetic_motion
 from analytic.errors import EngineNotInstalled
-from analytic.pairing import paired
+from analytic.motion import paired
 from comparisons.report.answer import origin_of
 from comparisons.running import by_solver, run_sample
 from comparisons.running import check as module

@@ -3,7 +3,7 @@
 import re
 from xml.etree import ElementTree
 
-from analytic.sliding.layout import MODES
+from analytic.layout import MODES
 from comparisons.showing import modes
 
 SVG = ElementTree.fromstring(str(modes.modes()))

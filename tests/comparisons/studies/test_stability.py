@@ -8,12 +8,10 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from analytic import PulseMotion, Scene, SceneError, simulate
+from analytic import PulseMotion, Scene, SceneError, layout, simulate
 from analytic.response import Failure
 from analytic.rocking import momentum_restitution, restitution
-from analytic.sliding import layout
-from analytic.sliding.bounds import contact_of, slipping_friction
-from analytic.sliding.run import marched
+from analytic.sliding.run import contact_of, marched, slipping_friction
 from analytic.solver import TOLERANCE, ground, options, parameters
 from comparisons.running.by_solver import read
 from comparisons.running.plan import Request

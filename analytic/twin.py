@@ -1,11 +1,19 @@
-"""A run of the second implementation: intervals of smooth motion, and the events between them."""
+"""The second implementation: the equations of rocking.py solved by scipy's `solve_ivp` with events; slow and simple.
+
+It is independent of the compiled kernel, which it verifies, and is what a careful user would write. One call of
+`solve_ivp` covers one interval of smooth motion. It ends at the next corner of the ground motion, at an impact, an
+uplift, a reversal of the base (where the bearing's history is committed), a corner of the bearing law, or at
+overturning.
+"""
 
 from __future__ import annotations
 
+import functools
 import math
 import platform
+import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,22 +21,191 @@ import scipy
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from ..decision import model_warnings
-from ..extremes import Extremes
-from ..limits import limit_warnings
-from ..motion import PulseMotion, SampledMotion
-from ..response import Energy, Failure, Impact, Response
-from ..segments import shared_segments
-from .equations import Equations
+from .budget import most_steps, too_long
+from .decision import model_warnings
+from .errors import SettingError
+from .limits import limit_warnings
+from .motion import PulseMotion, SampledMotion
+from .response import Energy, Failure, History, Impact, Response, State
+from .rocking import RockingModel
+from .termination import is_decided, until_decided
 
 if TYPE_CHECKING:
-    from ..scene import Scene
-    from ..types import GroundFunction
+    from .motion import Motion
+    from .scene import Scene
+    from .types import GroundFunction
 
+METHODS = ("DOP853", "RK45", "LSODA", "Radau")
 IMPACT_LIMIT = 50_000  # more impacts in one run never accumulate (restitution of 1)
 STALL_LIMIT = 50  # guard against an endless loop of events at one time
 STAND_POINTS = 33  # points of a segment at which uplift is checked under two motions
 REST_HORIZON = 0.1  # a block rests only if its impacts end within this share of 1/omega_r
+ROUNDING = 1e-12  # of a passage of the slenderness that was found as a root
+
+
+def simulate_twin(
+    scene: Scene,
+    *,
+    method: str = "DOP853",
+    rtol: float = 1e-10,
+    atol: float | None = None,
+    history: bool = True,
+    energy: bool = True,
+    max_step: float | None = None,
+    rest_rate: float = 1e-8,
+) -> Response:
+    """Simulate a scene with scipy.
+
+    Parameters
+    ----------
+    scene : Scene
+    method : str
+        One of `METHODS`.
+    rtol : float
+        Relative tolerance of `solve_ivp`.
+    atol : float, optional
+        Absolute tolerance as a share of each state's scale (slenderness, R times slenderness, omega_r times
+        these, f0); default rtol.
+    history, energy : bool
+        Whether to keep the states at every step, and to integrate the energy ledger with them.
+    max_step : float, optional
+        Longest step [s]; default the least of half a sampling interval and, on bearings, half of 1/omega at ka.
+    rest_rate : float
+        Impacts count as accumulated if |phi'+| < rest_rate omega_r and the contact force is compressive; the block then
+        rests.
+
+    Returns
+    -------
+    Response
+        engine "twin". Extremes of forces and accelerations are taken at the steps; peaks of tilt and displacement are
+        located as events.
+
+    Raises
+    ------
+    SettingError
+        The method is unknown, a tolerance is not positive, or `max_step` too short for the run.
+    SceneError
+        Stiff bearings or a long run need more steps than `budget` allows; the message names the part.
+    """
+    settings: dict[str, Any] = {
+        "method": method,
+        "rtol": rtol,
+        "atol": atol,
+        "max_step": max_step,
+        "rest_rate": rest_rate,
+    }
+    _check(settings)
+    if scene.duration is None:
+        return until_decided(functools.partial(simulate_twin, history=history, energy=energy, **settings), scene)
+    run = Run(scene, {**settings, "atol": rtol if atol is None else atol}, history, energy)
+    _check_cost(run, max_step)
+    run.model.bearing.hysteretic(0.0, 1e-6)  # compiled before the time is taken
+    started = time.process_time()
+    failure = run.go()
+    response = run.response(time.process_time() - started, failure)
+    return replace(response, decided=is_decided(scene, response))
+
+
+def _check_cost(run: Run, max_step: float | None) -> None:
+    """Refuse a run that needs more steps of the largest length than the model itself may take."""
+    end, most = run.scene.end, most_steps(run.scene)
+    if end <= most * run.max_step:
+        return
+    if max_step is not None:
+        raise SettingError(f"max_step = {max_step!r}: {end / max_step:.3g} steps; give at least {end / most:.3g} s")
+    raise too_long(run.scene, f"{end / run.max_step:.3g} steps of the second implementation")
+
+
+def _check(settings: Mapping[str, Any]) -> None:
+    """Refuse a method that is unknown, or a number that is not positive."""
+    if settings["method"] not in METHODS:
+        raise SettingError(f"method {settings['method']!r} is unknown: choose one of {', '.join(METHODS)}")
+    for name, value in settings.items():
+        if name != "method" and value is not None and not (value > 0 and math.isfinite(value)):
+            raise SettingError(f"{name} = {value!r} is not positive: give a finite value above 0")
+
+
+def shared_segments(
+    motion: Motion | None, duration: float
+) -> list[tuple[float, float, GroundFunction, GroundFunction]]:
+    """[(start, end, a_g(t), a_v(t)), ...] as of `segments`: on each both accelerations are smooth and monotone."""
+    level = segments(motion, duration)
+    if motion is None or motion.vertical is None:
+        return [(*piece, _line(0.0, 0.0, 0.0)) for piece in level]
+    upright = segments(motion.vertical, duration)
+    cuts = sorted({end for pieces in (level, upright) for _, end, _ in pieces})
+    found, start, i, j = [], 0.0, 0, 0
+    for end in cuts:
+        found.append((start, end, level[i][2], upright[j][2]))
+        start, i, j = end, i + (level[i][1] == end), j + (upright[j][1] == end)
+    return found
+
+
+def segments(motion: Motion | None, duration: float) -> list[tuple[float, float, GroundFunction]]:
+    """[(start, end, a_g(t)), ...] from 0 to duration [s]: on each, a_g is smooth, and monotone in the open.
+
+    One per interval of a record; pulses are cut at their zeros and extremes. a_g takes floats.
+    """
+    if isinstance(motion, SampledMotion):
+        dt, samples = motion.dt, motion.samples.tolist()
+        pieces = [
+            (i * dt, (i + 1) * dt, _line(i * dt, a, (b - a) / dt))
+            for i, (a, b) in enumerate(zip(samples[:-1], samples[1:], strict=True))
+        ]
+    elif motion is not None:
+        turns = motion.form.turns(motion.form.length, motion.phase)
+        cuts = [motion.start + u / motion.frequency for u in turns[:-1]] + [motion.end]
+        pieces = [(0.0, motion.start, _line(0.0, 0.0, 0.0))]
+        pieces += [(a, b, _pulse(motion)) for a, b in zip(cuts[:-1], cuts[1:], strict=True)]
+    else:
+        pieces = []
+    pieces.append((pieces[-1][1] if pieces else 0.0, math.inf, _line(0.0, 0.0, 0.0)))
+    return [(a, min(b, duration), ground) for a, b, ground in pieces if a < min(b, duration)]
+
+
+def _line(start: float, value: float, slope: float) -> GroundFunction:
+    return lambda t: value + slope * (t - start)
+
+
+def _pulse(motion: PulseMotion) -> GroundFunction:
+    a, w, start, phase, value = motion.amplitude, motion.frequency, motion.start, motion.phase, motion.form.value
+    return lambda t: a * value(math, w * (t - start) + phase)
+
+
+class Extremes:
+    """Largest tilt [rad], base displacement [m], absolute acceleration [m/s2] and friction demand, least N/(m g).
+
+    All except the tilt leave out the last fall. `held`: their values, and the time [s], when |tilt| last was at most
+    the slenderness.
+    """
+
+    def __init__(self, tilt: float, x: float, history: bool) -> None:
+        self.tilt, self.x, self.acceleration, self.friction, self.normal = abs(tilt), abs(x), 0.0, 0.0, 1.0
+        self.held = self.x, self.acceleration, self.friction, self.normal, 0.0
+        self.rows: list[Sequence[float]] | None = [] if history else None
+
+    def step(self, row: Sequence[float], absolute: float, horizontal: float, normal: float, slenderness: float) -> None:
+        """Include one state: a row of the history, the base's acceleration [m/s2], contact forces over m g."""
+        t, tilt, _, x, *_ = row
+        self.tilt, self.x = max(self.tilt, abs(tilt)), max(self.x, abs(x))
+        self.acceleration = max(self.acceleration, abs(absolute))
+        self.friction = max(self.friction, abs(horizontal) / normal if normal > 0 else math.inf)
+        self.normal = min(self.normal, normal)
+        if abs(tilt) <= slenderness * (1 + ROUNDING):
+            self.held = self.x, self.acceleration, self.friction, self.normal, t
+        if self.rows is not None:
+            self.rows.append(row)
+
+    def exclude_overturning(self) -> float:
+        """Remove the last fall of a block that has overturned; returns the time [s] at which it began."""
+        self.x, self.acceleration, self.friction, self.normal, began = self.held
+        return began
+
+    def history(self) -> History | None:
+        """The `History`, or None."""
+        if self.rows is None:
+            return None
+        return History(*np.array(self.rows).reshape(-1, len(History.COLUMNS)).T)
 
 
 @dataclass(frozen=True)
@@ -41,6 +218,102 @@ class Event:
 
     def __call__(self, t: float, y: np.ndarray) -> float:
         return self.function(t, y)
+
+
+class Equations:
+    """The state y and its derivative. y = [tilt, rate], on a base also x, v and z if integrated, then energy terms.
+
+    t [s]; side of the pivot, 0 in full contact; scale of each component of y; max_step: longest step [s] for the
+    bearings.
+    """
+
+    vertical: Callable[[float], float]  # a_v(t) [m/s2] of the segment
+
+    def __init__(self, scene: Scene, energy: bool) -> None:
+        self.scene, self.energy = scene, energy
+        self.model = model = RockingModel.of(scene)
+        self.law, self.omega_r = model.bearing, scene.rocking_frequency
+        start, length = scene.start, model.R * model.gamma
+        y, scale = [start.tilt, start.tilt_rate], [model.gamma, model.gamma * self.omega_r]
+        self.x_c, self.z_c = start.base_displacement, self.law.start(start.base_displacement)
+        self.max_step = math.inf
+        if model.on_base:
+            y += [start.base_displacement, start.base_velocity]
+            scale += [length, length * self.omega_r]
+            stiffness = self.law.count * (self.law.kb + self.law.dk)
+            if stiffness > 0:
+                self.max_step = 0.5 * math.sqrt(model.M / stiffness)
+            if self.law.unit.branch:
+                y.append(self.z_c)
+                scale.append(self.law.f0)
+        if energy:
+            extra = 3 if model.on_base else 1
+            y += [0.0] * extra
+            scale += [model.m * model.g * length * model.gamma] * extra
+        self.y, self.scale, self.t = np.array(y), np.array(scale), 0.0
+        self.side = math.copysign(1.0, start.tilt or start.tilt_rate) if start.tilt or start.tilt_rate else 0.0
+
+    def contact_acceleration(self, y: np.ndarray, ground: float) -> float:
+        """Absolute acceleration of the base in full contact [m/s2], eq. (2)."""
+        if not self.model.on_base:
+            return ground
+        return self.model.contact_acceleration(self.bearing_force(y))
+
+    def derivative(self, ground: GroundFunction, direction: float) -> Callable[[float, np.ndarray], np.ndarray]:
+        model, law, side, energy, vertical = self.model, self.law, self.side, self.energy, self.vertical
+        branch = law.unit.branch and law.unit.branch(self.hysteretic_force(self.y), direction, law.constants)
+        if not model.on_base:
+
+            def block_alone(t, y):
+                a, up, rate = ground(t), vertical(t), y[1]
+                slope = (rate, model.accelerations(side, y[0], rate, a, 0.0, up)[0])
+                if not energy:
+                    return slope
+                c, n = model.lever(side, y[0])
+                return (*slope, -model.m * (a * c + up * n) * rate)
+
+            return block_alone
+
+        def block_on_base(t, y):
+            a, up, (tilt, rate, x, v) = ground(t), vertical(t), y[:4].tolist()
+            z = self.hysteretic_force(y)
+            force = law.force(x, z, v)
+            if side:
+                spin, push = model.accelerations(side, tilt, rate, a, force, up)
+            else:
+                spin, push = 0.0, model.contact_acceleration(force) - a
+            slope = [rate, spin, v, push]
+            if branch:
+                slope.append(branch(z, v))
+            if energy:
+                c, n = model.lever(side, tilt) if side else (0.0, 0.0)
+                work = -a * (model.M * v + model.m * c * rate) - up * model.m * n * rate
+                slope += [work, law.count * z * v, law.count * law.damping * v * v]
+            return slope
+
+        return block_on_base
+
+    def hysteretic_force(self, y: np.ndarray) -> float:
+        """z of one bearing [N]: from the state, or in closed form from the last reversal."""
+        return float(y[4]) if self.law.unit.branch else self.law.hysteretic(self.z_c, float(y[2]) - self.x_c)
+
+    def bearing_force(self, y: np.ndarray) -> float:
+        return self.law.force(float(y[2]), self.hysteretic_force(y), float(y[3])) if self.model.on_base else 0.0
+
+    def fix_history(self) -> None:
+        """Store the point of reversal, the memory of the bearing."""
+        if self.model.on_base:
+            self.z_c, self.x_c = self.hysteretic_force(self.y), float(self.y[2])
+
+    def energies(self) -> tuple[float, float]:
+        """(kinetic, potential) [J], see `RockingModel`."""
+        model, (tilt, rate, *base) = self.model, self.y[:4].tolist()
+        x, v = base if model.on_base else (0.0, 0.0)
+        return model.kinetic_energy(self.side, tilt, rate, v), model.potential_energy(self.side, tilt, x)
+
+    def state(self) -> State:
+        x, v = (float(self.y[2]), float(self.y[3])) if self.model.on_base else (0.0, 0.0)
+        return State(self.t, float(self.y[0]), float(self.y[1]), x, v, self.bearing_force(self.y))
 
 
 class Run(Equations):
