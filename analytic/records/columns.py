@@ -16,45 +16,42 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import SceneError
-from .content import Asked, Content
+from .content import Asked, Content, Format
 from .numbers import check_count, check_last, fortran_values, number, numbers_in, value_of
-from .rows import (
-    COMMENT,
-    NUMERIC,
-    Table,
-    check_leading,
-    counted,
-    counts,
-    fields_of,
-    parted,
-    rises,
-    split,
-    unpaired,
-    unquoted,
-)
 from .statements import Statements, read_statements, stated_count, stated_unit, unused_factors
-from .times import SAME, uniform_step, usable
-from .titles import (
+from .table import (
     ACCELERATED,
+    COMMENT,
     DEPTH,
     NUMBERS,
+    NUMERIC,
     OTHERS,
     PERIODS,
     TIME,
     UNKNOWN,
+    Table,
     Titles,
     check_events,
+    check_leading,
+    counted,
+    counts,
+    fields_of,
     find_titles,
     has_unit,
     kinds_of,
     name_of,
+    parted,
+    rises,
     spectrum_in,
+    split,
     time_words,
+    unpaired,
+    unquoted,
     with_unit,
 )
+from .times import SAME, uniform_step, usable
 from .units import in_latin
 
-NAME = "columns"
 REMEDY = "write time [s] and acceleration, two numbers a line"
 OF_TIMES = (
     "give the accelerations over time of this record; if these are, title their columns time [s] and acceleration"
@@ -122,12 +119,7 @@ class Sheet:
         )
 
 
-def recognises(lines: Sequence[str]) -> bool:
-    """Always: columns are the last format tried."""
-    return True
-
-
-def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
+def _read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
     """The `Content` of each column of accelerations, or of the one asked for, or of accelerations alone.
 
     Raises
@@ -348,3 +340,6 @@ def _step(sheet: Sheet, place: int) -> float:
     if abs(printed - stated.step) > SAME * printed:
         raise SceneError("dt", stated.step, f"but the times have a step of {printed:.9g} s", "correct the wrong one")
     return stated.step
+
+
+COLUMNS = Format("columns", lambda lines: True, _read)  # the last one that is tried
