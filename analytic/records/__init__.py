@@ -7,9 +7,10 @@ acceleration a line (ETABS, SAP2000), times of their own for each column (LabVIE
 several a line, with their number and step above (eqsig, DEEPSOIL) or without (OpenSees); with or without header lines,
 quotes, numbered rows and decimal commas; and gzip or zip of any of these.
 
-Unit and step are those stated in the file, in English, Spanish, German, French or Turkish, or else those given as
-``units`` (m/s2, cm/s2, gal, mm/s2, g or %g) and ``dt`` [s]. Plain words of units in Cyrillic, Chinese and Japanese are
-read, too. ``column`` selects one of several columns, ``channel`` one of several channels, by number or by name. A
+Unit and step are those that the file states in the manner of its format, in the titles of its columns, or in a line
+KEY: value or KEY = value ("Sampling rate: 200 Hz"), or else those given as ``units`` (m/s2, cm/s2, gal, mm/s2, g or %g)
+and ``dt`` [s]. No step is taken from a sentence or from another language than English, but for the Spanish keys of
+networks in America; a warning names the line where ``dt`` is given. ``column`` selects one of several columns, ``channel`` one of several channels, by number or by name. A
 record is refused if one of these is missing or contradicts the file. Other formats, spectra, velocities, displacements,
 tables of earthquakes, unknown units, damaged numbers, and a number above a list of accelerations that may be their
 step, their number or a factor are refused, too; the message says what to do. A record in g is read with g = 9.81 m/s2,

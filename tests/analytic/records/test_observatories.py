@@ -179,7 +179,12 @@ CSMIP = {
     "a digit moved": ({"channel": 1}, " -45.60000", " -45.6000 ", "line 47 = '-45.6000 ': not a number"),
     "another digit behind": ({"channel": 1}, " -45.60000", "  -45.6000", "not printed as the other numbers are"),
     "stars": ({"channel": 1}, " -45.60000", "**********", "= '**********': not a number"),
-    "cut": ({"channel": 1}, "/&  ----------  End of data for channel  3", "/ 3", "no line that ends the channel follows"),
+    "cut": (
+        {"channel": 1},
+        "/&  ----------  End of data for channel  3",
+        "/ 3",
+        "no line that ends the channel follows",
+    ),
     "two steps": ({"channel": 1}, "spaced at .005", "spaced at .010", "line 40, step = 0.005: but line 46 says 0.01 s"),
     "no step": (
         {"channel": 1},
