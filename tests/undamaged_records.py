@@ -304,7 +304,7 @@ def titled():
         ("counted", "made up\n24 0.0050\n" + rows_of("{a:.6f}"), {"units": "m/s2"}, (TWICE, 1, 0.005)),
         ("counted, a list", f"46 .01\n{_list(SMOOTH)}", {"units": "g"}, (SMOOTH, GRAVITY, 0.01)),
         ("counted, times", "24 0.005\n" + rows_of("{t:.3f} {a:.4f}"), {"units": "g"}, (TWICE, GRAVITY, 0.005)),
-        ("counted, lines", "24\n0.005\n" + rows_of("{a:.4f}"), {"units": "cm/s2"}, (TWICE, GAL, 0.005)),
+        ("counted, lines, refused", "24\n0.005\n" + rows_of("{a:.4f}"), {"units": "cm/s2"}, (TWICE, GAL, 0.005)),
         ("step line", "Time Step: 0.005\n" + rows_of("{a:.5f}"), {"units": "g"}, (TWICE, GRAVITY, 0.005)),
         ("pairs", "$ in g\n" + in_lines([f"{pair}  " for pair in pairs], 4), {"units": "g"}, (TWICE, GRAVITY, 0.005)),
         ("pairs, three a line", in_lines([f"{pair} " for pair in pairs], 3), {"units": "g"}, (TWICE, GRAVITY, 0.005)),

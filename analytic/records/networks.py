@@ -8,6 +8,7 @@ then a time stamp, a time [s] and three components [gal] a line, whose offsets t
 
 import re
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -124,7 +125,7 @@ _DURATION = re.compile(r"Duration Time *\(s\) *([0-9]{1,6}(?:\.[0-9]*)?) *", re.
 _DIRECTION = re.compile(r"Dir\. *(.*)", re.I)
 _PEAK = re.compile(rf"Max\. Acc\. *\(gal\) *({NUMBER}) *", re.I)
 _COUNT = re.compile(r"[+-]?[0-9]{1,9}")
-_KNET_REMEDY = "give the ASCII file as the network sends it"
+_KNET_REMEDY = "give the file as the network sends it, in ASCII or CSV"
 
 
 def _knet(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
@@ -170,7 +171,11 @@ _NUMBERS = {"Sampling Freq(Hz)": _FREQUENCY, "Duration Time(s)": _DURATION}
 
 def _found(header: Sequence[str], key: str, pattern: re.Pattern[str]) -> re.Match[str]:
     """The only line of the header that `pattern` matches."""
-    found = [match for match in map(pattern.fullmatch, header) if match]
+    return _only(key, [match for match in map(pattern.fullmatch, header) if match])
+
+
+def _only(key: str, found: Sequence[Any]) -> Any:
+    """The only one found of a key of the header."""
     if len(found) != 1:
         raise SceneError(key, None, "stated twice" if found else "missing from the header, or damaged", _KNET_REMEDY)
     return found[0]
@@ -191,7 +196,6 @@ def _check_places(lines: Sequence[str], first: int) -> None:
 
 
 _COMPONENT = re.compile(r"([^,()]+)\(gal\)", re.I)
-_CSV_REMEDY = "give the file as the network sends it, or the ASCII file of this record"
 
 
 def _knet_csv(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
@@ -209,9 +213,9 @@ def _knet_csv(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
     titles = _below(header, "Offset")
     names, offsets = _COMPONENT.findall(titles), _below(header, titles).split(",")
     if not 0 < frequency or len(names) != len(offsets) or header[-1] != f"Time,RelativeTime(s),{titles}":
-        raise SceneError("header", None, "no sampling frequency, or no offset of each component", _CSV_REMEDY)
+        raise SceneError("header", None, "no sampling frequency, or no offset of each component", _KNET_REMEDY)
     if len(rows) < 2:
-        raise SceneError("record", None, f"holds {len(rows)} samples", _CSV_REMEDY)
+        raise SceneError("record", None, f"holds {len(rows)} samples", _KNET_REMEDY)
     for name, offset in zip(names, offsets, strict=True):
         number(f"Offset, {name}", offset)
     for where, fields in rows:
@@ -243,10 +247,7 @@ def _knet_csv(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
 
 def _below(header: Sequence[str], key: str) -> str:
     """The line of the header below the only one that is the key."""
-    found = [after for line, after in zip(header, header[1:], strict=False) if line == key]
-    if len(found) != 1:
-        raise SceneError(key, None, "stated twice" if found else "missing from the header", _CSV_REMEDY)
-    return found[0]
+    return _only(key, [after for line, after in zip(header, header[1:], strict=False) if line == key])
 
 
 PEER = Format("PEER AT2", _is_peer, _peer)

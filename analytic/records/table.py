@@ -125,12 +125,6 @@ def counted(table: Table) -> tuple[Table, list[tuple[int, str]]]:
     """(rows, (line number, statement)) of a table that begins with the number of its values or rows, and perhaps their
     step, as eqsig and many programs write; or the table as it is."""
     (at, first), rest = table[0], table[1:]
-    if (
-        len(first) == len(rest[0][1] if rest else ()) == 1
-        and first[0] == str(len(rest) - 1)
-        and value_of(rest[0][1][0])
-    ):
-        first, rest = [*first, *rest[0][1]], rest[1:]  # each in a line of its own
     size, width = sum(len(fields) for _, fields in rest), max((len(fields) for _, fields in rest), default=0)
     if rest and len(first) < 3 and re.fullmatch("[0-9]{1,9}", first[0]) and value_of(first[-1]) >= 0:
         known = int(first[0]) in (size, len(rest)) and any("." in field for _, fields in rest for field in fields)
@@ -371,14 +365,9 @@ def time_words(title: str) -> str:
 
 def spectrum_in(words: Sequence[tuple[int, str]]) -> tuple[int, str] | None:
     """The line of a header that names a spectrum, or whose first word is a period or a frequency, if one does."""
-    texts = [(at, line, folded(line.lstrip("#%!/ "))) for at, line in words]
-    for at, line, text in texts:
-        if _SPECTRUM.search(text):
-            return at, line
-    for at, line, text in texts[-1:]:
-        if _BEGINS_WITH_PERIODS.fullmatch(text):
-            return at, line
-    return None
+    named = [one for one in words if _SPECTRUM.search(folded(one[1]))]
+    begun = [one for one in words[-1:] if _BEGINS_WITH_PERIODS.fullmatch(folded(one[1].lstrip("#%!/ ")))]
+    return next(iter(named + begun), None)
 
 
 def known_unit(word: str) -> str:
