@@ -205,7 +205,7 @@ REFUSED = {
     "number and step, a line each": (
         "36\n0.02\n" + rows("{a:.7f}"),
         {"units": "g", "dt": DT},
-        "line 1 = '36': as many as the numbers below, and may be their step, their number or a factor; write it in a line",
+        "line 1 = '36': as many as the numbers below, and may be their step, their number or a factor; write it in",
         "36 0.02\n" + rows("{a:.7f}"),
         {"units": "g"},
     ),

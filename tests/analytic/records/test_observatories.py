@@ -120,7 +120,7 @@ BAD = {
         knet(COUNTS),
         "Scale Factor ",
         "",
-        "Scale Factor: missing from the header, or damaged; give the ASCII",
+        "Scale Factor: missing from the header, or damaged; give the file as the network sends it",
     ),
     "scale of 0": (knet(COUNTS), "2000(gal)", "0(gal)", "Scale Factor = 0.0: not above 0"),
     "no frequency": (knet(COUNTS), "200Hz", "manyHz", "Sampling Freq(Hz): missing from the header, or damaged"),
