@@ -19,7 +19,7 @@ TIMES = "time|t|zeit|tiempo|temps|zaman"  # words for it, folded
 # Keys of a step, as formats, networks and programs write them.
 _RATE = (
     r"(?:sampl(?:e|ing)|digiti[sz]ation|acquisition) ?-?(?:rate|freq(?:uency)?)|samprate|fs"
-    r"|(?:tasa|frecuencia) de muestreo|muestreo"
+    r"|(?:tasa|frecuencia) de muestreo|muestreo(?= ?\(muestras/s\))"
 )
 _INTERVAL = (
     r"dt|(?:delta|[δ∆]) ?-?t|(?:sampl(?:e|ing)|data) ?-?(?:interval|period|step)|intervals? of"

@@ -122,7 +122,8 @@ def test_what_is_not_understood_of_the_sampling_is_a_warning_where_the_user_give
 
 
 @pytest.mark.parametrize(
-    "words", ["Significant interval: 5 s", "rate: 5", "pas de filtre", "steps of 5 m", "step 1", "Delta 3"]
+    "words",
+    ["Significant interval: 5 s", "rate: 5", "pas de filtre", "steps of 5 m", "step 1", "Duracion de muestreo: 60 s"],
 )
 def test_a_mere_word_states_no_step_without_its_unit_or_behind_others(words):
     assert read_statements([(1, words)]).step is None
