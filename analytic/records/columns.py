@@ -16,45 +16,42 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import SceneError
-from .content import Asked, Content
+from .content import Asked, Content, Format
 from .numbers import check_count, check_last, fortran_values, number, numbers_in, value_of
-from .rows import (
-    COMMENT,
-    NUMERIC,
-    Table,
-    check_leading,
-    counted,
-    counts,
-    fields_of,
-    parted,
-    rises,
-    split,
-    unpaired,
-    unquoted,
-)
 from .statements import Statements, read_statements, stated_count, stated_unit, unused_factors
-from .times import SAME, uniform_step, usable
-from .titles import (
+from .table import (
     ACCELERATED,
+    COMMENT,
     DEPTH,
     NUMBERS,
+    NUMERIC,
     OTHERS,
     PERIODS,
     TIME,
     UNKNOWN,
+    Table,
     Titles,
     check_events,
+    check_leading,
+    counted,
+    counts,
+    fields_of,
     find_titles,
     has_unit,
     kinds_of,
     name_of,
+    parted,
+    rises,
     spectrum_in,
+    split,
     time_words,
+    unpaired,
+    unquoted,
     with_unit,
 )
+from .times import SAME, uniform_step, usable
 from .units import in_latin
 
-NAME = "columns"
 REMEDY = "write time [s] and acceleration, two numbers a line"
 OF_TIMES = (
     "give the accelerations over time of this record; if these are, title their columns time [s] and acceleration"
@@ -122,12 +119,7 @@ class Sheet:
         )
 
 
-def recognises(lines: Sequence[str]) -> bool:
-    """Always: columns are the last format tried."""
-    return True
-
-
-def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
+def _read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
     """The `Content` of each column of accelerations, or of the one asked for, or of accelerations alone.
 
     Raises
@@ -219,13 +211,7 @@ def _times(sheet: Sheet) -> list[int]:
         return named
     first = int(sheet.kinds[0] == NUMBERS)
     rising = first < sheet.width - 1 and _only_rises(sheet, first)
-    for place, (title, kind) in enumerate(zip(sheet.titles.words, sheet.kinds, strict=False)):
-        if kind in PERIODS or (rising and place == first and (kind in (DEPTH, *OTHERS) or has_unit(title))):
-            problem = f"is {kind or 'of another unit'}, not a time"
-            raise SceneError(f"line {sheet.titles.at}, title", title, problem, OF_TIMES)
-    if rising and sheet.spectrum:
-        at, line = sheet.spectrum
-        raise SceneError(f"line {at}", line, "names a spectrum, not an acceleration over time", OF_TIMES)
+    _check_no_period(sheet, first if rising else None)
     if rising and sheet.kinds[first] in (UNKNOWN, ACCELERATED):  # accelerations do not increase monotonically
         return [first]
     if sheet.titles.words or sheet.known:
@@ -235,6 +221,18 @@ def _times(sheet: Sheet) -> list[int]:
         problem = f"missing; the file holds accelerations alone, {sheet.width} a line, or columns without times"
         raise SceneError("motion.dt", None, problem, "add dt, the step in s; and column, if they are columns")
     return [0]
+
+
+def _check_no_period(sheet: Sheet, rising: int | None) -> None:
+    """Refuse a spectrum or a profile: a title that names a period or a frequency; or, of the column that only rises,
+    if one does, another quantity in its title, or a spectrum in the header."""
+    for place, (title, kind) in enumerate(zip(sheet.titles.words, sheet.kinds, strict=False)):
+        if kind in PERIODS or (place == rising and (kind in (DEPTH, *OTHERS) or has_unit(title))):
+            problem = f"is {kind or 'of another unit'}, not a time"
+            raise SceneError(f"line {sheet.titles.at}, title", title, problem, OF_TIMES)
+    if rising is not None and sheet.spectrum:
+        at, line = sheet.spectrum
+        raise SceneError(f"line {at}", line, "names a spectrum, not an acceleration over time", OF_TIMES)
 
 
 def _only_rises(sheet: Sheet, place: int) -> bool:
@@ -249,31 +247,40 @@ def _accelerations(sheet: Sheet, times: Sequence[int], wanted: int | str | None)
     if not offered:
         raise SceneError("record", None, "holds times, but no column of accelerations", REMEDY)
     chosen = None if wanted is None else _place(sheet, wanted)
+    named = len(offered) > 1 or wanted is not None
     places = [chosen] if chosen in offered else offered
-    time_of = {place: max((at for at in times if at < place), default=times[0] if times else None) for place in places}
-    steps = {at: sheet.stated.step if at is None else _step(sheet, at) for at in set(time_of.values())}
+    steps = {at: at if at is None else _step(sheet, at) for at in {_nearest(times, place) for place in places}}
     found: dict[int, Content] = {}
     errors = []
     for place in places:
         try:
-            _check_kind(sheet, place)
-            values = [number(f"line {at}", fields[place]) for at, fields in sheet.table]
-            if time_of[place] is None:
-                _check_leading(sheet, [(at, fields[place]) for at, fields in sheet.table])
-            found[place] = sheet.content(values, steps[time_of[place]], place, len(offered) > 1 or wanted is not None)
+            found[place] = _acceleration(sheet, steps[_nearest(times, place)], place, named)
         except SceneError as error:
             errors.append(error)
     choice = f"column, {' or '.join(sheet.names[place] for place in found or offered)}"
     if wanted is not None and chosen not in offered:
-        problem = f"is {TIME if chosen in times else NUMBERS}"
-        problem = f"but the file has {sheet.width} columns" if chosen is None else problem
-        raise SceneError("motion.column", wanted, problem, f"give {choice}")
+        what = f"but the file has {sheet.width} columns" if chosen is None else f"is {sheet.kinds[chosen] or TIME}"
+        raise SceneError("motion.column", wanted, what, f"give {choice}")
     if errors and found:
         problem = f"missing; not all columns are accelerations ({errors[0].key}: {errors[0].problem})"
         raise SceneError("motion.column", None, problem, f"add {choice}")
     if errors:
         raise errors[0]
     return tuple(found.values())
+
+
+def _acceleration(sheet: Sheet, step: float | None, place: int, named: bool) -> Content:
+    """The `Content` of a column; step: of its times [s], None without times."""
+    _check_kind(sheet, place)
+    values = [number(f"line {at}", fields[place]) for at, fields in sheet.table]
+    if step is None:
+        _check_leading(sheet, [(at, fields[place]) for at, fields in sheet.table])
+    return sheet.content(values, step or sheet.stated.step, place, named)
+
+
+def _nearest(times: Sequence[int], place: int) -> int | None:
+    """The column of times before a column, the first one without such; None where there are no times."""
+    return max((at for at in times if at < place), default=times[0] if times else None)
 
 
 def _check_kind(sheet: Sheet, place: int) -> None:
@@ -348,3 +355,6 @@ def _step(sheet: Sheet, place: int) -> float:
     if abs(printed - stated.step) > SAME * printed:
         raise SceneError("dt", stated.step, f"but the times have a step of {printed:.9g} s", "correct the wrong one")
     return stated.step
+
+
+COLUMNS = Format("columns", lambda lines: True, _read)  # the last one that is tried

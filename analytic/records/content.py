@@ -1,22 +1,31 @@
-"""Input and output of every reader of records: lines of text; step, values and their unit."""
+"""The files that records come in: text, plain or packed by gzip or zip, and the formats that are refused by name.
 
+What every reader of a format takes and gives stands here, too: lines of text; step, values and their unit.
+"""
+
+import gzip
+import io
+import lzma
 import re
+import struct
+import zipfile
+import zlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
+from typing import NoReturn
 
 import numpy as np
 
 from ..errors import SceneError
 from ..files import read_plain
-from .foreign import refuse_binary
-from .packed import unpacked
 from .units import Unit
 
+DAMAGED = "the file is cut or damaged: fetch it again"
 LARGEST = 200_000_000  # bytes: some 1e7 samples
 HEADER_WIDTH = 400  # characters of a header line that are read
-UNKNOWN = (
+UNKNOWN_FORMAT = (
     "not a known record format",
     "give PEER AT2 (a line NPTS= ..., DT= ...), ESM/DYNA 1.2, CSMIP volume 2, COSMOS, K-NET, SMC or columns of numbers",
 )
@@ -56,6 +65,16 @@ class Content:
     unread: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True)
+class Format:
+    """A format of records: its name, whether the lines of a file are of it, and its reader, which gives the `Content`
+    of each channel in the order of the file, or raises `SceneError`."""
+
+    name: str
+    recognises: Callable[[Sequence[str]], bool]
+    read: Callable[[Sequence[str], Asked], Sequence[Content]]
+
+
 def first_of(lines: Sequence[str]) -> str:
     """The first line that is not blank, "" without one."""
     return next((line for line in lines if line.strip()), "")
@@ -91,7 +110,10 @@ def read_lines(path: str | PathLike[str]) -> tuple[list[str], str]:
     for number, line in enumerate(lines, 1):
         if not line.isprintable() and (odd := CONTROL.search(line)):
             raise SceneError(
-                f"line {number}", None, f"{UNKNOWN[0]}: it holds the control character {odd[0]!r}", UNKNOWN[1]
+                f"line {number}",
+                None,
+                f"{UNKNOWN_FORMAT[0]}: it holds the control character {odd[0]!r}",
+                UNKNOWN_FORMAT[1],
             )
     last = next((at for at in reversed(range(len(lines))) if lines[at].strip()), 0)
     if MARK.fullmatch(lines[last][:HEADER_WIDTH]):
@@ -106,3 +128,141 @@ def _text(content: bytes) -> str:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError:
         return content.decode("latin-1")  # old headers, and "cm/s²" of Windows programs
+
+
+GZIP, ZIP = b"\x1f\x8b", b"PK\x03\x04"
+OTHER_PACKERS = {
+    b"BZh": ("bzip2", "bunzip2"),
+    b"\xfd7zXZ": ("xz", "unxz"),
+    b"PK\x05\x06": ("zip, and empty", "give a record"),
+}
+LISTED = 5  # names of files in a message
+SPREADSHEET = {"[Content_Types].xml", "content.xml"}  # in the files of Excel, and of LibreOffice
+# What gzip and zipfile raise where a file is damaged.
+DAMAGE = (
+    *(OSError, EOFError, ValueError, RuntimeError, IndexError, OverflowError),
+    *(zipfile.BadZipFile, zlib.error, lzma.LZMAError, struct.error),
+)
+
+
+def unpacked(content: bytes, name: str, limit: int) -> tuple[bytes, str]:
+    """(content, name) of the file that a packed file holds, or of a plain file as they are.
+
+    Parameters
+    ----------
+    content : bytes
+    name : str
+        Name of the file.
+    limit : int
+        Largest size unpacked [bytes].
+
+    Raises
+    ------
+    SceneError
+        Damaged, locked, too large, several files, or packed by another program or twice.
+    """
+    if content.startswith(GZIP):
+        content, name = _gunzipped(content, limit), name.removesuffix(".gz")
+    elif content.startswith(ZIP):
+        content, name = _unzipped(content, limit)
+    else:
+        _refuse_packed(content, OTHER_PACKERS, "unpack it first")
+        return content, name
+    if len(content) > limit:
+        raise SceneError("record", None, f"unpacks to more than {limit / 1e6:.3g} MB", "give one record of it")
+    _refuse_packed(
+        content, OTHER_PACKERS | {GZIP: ("gzip", "gunzip"), ZIP: ("zip", "unzip")}, "unpack it once, it is packed twice"
+    )
+    return content, name
+
+
+def _refuse_packed(content: bytes, packers: dict[bytes, tuple[str, str]], remedy: str) -> None:
+    for magic, (packer, command) in packers.items():
+        if content.startswith(magic):
+            raise SceneError("record", None, f"is packed by {packer}", f"{remedy} ({command})")
+
+
+def _gunzipped(content: bytes, limit: int) -> bytes:
+    try:
+        with gzip.GzipFile(fileobj=io.BytesIO(content)) as file:
+            return file.read(limit + 1)
+    except DAMAGE as error:
+        raise SceneError("record", None, f"is a damaged gzip file ({error})", "fetch it again") from error
+
+
+def _unzipped(content: bytes, limit: int) -> tuple[bytes, str]:
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            # What macOS adds of its own is no record.
+            inside = [
+                one for one in archive.infolist() if not one.is_dir() and not one.filename.startswith("__MACOSX/")
+            ]
+            if SPREADSHEET & {one.filename for one in inside}:
+                raise SceneError("record", None, "is a spreadsheet", "save the sheet with the record as CSV")
+            if len(inside) != 1:
+                names = ", ".join(one.filename for one in inside[:LISTED]) + (", ..." if len(inside) > LISTED else "")
+                raise SceneError(
+                    "record", None, f"holds {len(inside)} files: {names}", "unpack it and give one of them"
+                )
+            if inside[0].flag_bits & 1:
+                raise SceneError("record", None, "is a zip file with a password", "unpack it first")
+            with archive.open(inside[0]) as file:
+                return file.read(limit + 1), inside[0].filename
+    except SceneError:
+        raise
+    except DAMAGE as error:
+        raise SceneError("record", None, f"is a damaged zip file ({error})", "fetch it again") from error
+
+
+COLUMNS = "write its accelerations as two columns, time [s] and acceleration, and give their units"
+VOLUME_2 = "give the corrected accelerations of this record, volume 2"
+WITH_OBSPY = "with ObsPy, write two columns, time [s] and acceleration, counts divided by the instrument's response"
+TOP = 12  # lines that are looked at
+# name: (what its first lines hold, what to do)
+SIGNS = {
+    "GeoNet": (r"\s*(?:un)?corrected accelerogram\s+[0-9]{8}_[0-9]{6}_", COLUMNS),
+    "CSMIP volume 1": (r"\s*uncorrected accelerogram", VOLUME_2),
+    "CSMIP volume 3": (r"\s*(?:response|fourier)\b[^(\n]*\bspectr(?:a|um)\b(?!.*\(format)", VOLUME_2),
+    "COSMOS volume 0": (r"\s*raw acceleration counts\b.*\(format", VOLUME_2),
+    "UNAM/ASA": (r"(?s:.*)^\s*archivo est.ndar de aceleraci.n", COLUMNS),
+    "BHRC": (r"\s*\*?\s*vol[12]ds file", COLUMNS),
+    "SLIST": (r"\s*timeseries\b.*\bslist\b", WITH_OBSPY),
+    "TSPAIR": (r"\s*timeseries\b.*\btspair\b", WITH_OBSPY),
+    "GeoCSV": (r"\s*#\s*dataset:\s*geocsv", WITH_OBSPY),
+}
+_SIGNS = {name: re.compile(sign, re.I | re.M) for name, (sign, _) in SIGNS.items()}
+BINARY = {
+    "miniSEED": re.compile(rb"[0-9]{6}[DRQM][ \x00]|MS\x03"),
+    "SAC": re.compile(rb"(?s:.{304})(?:\x06\x00\x00\x00|\x00\x00\x00\x06)"),  # the version in its 77th word
+}
+
+
+def _is_refused(lines: Sequence[str]) -> bool:
+    """Whether the first lines are those of a known format that is not read."""
+    return _name(lines) is not None
+
+
+def _refuse(lines: Sequence[str], asked: object) -> NoReturn:
+    """Refuse the file, saying what to do instead."""
+    name = _name(lines) or ""  # `_is_refused` found one
+    raise _refused(name, SIGNS[name][1])
+
+
+def refuse_binary(content: bytes) -> None:
+    """Refuse the bytes of a binary format that is known."""
+    for name, sign in BINARY.items():
+        if sign.match(content):
+            raise _refused(name, WITH_OBSPY)
+
+
+def _refused(name: str, remedy: str) -> SceneError:
+    return SceneError("record", None, f"is a {name} file, which is not read", remedy)
+
+
+def _name(lines: Sequence[str]) -> str | None:
+    first = next((at for at, line in enumerate(lines) if line.strip()), 0)
+    top = "\n".join(line[:200] for line in lines[first : first + TOP])
+    return next((name for name, sign in _SIGNS.items() if sign.match(top)), None)
+
+
+NOT_READ = Format("a format that is not read", _is_refused, _refuse)

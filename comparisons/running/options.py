@@ -19,8 +19,12 @@ if TYPE_CHECKING:
     from analytic.motion import Motion
 
 # What a user says of a record that the file itself does not.
-Units = Annotated[str | None, typer.Option(help="Unit, if the file states none: m/s2, cm/s2, gal, mm/s2, g or %g.")]
-Step = Annotated[float | None, typer.Option(metavar="SECONDS", help="Sampling interval, if the file states none.")]
+Units = Annotated[
+    str | None, typer.Option(help="Unit, if header and titles state none: m/s2, cm/s2, gal, mm/s2, g or %g.")
+]
+Step = Annotated[
+    float | None, typer.Option(metavar="SECONDS", help="Sampling interval, if no line such as dt = 0.01 s states one.")
+]
 Column = Annotated[
     str | None, typer.Option(help="Of several columns: the accelerations', its number from 1 on or its title.")
 ]

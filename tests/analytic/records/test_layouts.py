@@ -49,7 +49,6 @@ READ = {
     "eqsig": (EQSIG, {"units": "m/s2"}),
     "eqsig, five a line": ("36 0.0200\n" + lines(" {a:.7f}", 5), {"units": "g"}),
     "DEEPSOIL": ("36 0.02\n" + rows("{t:.4f} {a:.7f}"), {"units": "g"}),
-    "number and step, a line each": ("36\n0.02\n" + rows("{a:.7f}"), {"units": "g"}),
     "number alone": ("36\n" + rows("{a:.7f}"), {"units": "g", "dt": DT}),
     "NPTS and DT, a line each": ("NPTS = 36\nDT = 0.02\nUNITS = g\n" + rows("{a:.7f}"), {}),
     "numbered headings, as in Peru": (
@@ -201,6 +200,13 @@ REFUSED = {
         {"units": "g", "dt": DT},
         "line 1 = '0.02': not printed as the numbers below are, and may be their step, their number or a factor; write",
         "# dt = .02 s\n" + rows("{a:.7f}"),
+        {"units": "g"},
+    ),
+    "number and step, a line each": (
+        "36\n0.02\n" + rows("{a:.7f}"),
+        {"units": "g", "dt": DT},
+        "line 1 = '36': as many as the numbers below, and may be their step, their number or a factor; write it in",
+        "36 0.02\n" + rows("{a:.7f}"),
         {"units": "g"},
     ),
     "another number than follow": (
@@ -363,7 +369,11 @@ def test_knet_csv(tmp_path):
 
 
 KNET_CSV = {
-    "no offsets": ("#Offset\n", "", "Offset: missing from the header; give the file as the network sends it"),
+    "no offsets": (
+        "#Offset\n",
+        "",
+        "Offset: missing from the header, or damaged; give the file as the network sends it",
+    ),
     "an offset too few": (",16.50\n#Time", "\n#Time", "no offset of each component"),
     "no frequency": ("(Hz)\n#50\n", "(Hz)\n#fast\n", "SamplingFrequency(Hz) = 'fast': not a number"),
     "another frequency": ("(Hz)\n#50\n", "(Hz)\n#100\n", "but the times have a step of 0.02 s"),

@@ -203,7 +203,7 @@ BAD = {
     "velocity": (
         AT2.replace("UNITS OF G", "UNITS OF CM/S") + "1 2 3 4",
         None,
-        "line 3, UNITS OF = 'CM/S': not an acceleration in g; give the acceleration file",
+        "line 3, unit = 'CM/S': not an acceleration in a unit that is known; write one of",
     ),
     "AT2 with other units": (
         AT2 + "1 2 3 4",

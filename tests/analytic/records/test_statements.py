@@ -19,61 +19,23 @@ THREE = "".join(f"{value:9.3f} {-2 * value:9.3f} {value / 2:9.3f}\n" for value i
         ("Sampling rate: 200 Hz", 0.005),
         ("sample_rate_hz = 200", 0.005),
         ("SampleRate(Hz): 200", 0.005),
-        ("SAMPLING FREQUENCY 200.0 HZ", 0.005),
         ("Digitization rate (samples/s): 200", 0.005),
-        ("200 samples per second", 0.005),
-        ("recorded at 200 sps", 0.005),
         ("fs=200", 0.005),
-        ("Sampled at 200 Hz, filtered", 0.005),
         ("Time step: 5 ms", 0.005),
-        ("TIME INTERVAL (SEC) .005", 0.005),
         ("DELTA T = 0.005 SEC", 0.005),
-        ("delta: 0.005", 0.005),
-        ("samprate 200", 0.005),
-        ("sampled every 0.005 s", 0.005),
-        ("interval_ms=5", 0.005),
-        ("time base 0.005 s", 0.005),
         ("delta_t [ms]: 5", 0.005),
-        ("sampling period is 0,005 s", 0.005),
-        ("equally spaced at .005 sec", 0.005),
         ("Frecuencia de muestreo: 200 Hz", 0.005),
         ("INTERVALO DE MUESTREO (s) : 0,005", 0.005),
         ("Paso de tiempo = 5 milisegundos", 0.005),
         ("Tasa de muestreo: 200 muestras por segundo", 0.005),
-        ("Abtastrate: 200 Hz", 0.005),
-        ("Zeitschritt: 0,005 s", 0.005),
-        ("Abtastintervall [ms] 5,0", 0.005),
-        ("Fréquence d'échantillonnage : 200 Hz", 0.005),
-        ("Frequence d’echantillonnage: 200 Hz", 0.005),
-        ("pas de temps (s) 0,005", 0.005),
-        ("Örnekleme frekansı: 200 Hz", 0.005),
-        ("ÖRNEKLEME ARALIĞI (sn) : 0,005", 0.005),
-        ("zaman adimi: 0.005 saniye", 0.005),
-        ("sampling rate .005 sec", 0.005),
         ("Sampling rate: 120 Hz, dt = 0.0083 s", 1 / 120),
         ("Time Step: 0.005", 0.005),
         ("TIME INCREMENT = .005", 0.005),
         ("EQUALLY SPACED INTERVALS OF:  0.005  SEC", 0.005),
-        ("time interval between samples: 5 ms", 0.005),
         ("Δt = 0,005 s", 0.005),
         ("Data interval: 0.005 s", 0.005),
         ("Acquisition rate (Hz): 200", 0.005),
-        ("SPS: 200", 0.005),
-        ("samples per second = 200", 0.005),
-        ("Step (s): 0.005", 0.005),
-        ("record 12; interval 5 ms", 0.005),
-        ("Sampling: 200 Hz", 0.005),
-        ("recorded at 0.005 sec. intervals", 0.005),
-        ("200-Hz sampling, corner at .1 s", 0.005),
-        ("lowpass 25 Hz sampling rate 200 Hz", 0.005),
-        ("Paso temporal: 0,005 s", 0.005),
-        ("Incremento de tiempo = 0,005", 0.005),
-        ("Abtastung: 200 Hz", 0.005),
-        ("Zeitabstand: 5 ms", 0.005),
-        ("Échantillonnage : 200 Hz", 0.005),
-        ("Örnekleme: 200 Hz", 0.005),
         ("DT= .005 UNIT= m/s2", 0.005),
-        ("Sampling interval fs 200", 0.005),
     ],
 )
 def test_a_step_in_words(tmp_path, words, step):
@@ -81,6 +43,57 @@ def test_a_step_in_words(tmp_path, words, step):
     motion = read_record(path, "m/s2")
     assert motion.dt == step and motion.samples.tolist() == VALUES and not motion.warnings
     assert_refused(path, "motion.dt = 0.01: but the step of the record itself is", units="m/s2", dt=0.01)
+
+
+# Sentences, other languages, and keys without a sign.
+NOT_READ = """
+SAMPLING FREQUENCY 200.0 HZ
+200 samples per second
+recorded at 200 sps
+Sampled at 200 Hz, filtered
+TIME INTERVAL (SEC) .005
+delta: 0.005
+samprate 200
+sampled every 0.005 s
+interval_ms=5
+time base 0.005 s
+sampling period is 0,005 s
+equally spaced at .005 sec
+Abtastrate: 200 Hz
+Zeitschritt: 0,005 s
+Abtastintervall [ms] 5,0
+Fréquence d'échantillonnage : 200 Hz
+Frequence d’echantillonnage: 200 Hz
+pas de temps (s) 0,005
+Örnekleme frekansı: 200 Hz
+ÖRNEKLEME ARALIĞI (sn) : 0,005
+zaman adimi: 0.005 saniye
+sampling rate .005 sec
+time interval between samples: 5 ms
+SPS: 200
+samples per second = 200
+Step (s): 0.005
+record 12; interval 5 ms
+Sampling: 200 Hz
+recorded at 0.005 sec. intervals
+200-Hz sampling, corner at .1 s
+lowpass 25 Hz sampling rate 200 Hz
+Paso temporal: 0,005 s
+Incremento de tiempo = 0,005
+Abtastung: 200 Hz
+Zeitabstand: 5 ms
+Échantillonnage : 200 Hz
+Örnekleme: 200 Hz
+Sampling interval fs 200
+""".strip().splitlines()
+
+
+@pytest.mark.parametrize("words", NOT_READ)
+def test_a_step_in_a_sentence_is_asked_for(tmp_path, words):
+    path = write(tmp_path, f"# {words}\n{ONE_COLUMN}")
+    assert_refused(path, "add dt, the step in s", units="m/s2")
+    (warning,) = read_record(path, "m/s2", dt=0.005).warnings
+    assert "line 1 speaks of sampling in words that are not understood" in warning
 
 
 @pytest.mark.parametrize(
@@ -109,7 +122,8 @@ def test_what_is_not_understood_of_the_sampling_is_a_warning_where_the_user_give
 
 
 @pytest.mark.parametrize(
-    "words", ["Significant interval: 5 s", "rate: 5", "pas de filtre", "steps of 5 m", "step 1", "Delta 3"]
+    "words",
+    ["Significant interval: 5 s", "rate: 5", "pas de filtre", "steps of 5 m", "step 1", "Duracion de muestreo: 60 s"],
 )
 def test_a_mere_word_states_no_step_without_its_unit_or_behind_others(words):
     assert read_statements([(1, words)]).step is None

@@ -5,7 +5,7 @@ from record_files import assert_refused, write
 
 from analytic.errors import SceneError
 from analytic.records import read_record
-from analytic.records.titles import Titles, kinds_of, with_unit
+from analytic.records.table import Titles, kinds_of, with_unit
 
 ROWS = "".join(f"{0.02 * i:.2f},{(-1) ** i * i / 10:.2f},{i % 3 - 1}\n" for i in range(12))
 TWO = "".join(",".join(row.split(",")[:2]) + "\n" for row in ROWS.splitlines())

@@ -8,8 +8,7 @@ import pytest
 from made_up_records import VALUES, csmip, knet
 
 from analytic import SampledMotion
-from analytic.records import G, read_record
-from analytic.records.written import two_columns
+from analytic.records import G, read_record, two_columns
 from comparisons.showing.plots import DAMPING, PERIODS, spectrum
 
 

@@ -27,7 +27,7 @@ ELSEWHERE = {
     ("engines/guard.py", "_evidence", "tempfile.TemporaryFile"): "temporary",
     ("engines/greeting.py", "without", "tempfile.TemporaryFile"): "temporary",
     ("engines/guard.py", "_evidence", "open"): "no file: os.devnull",
-    ("analytic/records/packed.py", "_unzipped", "open"): "a member of an archive, to be read",
+    ("analytic/records/content.py", "_unzipped", "open"): "a member of an archive, to be read",
     ("analytic/response.py", "to_csv", "numpy.savetxt"): "from Python alone, which says where",
 }
 OF_MODULES = {
