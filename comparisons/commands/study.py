@@ -23,16 +23,16 @@ Output = Annotated[
     str | None,
     typer.Option(
         metavar="DIR",
-        help="Folder for the result, its page and the runs from which an interrupted study resumes. Default: "
-        "NAME-study.",
+        help="Folder for the result, DIR/NAME, its page, DIR/NAME.html, and the runs from which an interrupted study "
+        "resumes. Default: NAME-study.",
     ),
 ]
 Engines = Annotated[
     list[str] | None,
     typer.Option(
         "--engine",
-        help="Engine to compare; may be repeated. Where the folder holds a result, its file alone is written, but of "
-        "studies that compare all solvers' CPU times. Default: all that the study needs.",
+        help="Engine to compare; may be repeated. Where DIR/NAME holds a result, this engine's file alone is written; "
+        "studies that compare CPU times are computed anew as a whole. Default: all that the study needs.",
     ),
 ]
 Workers = Annotated[int | None, typer.Option(min=1, help="Worker processes. Default: one per core.")]
@@ -44,7 +44,9 @@ Scheduler = Annotated[
     ),
 ]
 EVERY = "all"
-Replot = Annotated[str | None, typer.Option(metavar="DIR", help="Run nothing, show this result again.")]
+Replot = Annotated[
+    str | None, typer.Option(metavar="DIR", help="Run nothing, show the result in this folder, DIR/NAME, again.")
+]
 
 Check = Annotated[
     int | None,

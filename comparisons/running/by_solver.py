@@ -8,7 +8,7 @@ the engine would stand beside others that were measured against something else.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import zip_longest
 from os import PathLike
@@ -167,7 +167,12 @@ def read(path: str | PathLike[str]) -> Result:
         return read_result(path)
     try:
         if not files:
-            raise ResultError("no such result; run the study that writes it")
+            inner = results_in(path)
+            raise ResultError(
+                f"holds results, and is none; give one of its folders, such as {inner[0].name}"
+                if inner
+                else "no such result; run the study that writes it"
+            )
         return joined({file.stem: read_result(file) for file in files})
     except ResultError as error:
         raise ResultError(f"{path.name}/{error}" if files else f"{path.name}: {error}") from None
@@ -179,6 +184,23 @@ def read(path: str | PathLike[str]) -> Result:
 def results_in(folder: str | PathLike[str]) -> list[Path]:
     """The results in a folder, sorted: folders of files by solver."""
     return sorted(path for path in Path(folder).glob("*") if path.is_dir() and any(path.glob("*.json")))
+
+
+def check_parent(folder: str | PathLike[str]) -> None:
+    """Raise `SettingError` if `folder`, in which results are looked for by name, is itself a result."""
+    place = Path(folder)
+    if (place / f"{MODEL}.json").exists():
+        raise SettingError(f"--output {folder}: is itself a result; give the folder that it lies in, {place.parent}")
+
+
+def check_none_goes(study: Study, folder: Path, engines: Collection[str]) -> None:
+    """Raise `SettingError` if a study that is computed as a whole would remove files of engines that are not named."""
+    others = sorted({file.stem for file in folder.glob(f"{study.name}*/*.json")} - {MODEL, *engines})
+    if others and study.whole:
+        raise SettingError(
+            f"--engine: {study.name} is computed as a whole, and {folder} holds {', '.join(others)}, which would go; "
+            "name these, too, or give another --output"
+        )
 
 
 def save_parts(

@@ -13,7 +13,7 @@ from typing import Any
 
 from analytic.errors import EngineNotInstalled, SceneError
 
-from .by_solver import MODEL, differences, read, short
+from .by_solver import MODEL, check_parent, differences, read, short
 from .cases import solver
 from .executors import Processes
 from .files import TemporaryFolder
@@ -58,9 +58,12 @@ def check_all(name: str, folder: str | PathLike[str], number: int, seed: int, **
 
     Raises
     ------
+    SettingError
+        `folder` is itself a result.
     ResultError
         As `check`; or there is no such result, or none of them keeps a run.
     """
+    check_parent(folder)
     own = Path(folder) / name
     parts = [own] if own.exists() else sorted(Path(folder).glob(f"{name}-*"))  # a study may have several
     checks = [check(part, number, seed, **options) for part in parts or [own]]
@@ -94,9 +97,9 @@ def check(
     if record:
         when = {"date": datetime.now(UTC).date().isoformat(), **checkout(), "seed": seed}
         places = [run["engine"] if (path / f"{run['engine']}.json").exists() else MODEL for run in drawn]
-        for name in dict.fromkeys(places):
-            own = [differs for differs, place in zip(wrong, places, strict=True) if place == name]
-            record_check(path / f"{name}.json", {**when, "runs": len(own), "held": own.count(None)})
+        for file in path.glob("*.json"):  # those of which no run was drawn lose what an earlier check said
+            own = [differs for differs, place in zip(wrong, places, strict=True) if place == file.stem]
+            record_check(file, {**when, "runs": len(own), "held": own.count(None)} if own else None)
     return done
 
 

@@ -229,8 +229,9 @@ def _check_form(name, content):
         raise ResultError(f"{name}: no result file of a study, {where}: {first['msg']}; run the study again") from None
 
 
-def record_check(path: Path, check: Mapping[str, Any]) -> None:
-    """Write into the provenance of the result at `path` when and how many of its runs were done again and held.
+def record_check(path: Path, check: Mapping[str, Any] | None) -> None:
+    """Write into the provenance of the result at `path` when and how many of its runs were done again and held; None:
+    none were.
 
     Raises
     ------
@@ -238,11 +239,14 @@ def record_check(path: Path, check: Mapping[str, Any]) -> None:
         The file is damaged, or cannot be written; it is as it was.
     """
     content = _content(path)
-    content["provenance"]["check"] = dict(check)
+    if content["provenance"].get("check") == check:
+        return
+    content["provenance"]["check"] = check
     try:
         write(path, _layout(content))
     except PlaceError as error:
-        raise ResultError(f"{check['held']} of {check['runs']} runs hold, but that is not recorded: {error}") from error
+        held = f"{check['held']} of {check['runs']} runs hold, but that" if check else "that no run was done again"
+        raise ResultError(f"{held} is not recorded: {error}") from error
 
 
 def _arrays(path, content):

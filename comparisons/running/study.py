@@ -12,7 +12,7 @@ from typing import Any
 
 from engines import ENGINES, installed_engines
 
-from .by_solver import EDITED, MODEL, check_same, opened, save_parts
+from .by_solver import EDITED, MODEL, check_none_goes, check_parent, check_same, opened, save_parts
 from .cases import name_of, root_of
 from .cluster import Cluster
 from .executors import Processes, number_of
@@ -67,7 +67,8 @@ def compute(
     Raises
     ------
     SettingError
-        `folder` is a file, the number of workers is out of range, no scheduler answers, or an engine has no such name.
+        `folder` is a file or itself a result, the number of workers is out of range, no scheduler answers, an engine
+        has no such name, or files of engines that are not named would go (`check_none_goes`).
     EngineNotInstalled
         As `engines.get_engine`.
     ClusterError
@@ -79,11 +80,14 @@ def compute(
     """
     global _stored
     check_folder(folder)
+    check_parent(folder)
     workers, folder = number_of(workers), Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     place, old = folder / study.name, None
-    if engines and not study.whole and (place / f"{MODEL}.json").exists():
+    if engines:
         engines = named_engines(engines)
+        check_none_goes(study, folder, engines)
+    if engines and not study.whole and (place / f"{MODEL}.json").exists():
         old, quick, options = opened(study, place, quick, options)
     with ExitStack() as stack:
         stack.enter_context(stdout_to_stderr())  # engines print on import

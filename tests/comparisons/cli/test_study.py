@@ -112,7 +112,7 @@ def test_the_folder_one_is_in_is_shown_by_its_name(rocking, monkeypatch, tmp_pat
     assert rocking("study", "fragility", "--replot", ".", "--output", "page")[:2] == (0, "page/fragility.html\n")
     assert rocking("study", "fragility", "--replot", "..")[::2] == (
         2,
-        f"Error: {tmp_path.name}: no such result; run the study that writes it\n",
+        f"Error: {tmp_path.name}: holds results, and is none; give one of its folders, such as fragility\n",
     )
 
 

@@ -3,6 +3,7 @@ written."""
 
 import json
 import shutil
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,10 +14,10 @@ from fake_study import MADE
 from analytic.errors import SettingError
 from comparisons.report.answer import origin_of
 from comparisons.report.gallery import origins
-from comparisons.running.age import age
+from comparisons.running.age import age, checked, last_check
 from comparisons.running.by_solver import MODEL, check_same, differences, joined, opened, read, results_in, split
 from comparisons.running.cases import name_of
-from comparisons.running.check import check
+from comparisons.running.check import check, check_all
 from comparisons.running.plan import Request, Study
 from comparisons.running.provenance import RESULTS, ResultError, made_here, read_result, save
 from comparisons.running.sources import source_digests
@@ -171,6 +172,42 @@ def test_a_folder_without_the_models_file_and_one_that_is_none_say_what_to_do(co
         read(copy)
     with pytest.raises(ResultError, match="^none: no such result; run the study that writes it"):
         read(copy.parent / "none")
+    with pytest.raises(ResultError, match="^runs: holds results, and is none; give one of its folders, such as made"):
+        read(copy.parent)
+
+
+@MADE_ONCE
+def test_a_result_is_not_taken_for_the_folder_that_it_lies_in(both):
+    with pytest.raises(
+        SettingError, match=r"--output .*made: is itself a result; give the folder that it lies in, .*runs$"
+    ):
+        computed(both, SECOND)
+    with pytest.raises(SettingError, match="is itself a result"):
+        check_all("made", both, 1, 1)
+
+
+@MADE_ONCE
+def test_a_study_that_is_computed_as_a_whole_removes_no_engine_unasked(both):
+    whole = replace(MADE, whole="costs are compared")
+    before = {file: file.read_bytes() for file in both.iterdir()}
+    with pytest.raises(SettingError, match=f"made is computed as a whole, and .* holds {FIRST}, which would go; name"):
+        compute(whole, both.parent, engines=[SECOND], workers=1, progress=False)
+    assert {file: file.read_bytes() for file in both.iterdir()} == before
+    compute(whole, both.parent, engines=[FIRST, SECOND], workers=1, progress=False)
+
+
+@MADE_ONCE
+def test_a_check_that_is_recorded_takes_the_place_of_all_before(both):
+    for file, held in (("analytic", 30), (FIRST, 1)):
+        edit(
+            both / f"{file}.json",
+            lambda content, held=held: content["provenance"].update(
+                check={"runs": held, "held": held, "date": "2020-01-01", "commit": None, "dirty": False, "seed": 1}
+            ),
+        )
+    found = check(both, 2, 1, record=True, workers=1, progress=False)
+    assert checked(read(both)).items() >= {"runs": 2, "held": found.held, "seed": 1}.items()
+    assert "2020" not in last_check(read(both))
 
 
 @MADE_ONCE
