@@ -85,11 +85,13 @@ def _read(one: Any, known: set[int]) -> Iterator[str]:
         yield f"{_plain(function.__code__, function.__doc__)} {function.__defaults__}"
         around = inspect.getclosurevars(function).nonlocals
         for name in sorted({*_global(function.__code__), *around}):
-            values = [each[name] for each in (around, function.__globals__, vars(builtins)) if name in each]
             yield name
-            yield from _read(
-                values[0] if values else sys.modules[function.__module__], known
-            )  # defined further down there
+            for scope in (around, function.__globals__, vars(builtins)):
+                if name in scope:
+                    yield from _read(scope[name], known)
+                    break
+            else:  # defined further down in its module
+                yield _source(sys.modules[function.__module__])
 
 
 def _own(one):

@@ -195,8 +195,9 @@ def check_parent(folder: str | PathLike[str]) -> None:
 
 def check_none_goes(study: Study, folder: Path, engines: Collection[str]) -> None:
     """Raise `SettingError` if a study that is computed as a whole would remove files of engines that are not named."""
-    others = sorted({file.stem for file in folder.glob(f"{study.name}*/*.json")} - {MODEL, *engines})
-    if others and study.whole:
+    if not study.whole:
+        return
+    if others := sorted({file.stem for file in folder.glob(f"{study.name}*/*.json")} - {MODEL, *engines}):
         raise SettingError(
             f"--engine: {study.name} is computed as a whole, and {folder} holds {', '.join(others)}, which would go; "
             "name these, too, or give another --output"

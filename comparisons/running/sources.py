@@ -23,8 +23,9 @@ from analytic.scene_file import SHIPPED, shipped_scenes
 
 PROJECT = ("analytic", "engines", "comparisons")
 SHIPPED_NAMES = shipped_scenes()
-# What runs, stores, checks and describes runs computes no number of theirs; `cases` says what is run.
-CARRIES_OUT, COMPUTES = ("comparisons.running", "comparisons.schemas"), "comparisons.running.cases"
+# What runs, stores, checks and describes runs, and what keeps compiled code, computes no number of theirs; `cases` says
+# what is run.
+CARRIES_OUT, COMPUTES = ("comparisons.running", "comparisons.schemas", "analytic._cache"), "comparisons.running.cases"
 DIGITS = 8  # of a digest that is kept: of a thousand definitions one collides by chance in some 1e6 changes
 
 

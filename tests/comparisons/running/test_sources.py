@@ -183,7 +183,8 @@ def test_what_carries_runs_out_ages_nothing_and_what_measures_them_does():
         "comparisons.studies.restitution.cases",
         "comparisons.studies.restitution.study",
     }
-    assert not any(map(computes, ("comparisons.running", "comparisons.running.progress", "comparisons.schemas.runs")))
+    none = "comparisons.running", "comparisons.running.progress", "comparisons.schemas.runs", "analytic._cache"
+    assert not any(map(computes, none)) and computes("analytic.compiled")
     assert all(map(computes, ("comparisons.running_mate", "comparisons.measuring.errors", "analytic")))
 
 
