@@ -82,11 +82,12 @@ def compute(
     check_folder(folder)
     check_parent(folder)
     workers, folder = number_of(workers), Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
     place, old = folder / study.name, None
     if engines:
-        engines = named_engines(engines)
+        with stdout_to_stderr():  # engines print on import
+            engines = named_engines(engines)
         check_none_goes(study, folder, engines)
+    folder.mkdir(parents=True, exist_ok=True)
     if engines and not study.whole and (place / f"{MODEL}.json").exists():
         old, quick, options = opened(study, place, quick, options)
     with ExitStack() as stack:
@@ -96,7 +97,7 @@ def compute(
         _stored = store.path
         with spinner(f"{study.name}: engines and code") if progress else contextlib.nullcontext():
             # loads engines: after what is wrong with the place was found
-            asked = installed_engines() if engines is None else named_engines(engines)
+            asked = installed_engines() if engines is None else tuple(engines)
             roots = (name_of(study.plan), *(engine.adapter for engine in ENGINES.values()))
             code = digests_of_all(map(package_of, roots))
         solvers = ("analytic", *asked)
