@@ -1,6 +1,7 @@
 """What all tests share."""
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -8,6 +9,9 @@ from pathlib import Path
 
 import pytest
 from hypothesis import settings
+
+from analytic.errors import EngineNotInstalled
+from engines import ENGINES
 
 # In CI the same scenes every time: a new counterexample is found where somebody can look at it.
 settings.register_profile("ci", derandomize=True)
@@ -36,21 +40,31 @@ def pytest_configure(config):
             compiling.wait()
 
 
+@pytest.hookimpl(tryfirst=True)  # before pytest looks at the marks
+def pytest_collection_modifyitems(items):
+    """What is tried on an engine beside exudyn and PyBullet, the subjects, belongs to the second command."""
+    others = {name for name, engine in ENGINES.items() if not engine.subject}
+    for item in items:
+        if others & set(re.split(r"[\W_]+", item.nodeid.partition("[")[2])) and not item.get_closest_marker("long"):
+            item.add_marker("slow")
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_setup(item):
-    return (yield from without_wheels())
+    return (yield from without_engines())
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_call(item):
-    return (yield from without_wheels())
+    return (yield from without_engines())
 
 
-def without_wheels():
-    """Skip, saying so, what needs PyBullet under a Python for which it has no wheels; elsewhere it fails."""
+def without_engines():
+    """Skip, saying so, what needs an engine that is an extra, or PyBullet under a Python for which it has no wheels."""
     try:
         return (yield)
-    except ImportError as lost:
-        if sys.version_info < (3, 12) or "engine 'pybullet' needs" not in str(lost):
+    except EngineNotInstalled as lost:
+        wanted = [name for name, engine in ENGINES.items() if f"engine {name!r} needs" in str(lost)]
+        if wanted == ["exudyn"] or wanted == ["pybullet"] and sys.version_info < (3, 12):
             raise
         pytest.skip(str(lost))

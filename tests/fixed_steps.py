@@ -2,14 +2,11 @@
 
 from dataclasses import replace
 
-from engine_cases import needs
-
 from engines.scale import size_scale
 
 
 def fixed_steps(scene, step, change=None):
     """The trace of equal steps [s]; change(space, block's body, scene) spoils Chipmunk's space."""
-    needs("pymunk")
     from engines.pymunk.scene import ChipmunkBodies
     from engines.stepping import FixedStep, run_of
 

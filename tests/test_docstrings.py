@@ -16,9 +16,9 @@ import pytest
         "engines",
         "comparisons.showing.plots",
         "comparisons.sheet.pages",
-        pytest.param("comparisons.advice.choose", marks=pytest.mark.slow),
-        pytest.param("comparisons.measuring.tolerances", marks=pytest.mark.slow),
-        pytest.param("comparisons.report.study", marks=pytest.mark.slow),
+        pytest.param("comparisons.advice.choose", marks=pytest.mark.long),
+        pytest.param("comparisons.measuring.tolerances", marks=pytest.mark.long),
+        pytest.param("comparisons.report.study", marks=pytest.mark.long),
     ],
 )
 def test_examples(module):

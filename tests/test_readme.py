@@ -36,7 +36,7 @@ def commands():
 def cases():
     for words in commands():
         name = " ".join(words[1:3]) if words[1] == "lessons" else words[1]
-        marks = [pytest.mark.slow, pytest.mark.timeout(1400)] if name in LONG else []
+        marks = [pytest.mark.long, pytest.mark.timeout(1400)] if name in LONG else []
         yield pytest.param(words, LONG.get(name, 60), marks=marks, id=" ".join(words[1:]))
 
 

@@ -39,7 +39,7 @@ def test_the_reference_has_the_values_of_each_variant():
             assert f"{own} `{settings.__module__}.{settings.__qualname__}`" in section  # a link to what they mean
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.timeout(1400)
 def test_the_reference_is_made_without_a_word_and_the_same_each_time(tmp_path):
     pytest.importorskip("pdoc", reason="the extra docs is not installed")

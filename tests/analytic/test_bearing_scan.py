@@ -19,7 +19,7 @@ from analytic.bearing_scan import DAMPING_STEP, PERIOD_STEP, first_stroke, scan_
 from analytic.design import design_bearings, properties
 from comparisons.running.provenance import commit_seed
 
-SLOW = pytest.mark.slow
+SLOW = pytest.mark.long
 SCENE = load_scene("caryatid-isolated")
 POINTS = 400
 

@@ -287,7 +287,7 @@ def assert_scan_agrees(margin, changes, outcomes):
         assert (farther if margin.interleaved else abs(farther)) <= max(0.01 * others.min(), spacing)
 
 
-LONG = (pytest.mark.slow, pytest.mark.timeout(1400))
+LONG = (pytest.mark.long, pytest.mark.timeout(1400))
 
 
 @pytest.mark.parametrize(

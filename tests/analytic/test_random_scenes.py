@@ -63,7 +63,7 @@ def test_mirrored_scenes_are_mirrored_bit_for_bit(index):
     assert [impact.time for impact in one.impacts] == [impact.time for impact in other.impacts]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.timeout(1400)
 @pytest.mark.parametrize("begin", range(400, 50_400, 5000))
 def test_many_more_random_scenes_are_sound(begin):

@@ -271,7 +271,7 @@ LONGER = ("ricker", "viscous", "bouc-wen")
 
 
 @pytest.mark.parametrize(
-    "kind", [pytest.param(kind, marks=pytest.mark.slow if kind in LONGER else ()) for kind in KINDS]
+    "kind", [pytest.param(kind, marks=pytest.mark.long if kind in LONGER else ()) for kind in KINDS]
 )
 def test_it_tends_to_the_march_in_ten_scenes_of_each_kind(kind):
     """With a sixteenth of the step a third of the error or less, or 1e-5 (m, rad, s): first order, not monotone."""

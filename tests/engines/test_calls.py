@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from unittest.mock import ANY
 
 import pytest
-from engine_cases import needs, scene
+from engine_cases import scene
 
 from analytic import PulseMotion, Start
 from analytic.bearing import BearingLaw
@@ -88,7 +88,6 @@ KEPT = "setPhysicsEngineParameter"  # whose values hold until it is called again
 @pytest.fixture
 def made(monkeypatch):
     """Calls that change something in Bullet, and at each step the joints' states before it."""
-    needs("pybullet")
     from engines.pybullet.imported import pybullet
 
     found = []
@@ -203,7 +202,6 @@ def items(mbs):
 
 @pytest.mark.parametrize("variant", ["compliant-corners", "native-contact"])
 def test_exudyn_is_called_as_its_record_says(monkeypatch, variant):
-    needs("exudyn")
     import exudyn as exu
 
     solved = {}

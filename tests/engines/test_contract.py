@@ -14,7 +14,7 @@ from importlib import metadata
 
 import numpy as np
 import pytest
-from engine_cases import PULSE, accurate, default_variant, every_variant, scene, shaking, simulate
+from engine_cases import ACCURATE, PULSE, default_variant, every_variant, scene, shaking, simulate
 
 import engines
 from analytic import SceneError, SettingError, Start
@@ -130,7 +130,8 @@ def test_start_in_flight(engine, variant):
     response, reference = simulate(engine, variant, given), exact(given)
     for name in History.COLUMNS:
         assert getattr(response.history, name)[0] == getattr(reference.history, name)[0], name
-    bounds = IN_FLIGHT if accurate(engine, variant) else IN_FLIGHT_SINKING.get((engine, variant), IN_FLIGHT_ROUGHLY)
+    accurate = ACCURATE.get(engine) == variant
+    bounds = IN_FLIGHT if accurate else IN_FLIGHT_SINKING.get((engine, variant), IN_FLIGHT_ROUGHLY)
     for name, bound in zip(("tilt", "tilt_rate", "base_displacement"), bounds, strict=True):
         assert abs(getattr(response.end, name) - getattr(reference.end, name)) < bound, name
 
@@ -189,7 +190,7 @@ def test_runs_repeat_bit_for_bit_also_in_other_processes(engine, variant):
             )
 
 
-ALONE = [pytest.param((name,), id=name, marks=() if name == "pybullet" else pytest.mark.slow) for name in ENGINES]
+ALONE = [pytest.param((name,), id=name, marks=() if name == "pybullet" else pytest.mark.long) for name in ENGINES]
 
 
 @pytest.mark.parametrize("missing", [*ALONE, pytest.param(tuple(ENGINES), id="all")])

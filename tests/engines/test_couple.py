@@ -77,7 +77,7 @@ def test_impacts_have_the_given_restitution(engine, ground, kept):
     check_impacts(engine, released(ground, 0.2, kept), BOUNDS[engine])
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @every_engine
 @pytest.mark.parametrize("ground, slenderness", sorted(GRID))
 @pytest.mark.parametrize("kept", SHARES)
@@ -123,7 +123,7 @@ def check_impacts(engine, scene, bound, jump=1e-3, least=8):
 @pytest.mark.parametrize(
     "place, kept",
     [
-        pytest.param(place, kept, marks=[] if kept == 0.8 and place[1] == 0.2 else [pytest.mark.slow])
+        pytest.param(place, kept, marks=[] if kept == 0.8 and place[1] == 0.2 else [pytest.mark.long])
         for place, by_share in BOUNDARIES.items()
         for kept in by_share
     ],

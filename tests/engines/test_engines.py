@@ -1,6 +1,7 @@
 """Engines are found by name; an absent one is told from a broken one."""
 
 import pytest
+from engine_cases import ACCURATE, VARIANTS
 
 import engines
 from analytic.errors import EngineNotInstalled
@@ -37,3 +38,15 @@ def test_broken_adapter_does_not_pass_for_absent(declared):
         with pytest.raises(ModuleNotFoundError, match="no_such_package") as raised:
             find()
         assert not isinstance(raised.value, EngineNotInstalled)
+
+
+@pytest.mark.parametrize("name", engines.BUILT_IN)
+def test_variants_are_those_that_tests_are_drawn_from(name):
+    engine = engines.get_engine(name)
+    main = engine.default_variant
+    assert (
+        set(VARIANTS[name]) == set(engine.variants)
+        and VARIANTS[name][0] == main
+        and tuple(VARIANTS) == engines.BUILT_IN
+    )
+    assert (name in ACCURATE) == (engine.variants[main].kind == "tuned")

@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from engine_cases import impact_errors, needs, scene
+from engine_cases import impact_errors, scene
 
 from analytic import Start
 from engines import get_engine
@@ -16,7 +16,6 @@ ROCKING = scene(0.2, 212.0, start=Start(tilt=0.1))
 
 def built(engine):
     """The module that builds an engine's scene."""
-    needs(engine)
     return importlib.import_module(f"engines.{engine}.scene")
 
 
@@ -102,7 +101,6 @@ def test_what_an_engine_does_not_hold_as_asked_is_refused(monkeypatch, engine, c
     ],
 )
 def test_settings_of_the_contact_bring_a_tenth_of_the_error(monkeypatch, engine, base, setting, other):
-    needs(engine)
     simulate, (module, name) = get_engine(engine).simulate, setting.split(".")
     usual, module = impact_errors(simulate, 0.3, base, 2, 2.5)[0], importlib.import_module(f"engines.{engine}.{module}")
     monkeypatch.setattr(module, name, other(getattr(module, name)))
@@ -163,7 +161,6 @@ def test_bullet_is_disconnected_where_it_raises_an_error(monkeypatch):
 
 
 def test_bullet_cuts_friction_and_the_response_says_so():
-    needs("pybullet")
     given, simulate = ROCKING.with_(friction=20.0), get_engine("pybullet").simulate
     (warning,) = simulate(given, history=False).warnings
     assert (warning.kind, warning.quantity, warning.value, warning.limit) == ("engine", "friction", 20.0, 10.0)
@@ -171,7 +168,6 @@ def test_bullet_cuts_friction_and_the_response_says_so():
 
 
 def test_first_script_that_reaches_bullets_velocity_limit_fails():
-    needs("pybullet")
     given = scene(0.2, 212.0, 1.0, start=Start(base_velocity=150.0))
     response = get_engine("pybullet").simulate(given, variant="first-script")
     assert response.outcome == "failed" and "velocit" in response.failure.reason

@@ -6,7 +6,6 @@ import dataclasses
 import numpy as np
 import pytest
 from bearing_laws import NAMES, to_law
-from engine_cases import needs
 from sampled_traces import SCENES, sampled, seen
 
 from analytic import PulseMotion
@@ -108,7 +107,6 @@ def mutate_leapfrog(monkeypatch, gain, delay):
 
 def error_in(engine, monkeypatch, gain, delay):
     """(response, error of the impulse) of the engine's default, with a mutated force."""
-    needs(engine)
     mutate = mutate_exudyn if engine == "exudyn" else mutate_leapfrog
     mutate(monkeypatch, gain, delay)
     response, trace = get_engine(engine).traced(DRIVEN)

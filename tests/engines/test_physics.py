@@ -9,7 +9,7 @@ import math
 import numpy as np
 import pytest
 from bearing_laws import NAMES, bearings_of
-from engine_cases import PULSE, accurate, accurate_variant, every_variant, impact_errors, scene, shaking, simulate
+from engine_cases import ACCURATE, PULSE, accurate_variant, every_variant, impact_errors, scene, shaking, simulate
 from record_files import RECORDS, needs_records
 
 from analytic import PulseMotion, Start, load_scene
@@ -99,7 +99,7 @@ def test_overturning_stops_cleanly(engine, variant, shape, peak, frequency, late
     assert response.end.time == response.history.time[-1] == pytest.approx(response.overturning_time)
     assert abs(response.end.tilt) == response.peak_tilt == pytest.approx(math.pi / 2)
     assert response.unstable_time == response.fall_time < response.overturning_time < 8.0
-    if accurate(engine, variant):
+    if ACCURATE.get(engine) == variant:
         assert response.fall_time == pytest.approx(reference.fall_time, abs=2e-3)
         assert response.overturning_time == pytest.approx(reference.overturning_time, abs=late)
 
@@ -141,7 +141,7 @@ IMPACTS = {("dart", "impact-aware"): 2e-4}
 @accurate_variant
 @pytest.mark.parametrize("base", [None, 212.0])
 @pytest.mark.parametrize(
-    "slenderness", [0.1, pytest.param(0.2, marks=pytest.mark.slow), pytest.param(0.3, marks=pytest.mark.slow), 0.45]
+    "slenderness", [0.1, pytest.param(0.2, marks=pytest.mark.long), pytest.param(0.3, marks=pytest.mark.long), 0.45]
 )
 def test_impacts_are_as_momentum_asks(engine, variant, slenderness, base):
     """Of 8 starts, the first 3 impacts each."""

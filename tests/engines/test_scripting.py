@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from engine_cases import needs
 from scripts import code_lines, measured, ran, run_alone, written
 from sliding_scenes import SAVED, SLIDES
 
@@ -118,7 +117,6 @@ def rms(errors):
 
 def check(engine, scene, folder):
     """Assert the accuracy that is promised of scripts, and that they print what the project reads."""
-    needs(engine)
     found = ran(engine, scene, folder)
     seen, model, given = found.seen, found.model, scene.block.restitution is not None
     assert (seen.failure, seen.outcome) == (None, model.outcome)
@@ -162,7 +160,7 @@ def test_a_script_is_exact(engine, name, tmp_path):
     check(engine, FEW[name], tmp_path)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @every_engine
 @pytest.mark.parametrize("name", GRID | OTHERS)
 def test_scripts_are_exact(engine, name, tmp_path):
@@ -172,7 +170,6 @@ def test_scripts_are_exact(engine, name, tmp_path):
 @every_engine
 @pytest.mark.parametrize("scene", [SAVED, SLIDES, SLIDES_ON_BEARINGS], ids=["rocks", "slides", "on bearings"])
 def test_a_script_slides_as_the_model_does_and_says_how_far(engine, scene, tmp_path):
-    needs(engine)
     found = ran(engine, scene, tmp_path)
     model, slid = found.model, found.model.sliding
     assert f"\n{model.outcome}" in f"\n{found.said}"
@@ -232,7 +229,6 @@ def test_a_script_holds_only_what_its_scene_needs(engine, tmp_path):
 @every_engine
 def test_numbers_at_the_head_are_all_that_a_reader_changes(engine, tmp_path):
     """A script whose numbers are changed runs the scene of these numbers."""
-    needs(engine)
     script = written(engine, pulse(block_of(0.2), size=1.5), tmp_path)
     text = script.read_text()
     other = ISOLATED.with_(
@@ -257,7 +253,6 @@ def test_numbers_at_the_head_are_all_that_a_reader_changes(engine, tmp_path):
 
 @every_engine
 def test_a_script_draws_its_history(engine, tmp_path):
-    needs(engine)
     script = written(engine, FEW["rigid, released"].with_(duration=0.3), tmp_path)
     assert "still moving" in run_alone(script, "--plot", tmp_path / "tilt.svg")
     assert "tilt [rad]" in (tmp_path / "tilt.svg").read_text()
@@ -266,7 +261,6 @@ def test_a_script_draws_its_history(engine, tmp_path):
 @every_engine
 @pytest.mark.parametrize("name", ["rocks", "slides", "on bearings", "beyond its balance", "quiet", "decided"])
 def test_a_script_ends_with_the_run_and_says_as_it_does_that_nothing_is_decided(engine, name, tmp_path):
-    needs(engine)
     scene = {
         "rocks": pulse(on_ground(block_of(0.35)), size=1.2, speed=3.0).with_(duration=0.3),
         "slides": SLIDES.with_(duration=0.4),
@@ -350,7 +344,6 @@ def test_a_script_without_a_friction_has_as_much_as_a_couple_needs(tmp_path):
 @every_engine
 @pytest.mark.parametrize("damage", [("0.005 ", "1e9 "), ("0.01 ", "nan "), ("0.015 ", "0.015 nan #")])
 def test_a_damaged_record_stops_a_script(engine, damage, tmp_path):
-    needs(engine)
     script = written(engine, FEW["isolated, record"], tmp_path)
     record = script.with_name("script-motion.txt")
     record.write_text(record.read_text().replace(*(f"\n{text}" for text in damage), 1))
@@ -361,7 +354,6 @@ def test_a_damaged_record_stops_a_script(engine, damage, tmp_path):
 @every_engine
 def test_a_record_of_uneven_times_is_the_same_motion(engine, tmp_path):
     """The zeros before the motion left out."""
-    needs(engine)
     scene = on_ground(block_of(0.2)).with_(motion=PulseMotion("half-sine", 3.0, 6.0, start=1.0), duration=2.5)
     motion = SampledMotion(0.01, scene.motion.acceleration(np.arange(301) * 0.01))
     script = written(engine, scene.with_(motion=motion), tmp_path)

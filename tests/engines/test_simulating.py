@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from engine_cases import every_variant, needs, scene
+from engine_cases import every_variant, scene
 
 from analytic import Start, simulate
 from analytic.response import Failure
@@ -26,7 +26,6 @@ def cut(base, after):
 @pytest.mark.parametrize("name", ["exudyn", "pybullet", "mujoco", "pymunk"])
 def test_a_run_that_ends_in_an_impact_reads_it_as_one_that_goes_on(name, base, after):
     """e was off by .028 (exudyn, with a warning), .017 (PyBullet) and .97 (MuJoCo), in silence."""
-    needs(name)
     given, _ = cut(base, after)
     response = get_engine(name).simulate(given, history=False)
     assert response.outcome == "rocks" and not [each for each in response.warnings if "impact" in each.text]
@@ -66,7 +65,6 @@ class Unsound(Counted):
 
 @pytest.mark.parametrize("name", ["exudyn", "mujoco"])
 def test_a_run_goes_on_only_where_it_ends_in_an_impact_and_costs_both(name):
-    needs(name)
     given, at = cut(None, 1e-4)
     once, twice, unsound = (kind.of(get_engine(name)) for kind in (Counted, Counted, Unsound))
     plain, _ = once.traced(given.with_(duration=at - 0.1), history=False)

@@ -5,7 +5,6 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from engine_cases import needs
 from sliding_scenes import LANDS, LOST, PASSES, SAVED, SLIDES, random_slider, scene_of
 
 from analytic import Base, Bearings, Block, PulseMotion, Scene, simulate
@@ -26,7 +25,6 @@ def flight_of(model):
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("scene", [SAVED, LOST, SLIDES], ids=["saved", "overturned", "slides"])
 def test_a_block_that_slides_does_so_in_engines(engine, scene):
-    needs(engine)
     model, run = simulate(scene, history=False), get_engine(engine).simulate(scene)
     assert (run.failure, run.outcome, run.differences) == (None, model.outcome, ())
     assert run.comparable in ("yes", "on an edge") and not [one for one in run.warnings if one.kind == "model"]
@@ -42,7 +40,6 @@ def test_a_block_that_slides_does_so_in_engines(engine, scene):
 @pytest.mark.parametrize("scene", [LANDS, PASSES], ids=["lands", "passes the upright"])
 def test_neither_a_landing_nor_a_passage_in_the_air_is_an_impact_that_differs(engine, scene):
     """The landing is one in the model only, and off the upright; in the air the tilt changes side without any."""
-    needs(engine)
     model, run = simulate(scene, history=False), get_engine(engine).simulate(scene)
     begin, end = (one[0] for one in flight_of(model))
     assert (run.failure, run.outcome, run.differences, run.comparable) == (None, "rocks", (), "yes")
@@ -54,7 +51,6 @@ def test_neither_a_landing_nor_a_passage_in_the_air_is_an_impact_that_differs(en
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_slip_over_time_is_the_models(engine):
-    needs(engine)
     model, run = simulate(SAVED).history, get_engine(engine).simulate(SAVED, compare=False).history
     slip = np.interp(model.time, run.time, run.slip)
     np.testing.assert_allclose(slip, model.slip, atol=1e-3 * np.abs(model.slip).max())
@@ -78,7 +74,6 @@ def test_a_run_that_does_not_slip_where_the_model_does_differs():
 @pytest.mark.parametrize("engine", ["pybullet", "mujoco", "dart"])
 def test_a_first_script_slides_too(engine):
     """As much as its step and its contact allow; the block's place is read from the engine."""
-    needs(engine)
     model, run = simulate(SLIDES, history=False), get_engine(engine).simulate(SLIDES, variant="first-script")
     assert (run.failure, run.outcome) == (None, "slides")
     assert run.sliding.peak == pytest.approx(model.sliding.peak, rel=0.1)
@@ -102,7 +97,6 @@ def test_an_impact_may_turn_the_energy_of_the_slip_into_rotation(engine, room):
 
     The contact of exudyn lasts: with five times its stiffness the error is .6 of that.
     """
-    needs(engine)
     pulse = PulseMotion("ricker", -12.025, 15.53, vertical=PulseMotion("ricker", 8.017, 15.53))
     scene = scene_of(0.571, 0.21366, 0.22704, base=2.213, motion=pulse).with_(
         block={"mass": 3.0487}, bearings={"ka": 594.84, "kb": 242.085, "alpha": 308.23}
@@ -115,7 +109,6 @@ def test_an_impact_may_turn_the_energy_of_the_slip_into_rotation(engine, room):
 
 def test_what_mujoco_is_said_to_get_wrong_it_gets_wrong():
     """A block with friction .2 and tan(gamma) .2027 can only slide; and the impact of `LOST`, into which it slides."""
-    needs("mujoco")
     engine, low = get_engine("mujoco"), scene_of(0.2, 0.2, motion=PulseMotion("rectangular", 4.0, 6.0))
     (model,), (seen,) = (run(LOST, history=False).impacts for run in (simulate, engine.simulate))
     assert model.rate_after < 0.9 * model.rate_before and seen.rate_after > 0.99 * seen.rate_before
@@ -127,7 +120,6 @@ def test_what_mujoco_is_said_to_get_wrong_it_gets_wrong():
 @pytest.mark.parametrize("step", [1e-3, 5e-4])
 def test_the_corner_under_a_rocking_block_creeps_in_bullet_as_is_said(step):
     """By half the step times the integral of n phi'^2, which is no slip: less than `LEAST_SLIP`."""
-    needs("pybullet")
     scene = scene_of(5.0, 0.3, start={"tilt": 0.21}, duration=0.9)
     engine = get_engine("pybullet")
     run, trace = engine.traced(scene, largest_step=step)
@@ -141,7 +133,6 @@ def test_the_corner_under_a_rocking_block_creeps_in_bullet_as_is_said(step):
 
 def test_what_exudyn_is_said_to_get_wrong_it_gets_wrong():
     """An impact into which the block slides, and the slip after it; the next one, after which it sticks, is right."""
-    needs("exudyn")
     engine, up = get_engine("exudyn"), PulseMotion("one-cosine", 7.4, 14.2)
     scene = scene_of(0.69, 0.3066, 1.51, motion=PulseMotion("one-cosine", 8.13, 14.2, vertical=up), duration=1.0)
     model, run = simulate(scene, history=False), engine.simulate(scene)
@@ -154,11 +145,10 @@ def test_what_exudyn_is_said_to_get_wrong_it_gets_wrong():
     assert "slides" in engine.variants[engine.default_variant].faults and run.comparable == "yes"
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("engine, most", [("exudyn", 4), ("pybullet", 0)])
 def test_forty_random_scenes(engine, most):
     """exudyn is off in some scenes on rigid ground that a jump of the ground's acceleration lifts."""
-    needs(engine)
     rng, wrong = np.random.default_rng(7), 0
     for number in range(40):
         scene = random_slider(rng, number)

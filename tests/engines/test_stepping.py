@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 import pytest
 from engine_cases import impact_errors as released_errors
-from engine_cases import needs, scene
+from engine_cases import scene
 
 from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start
 from analytic import simulate as exact
@@ -131,13 +131,11 @@ def test_how_a_run_ends(monkeypatch, kind, words, rows):
 def run(request):
     """The function `traced` of an engine with a variant."""
     name, variant = request.param
-    needs(name)
     return partial(get_engine(name).traced, variant=variant)
 
 
 @pytest.fixture(params=RULED)
 def engine(request):
-    needs(request.param)
     return get_engine(request.param)
 
 
@@ -146,7 +144,6 @@ def engine(request):
     [("mujoco", 0.2, 4, 2.5, 8, 4, 16), ("pybullet", 0.45, 8, 3.0, 4, 2.5, 6.5)],
 )
 def test_fixed_steps_are_of_first_order(name, slenderness, starts, seconds, finer, least, most):
-    needs(name)
     simulate = partial(get_engine(name).simulate, variant="fixed-step")
     coarse, fine = (
         released_errors(simulate, slenderness, None, starts, seconds, step=step)[0] for step in (1.6e-3, 1.6e-3 / finer)

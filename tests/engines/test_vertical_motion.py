@@ -5,7 +5,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from engine_cases import every_variant, needs
+from engine_cases import every_variant
 
 from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start, simulate
 from analytic.decision import RIGID_BEARINGS
@@ -54,7 +54,6 @@ def first_impacts(response):
 @pytest.mark.parametrize("scenes, base", [("rigid ground", None), ("sliding base", Base(mass=212.0))])
 @pytest.mark.parametrize("name", TUNED)
 def test_impact_times_of_a_released_block(name, scenes, base):
-    needs(name)
     engine, scene = get_engine(name), RELEASED.with_(base=base)
     limit, wanted = bound(engine, "impact times", scenes), first_impacts(simulate(scene))
     found = engine.simulate(scene, history=False)
@@ -65,7 +64,6 @@ def test_impact_times_of_a_released_block(name, scenes, base):
 
 @pytest.mark.parametrize("name", TUNED)
 def test_peaks_on_bearings(name):
-    needs(name)
     engine, exact, level = get_engine(name), simulate(DRIVEN), simulate(without(DRIVEN))
     found = engine.simulate(DRIVEN, history=False)
     tilt, displacement = (

@@ -126,7 +126,7 @@ def test_every_constant_declared_is_a_number_that_is_there(engine, variant, cons
     assert (given[constant] if given else resolve_name(constant)) > 0
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("engine, variant, constant", DECLARED)
 def test_a_constant_halved_or_doubled_changes_as_much_as_is_listed(engine, variant, constant, monkeypatch):
     outcomes, bits, errors = as_it_is(engine, variant)

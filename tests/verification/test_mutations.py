@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from engine_cases import impact_errors, needs
+from engine_cases import impact_errors
 
 from analytic import simulate
 from analytic.bearing import BearingLaw
@@ -22,7 +22,6 @@ def row(quantity, engine, variant, scenes):
         for one in TABLE
         if (one.quantity, one.engine, one.variant, one.scenes) == (quantity, engine, variant, scenes)
     ]
-    needs(engine)
     return found
 
 
@@ -48,7 +47,7 @@ def run_otherwise(monkeypatch, change=lambda scene: scene, **settings):
 
 def each(*rows):
     """Parameters that begin with an engine; those of engines that the studies are not about are slow tests."""
-    return [pytest.param(*row, marks=[] if ENGINES[row[0]].subject else [pytest.mark.slow]) for row in rows]
+    return [pytest.param(*row, marks=[] if ENGINES[row[0]].subject else [pytest.mark.long]) for row in rows]
 
 
 DEFAULTS = each(

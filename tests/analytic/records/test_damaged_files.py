@@ -231,7 +231,7 @@ def test_damaged_files(tmp_path, undamaged, judged):
     assert counts["same"] > 50 and counts["refused"] > 150  # the damage is neither all fatal nor all harmless
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.timeout(850)
 @pytest.mark.parametrize("seed", range(1, 4))
 @both_kinds

@@ -105,6 +105,6 @@ def test_damaged_packed_files_are_refused_or_read_the_same(tmp_path):
     assert 0 < judge_damaged(tmp_path, 270, seed=0) < 135
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_many_damaged_packed_files(tmp_path):
     assert judge_damaged(tmp_path, 9 * 500, seed=1)

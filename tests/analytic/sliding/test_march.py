@@ -88,7 +88,7 @@ def test_a_first_impact_is_equation_7_or_slips(base, share):
         assert after / before == pytest.approx((1 - gripping) / (1 + gripping), abs=1e-12)
 
 
-@pytest.mark.parametrize("seed", [*range(3), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(3, 10))])
+@pytest.mark.parametrize("seed", [*range(3), *(pytest.param(seed, marks=pytest.mark.long) for seed in range(3, 10))])
 def test_energy_is_conserved_with_exactly_one_mode(seed):
     """100 scenes: no march ends for want of one mode of contact or for a second one; no impact gains energy."""
     rng = np.random.default_rng([55, seed])

@@ -167,7 +167,7 @@ def test_the_cheapest_is_chosen_whose_finer_ones_pass_everywhere(errors, whole, 
     assert made.asked == {made.levels[place] for place in asked}  # neighbours are run of hopeful levels only
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_choice_from_python_runs_what_it_names():
     pulse = RIGID.with_(
         name="pulse",

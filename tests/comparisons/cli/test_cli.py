@@ -13,7 +13,7 @@ from types import SimpleNamespace
 import pytest
 import typer
 from bad_scenes import SCENE, write_scene
-from engine_cases import accurate, needs
+from engine_cases import ACCURATE
 from own_scenes import BRONZE, CLIFF
 
 from analytic import Caution, Failure, load_scene, simulate, solver
@@ -56,11 +56,10 @@ def test_run_writes_json_csv_and_plot(rocking, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "engine", [pytest.param(name, marks=[] if one.subject else [pytest.mark.slow]) for name, one in ENGINES.items()]
+    "engine", [pytest.param(name, marks=[] if one.subject else [pytest.mark.long]) for name, one in ENGINES.items()]
 )
 def test_json_of_an_engine_is_alone_too(engine):
     """In a new process: an engine may greet when it is loaded, or when C flushes its buffers at exit."""
-    needs(engine)
     done = in_a_new_process("free-rocking-rigid", "--engine", engine, "--json", "-")
     assert json.loads(done.stdout)["engine"] == engine
     assert done.returncode == 0, done.stderr
@@ -142,7 +141,7 @@ def test_compare(rocking, tmp_path):
     status, out, _ = rocking("compare", "free-rocking-rigid", "--plot", picture, "--json", result)
     content, names = json.loads(result.read_text()), ("analytic", *installed_engines())
     assert status == 0 and tuple(response["engine"] for response in content["responses"]) == names
-    tuned = [name for name in installed_engines() if accurate(name, get_engine(name).default_variant)]
+    tuned = [name for name in installed_engines() if name in ACCURATE]
     told = [content["sensitivity"][name] for name in tuned]  # free rocking forgets its past
     assert all(one["horizon"] is None and 0 < one["perturbation"] < 1e-2 for one in told)
     assert tuple(content["sensitivity"]) == tuple(installed_engines())
@@ -162,7 +161,6 @@ def test_an_outcome_that_hangs_on_the_last_digits_is_said(rocking, tmp_path):
 @pytest.mark.parametrize("engine", ["pybullet", "mujoco"])
 @pytest.mark.parametrize("variant, said", [("first-script", True), ("impact-aware", False)])
 def test_a_run_that_is_off_the_analytic_model_says_so(rocking, tmp_path, engine, variant, said):
-    needs(engine)
     file = tmp_path / "run.json"
     _, out, _ = rocking("run", "free-rocking-rigid", "--engine", engine, "--variant", variant, "--json", file)
     told = json.loads(file.read_text())

@@ -48,7 +48,7 @@ CASES = [
         scene,
         cut,
         command,
-        marks=[pytest.mark.slow] if command in DEAR and (scene not in DEAR[command] or cut) else [],
+        marks=[pytest.mark.long] if command in DEAR and (scene not in DEAR[command] or cut) else [],
         id=f"{command}: {scene}{', cut' if cut else ''}",
     )
     for scene in (*NEW, *SHIPPED)
@@ -113,9 +113,9 @@ BEARINGS = "[base]\nmass = 50.0\n[bearings]\nlaw = 'linear'\nka = 2000.0\n"  # (
         ("compare", "", 0.9),
         ("compare", BEARINGS, 0.75),
         ("choose", "", 0.9),
-        pytest.param("report", "", 0.9, marks=pytest.mark.slow),
-        pytest.param("report", BEARINGS, 0.75, marks=pytest.mark.slow),
-        pytest.param("choose", BEARINGS, 0.75, marks=pytest.mark.slow),
+        pytest.param("report", "", 0.9, marks=pytest.mark.long),
+        pytest.param("report", BEARINGS, 0.75, marks=pytest.mark.long),
+        pytest.param("choose", BEARINGS, 0.75, marks=pytest.mark.long),
     ],
 )
 def test_a_restitution_that_is_given_is_kept_by_the_engine(rocking, folder, monkeypatch, command, ground, given):

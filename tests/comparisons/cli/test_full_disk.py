@@ -1,6 +1,6 @@
 """Commands on a disk that is full, and killed in the write: what was there before is there still, or the whole new one.
 
-All of them: python -m pytest -m slow tests/comparisons/cli/test_full_disk.py
+All of them: python -m pytest -m long tests/comparisons/cli/test_full_disk.py
 """
 
 import re
@@ -43,7 +43,7 @@ cli.main(sys.argv[2:])
 
 def each(*commands):
     """Parameters of tests, each with a command first; but for one command they take long."""
-    slow = [pytest.mark.slow, pytest.mark.timeout(1400)]
+    slow = [pytest.mark.long, pytest.mark.timeout(1400)]
     return [pytest.param(*words, marks=() if words[0] == "sheet" else slow) for words in commands]
 
 

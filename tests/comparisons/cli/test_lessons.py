@@ -41,7 +41,7 @@ def test_without_marimo_it_says_what_to_install(rocking, monkeypatch):
     assert status == 2 and "pip install marimo" in err
 
 
-@pytest.mark.parametrize("names", [["bearing"], pytest.param(None, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("names", [["bearing"], pytest.param(None, marks=pytest.mark.long)])
 def test_pages_lead_to_nothing_outside(rocking, tmp_path, monkeypatch, names):
     if names:
         monkeypatch.setattr(export, "lessons", lambda: [lesson(name) for name in names])

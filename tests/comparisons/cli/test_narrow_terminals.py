@@ -5,7 +5,6 @@ import re
 from collections import Counter
 
 import pytest
-from engine_cases import needs
 from own_scenes import BRONZE, BUST, CLIFF
 from record_files import pairs
 from rich.console import Console
@@ -69,8 +68,6 @@ def printed(table, width):
 
 @pytest.mark.parametrize("command", COMMANDS)
 def test_numbers_are_whole_and_what_is_left_out_is_named(rocking, place, monkeypatch, command):
-    if "pybullet" in COMMANDS[command]:
-        needs("pybullet")
     shown = []
 
     class Seen(Console):

@@ -439,7 +439,7 @@ def test_a_friction_beside_that_of_the_scene_is_refused(rocking, tmp_path):
     assert status == 2 and "friction = 0.01: the scene's, 0.15, is used in its place; leave it out" in err
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("engine", BUILT_IN)
 @pytest.mark.parametrize("kind", KINDS)
 def test_real_engines_answer(rocking, tmp_path, monkeypatch, kind, engine):
@@ -462,7 +462,7 @@ def test_real_engines_answer(rocking, tmp_path, monkeypatch, kind, engine):
             differences_are_told(answer, words)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("kind", KINDS)
 def test_choose_among_real_engines(rocking, tmp_path, monkeypatch, kind):
     monkeypatch.chdir(tmp_path)

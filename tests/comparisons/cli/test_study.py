@@ -6,7 +6,6 @@ from pathlib import Path
 from unittest.mock import Mock
 
 import pytest
-from engine_cases import needs
 
 from comparisons.commands import study as command
 from comparisons.running import check as module
@@ -77,7 +76,6 @@ def test_a_seed_is_the_plans_where_it_takes_one_and_else_belongs_to_a_check(rock
 
 
 def test_an_engine_is_run_alone_with_the_options_of_the_result_that_is_there(rocking, monkeypatch, tmp_path):
-    needs("pybullet")
     monkeypatch.setattr(command, "get_study", lambda name: Study("weighs", "Asks?", _weighing, __name__))
     words, path = ("study", "restitution", "--output", tmp_path, "--engine"), tmp_path / "weighs"
     assert rocking(*words, "pybullet", "--mass", "2")[0] == 0
@@ -99,7 +97,6 @@ def test_an_engine_is_run_alone_with_the_options_of_the_result_that_is_there(roc
 
 
 def test_where_no_engine_is_to_be_compared_all_is_computed_anew(tmp_path):
-    needs("exudyn")
     weighs = Study("weighs", "Asks?", _weighing, __name__)
     for engines, mass in ((("exudyn",), 2.0), ((), 3.0)):
         (path,) = compute(weighs, tmp_path, engines=engines, mass=mass, progress=False)

@@ -51,7 +51,7 @@ def test_the_other_pages(browser, pages):
     assert export.LICENCE in (pages / "figures/lesson-2.svg").read_text()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_every_lesson(browser, tmp_path):
     export.export_pages(tmp_path)
     for one in lessons():

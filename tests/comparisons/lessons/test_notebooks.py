@@ -32,7 +32,7 @@ def run(name, folder):
 
 
 @pytest.mark.parametrize(
-    "name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in NAMES]
+    "name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.long) for name in NAMES]
 )
 def test_it_runs_to_its_end(name, tmp_path):
     outputs = run(name, tmp_path)
@@ -40,7 +40,7 @@ def test_it_runs_to_its_end(name, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "engines", [(), *(pytest.param((engine,), marks=pytest.mark.slow) for engine in installed_engines())], ids=str
+    "engines", [(), *(pytest.param((engine,), marks=pytest.mark.long) for engine in installed_engines())], ids=str
 )
 @pytest.mark.parametrize("name", ["corner", "cost"])
 def test_it_runs_with_one_engine_or_none(name, engines, monkeypatch, tmp_path):

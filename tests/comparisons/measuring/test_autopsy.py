@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 import pytest
-from engine_cases import needs, released
+from engine_cases import released
 from fixed_steps import fixed_steps
 from sampled_traces import BASE, SCENES, sampled
 
@@ -26,7 +26,6 @@ def exact(name, mean_step=2e-3, **changes):
 
 
 def run(engine, variant, scene, **settings):
-    needs(engine)
     return contact_of(scene, get_engine(engine).traced(scene, variant=variant, history=False, **settings)[1])
 
 

@@ -3,7 +3,7 @@
 import itertools
 
 import pytest
-from engine_cases import needs, released
+from engine_cases import released
 from fixed_steps import fixed_steps
 from sampled_traces import BASE
 
@@ -57,7 +57,7 @@ SET = {
     "compliance": ("exudyn", "compliant-corners", lambda size: {"stiffness": size}, (1e7, 1e8, 1e10)),
     "adhesion": ("exudyn", "native-contact", lambda size: {"damping": size}, (4.0, 2.0, 1.0)),
 }
-GROUNDS = [pytest.param(None, id="rigid ground"), pytest.param(BASE, id="sliding base", marks=pytest.mark.slow)]
+GROUNDS = [pytest.param(None, id="rigid ground"), pytest.param(BASE, id="sliding base", marks=pytest.mark.long)]
 
 
 def falling(base):
@@ -66,7 +66,6 @@ def falling(base):
 
 
 def contact(engine, variant, scene, which=0, **settings):
-    needs(engine)
     return contact_of(scene, get_engine(engine).traced(scene, variant=variant, history=False, **settings)[1], which)
 
 
@@ -139,7 +138,7 @@ CLEAN = {"exudyn": "compliant-corners"} | dict.fromkeys(("mujoco", "pymunk", "da
 
 
 @pytest.mark.parametrize("engine, variant", CLEAN.items())
-@pytest.mark.parametrize("count", [2, pytest.param(20, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [2, pytest.param(20, marks=pytest.mark.long)])
 def test_no_clean_run_is_accused(engine, variant, count):
     for scene in random_scenes(count):
         for which in (0, 1):
@@ -148,7 +147,6 @@ def test_no_clean_run_is_accused(engine, variant, count):
 
 
 def test_diagnosis_is_ready_for_a_page_or_says_why_not():
-    needs("pymunk"), needs("mujoco")
     told = diagnosis("mujoco", "fixed-step", released(None), step=4e-3)
     assert (told["tier"], told["best"], told["cause"], told["words"]) == ("tuned", False, "step", CAUSES["step"])
     assert told["steps"] == 2 and told["deepest"] < 1e-3 and set(told["frames"]) >= {"straddle", "energy"}

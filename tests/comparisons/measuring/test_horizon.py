@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from engine_cases import needs
 from sliding_scenes import LOST
 
 from analytic import Block, SampledMotion, Scene, Start, simulate
@@ -125,7 +124,6 @@ def test_restitution_errors_are_weighted_by_the_rate():
 
 
 def assert_no_engine_parts_before_its_own_horizon(engine, scenes):
-    needs(engine)
     for scene in scenes:
         reference = simulate(scene, output_step=2e-3)
         response = get_engine(engine).simulate(scene)
@@ -145,7 +143,7 @@ def test_no_engine_parts_before_its_own_horizon(engine):
     assert_no_engine_parts_before_its_own_horizon(engine, scenes)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("engine", ["exudyn", "pybullet", "mujoco"])
 @pytest.mark.parametrize(
     "name", ["RSN1605_DUZCE_DZC270.AT2", "IELC180.AT2", "ARL360.at2", "formats/RSN1063_NORTHR_RRS228.AT2"]

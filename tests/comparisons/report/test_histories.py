@@ -78,7 +78,7 @@ def memory(process):
     return 0
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.timeout(1400)
 def test_a_report_on_a_million_samples_stays_under_800_mb(tmp_path):
     motion, step, count = synthetic_motion(), 2e-4, 1_000_000

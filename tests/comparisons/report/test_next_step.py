@@ -29,7 +29,7 @@ def fate(scene, motion, width=None):
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[pytest.mark.slow] if name == "bust.toml" else []) for name in CARDS]
+    "name", [pytest.param(name, marks=[pytest.mark.long] if name == "bust.toml" else []) for name in CARDS]
 )
 def test_the_command_on_the_card_runs_on_this_file(rocking, tmp_path, monkeypatch, studies, name):
     monkeypatch.chdir(tmp_path)

@@ -250,7 +250,7 @@ def test_one_that_rocks_gets_its_own_restitution_and_replaces_an_older_report(tm
     assert "released: in analytic it rocks and stays upright" in page and "bust: in analytic it never lifts" in page
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_scene_that_stands_gets_no_word_of_restitution(tmp_path):
     page = page_of(tmp_path, bust=BUST_ON_PULSE)
     assert (tmp_path / SCENES).exists() and not (tmp_path / RESTITUTION).exists()
@@ -274,7 +274,7 @@ def test_no_slip_stands_on_the_card_of_a_block_that_its_friction_holds(page):
     assert not any("slip" in card.lower() for card in cards(page))
 
 
-@pytest.mark.parametrize("place, scene", [pytest.param("saved", SAVED, marks=pytest.mark.slow), ("slides", SLIDES)])
+@pytest.mark.parametrize("place, scene", [pytest.param("saved", SAVED, marks=pytest.mark.long), ("slides", SLIDES)])
 def test_the_slip_stands_on_the_card_of_a_block_that_slides(place, scene, tmp_path):
     named = scene.with_(name=place, duration=None)
     make_own_results(tmp_path / place, {place: named}, engines=[], motions={})

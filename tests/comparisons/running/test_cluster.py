@@ -69,7 +69,7 @@ def kill_again_and_again(executor, times, log, left):
             left += psutil.wait_procs(family, timeout=10)[1]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_worker_killed_five_times_loses_nothing_and_leaves_nothing(tmp_path):
     log, kills = tmp_path / "log", 5
     count = 40 + 40 * kills
@@ -186,7 +186,7 @@ except ClusterError as error:
 """
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_scheduler_that_dies_ends_the_sweep_with_one_message_and_the_same_command_resumes(tmp_path):
     log, store = tmp_path / "log", tmp_path / "s.jsonl"
     with scheduler(tmp_path, 2) as (address, process):

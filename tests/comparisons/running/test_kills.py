@@ -1,6 +1,6 @@
 """Studies killed at random moments and on a full disk: the same results in the end.
 
-All of it: python -m pytest -m slow tests/comparisons/running
+All of it: python -m pytest -m long tests/comparisons/running
 """
 
 import functools
@@ -19,7 +19,7 @@ from comparisons.running.by_solver import read
 from comparisons.running.sweep import Store
 from engines import installed_engines
 
-pytestmark = [pytest.mark.slow, pytest.mark.timeout(1400), pytest.mark.xdist_group("kills")]
+pytestmark = [pytest.mark.long, pytest.mark.timeout(1400), pytest.mark.xdist_group("kills")]
 
 # study: what it is given so that it stays short, and how often it is killed; 20 times in all
 ENGINE = ("--engine", installed_engines()[-1])

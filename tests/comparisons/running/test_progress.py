@@ -85,7 +85,7 @@ def test_a_spinner_where_no_terminal_is_is_a_line_if_it_takes_long(capsys, monke
     assert capsys.readouterr().err == said
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.timeout(600)
 def test_the_first_run_on_a_machine_counts_what_it_compiles(tmp_path):
     pty = pytest.importorskip("pty")

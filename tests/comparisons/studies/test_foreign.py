@@ -101,7 +101,7 @@ def test_names_of_this_project_are_its_own():
         studies.get_study("none")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.timeout(1400)
 def test_a_study_and_the_report_take_an_engine_as_it_comes(tmp_path):
     """Every section that shows runs names it."""

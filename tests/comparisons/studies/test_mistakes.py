@@ -4,7 +4,6 @@ import math
 
 import pytest
 from answered import answered, by_model, by_runs, stored
-from engine_cases import needs
 
 from comparisons.measuring.scripts import ScriptFailed, run_script
 from comparisons.running.by_solver import read
@@ -28,7 +27,6 @@ STANDING = (
 
 
 def found(engine, mistake, scene="released"):
-    needs(engine)
     return study.cost(Case(SCENES[scene], engine, tag={"mistake": mistake}), None)
 
 
@@ -81,7 +79,6 @@ def test_a_run_that_is_none_is_a_row_with_its_reason(monkeypatch):
 
 
 def test_a_quick_study_has_a_row_for_each_mistake_and_a_page(tmp_path):
-    needs(ABLE[0])
     answer = answered(STUDY.plan(Request((ABLE[0], "mujoco"), quick=True)), by_runs(tmp_path))[-1]
     known = ENGINES[ABLE[0]].known_mistakes()
     assert [row["mistake"] for row in answer.rows] == [None, *(key for key in known if key in study.QUICK)]
@@ -100,7 +97,6 @@ def test_without_an_engine_that_has_mistakes_there_is_a_page(tmp_path):
 
 def test_rows_of_a_run_that_is_lost_are_those_of_a_failure(monkeypatch, tmp_path):
     monkeypatch.setattr(study, "QUICK", ())
-    needs(ABLE[0])
     failure = {"kind": "time limit", "reason": "no result", "time_limit": 1.0, "message": ""}
     answer = answered(STUDY.plan(Request((ABLE[0],), quick=True)), by_model(failure=lambda case: failure))[-1]
     (row,) = stored(tmp_path, "mistakes", answer).rows
@@ -108,7 +104,6 @@ def test_rows_of_a_run_that_is_lost_are_those_of_a_failure(monkeypatch, tmp_path
 
 
 def test_another_text_of_a_script_is_another_run():
-    needs(ABLE[0])
     scene, case = SCENES["released"], next(STUDY.plan(Request((ABLE[0],), quick=True))).cases[0]
     assert case.scene == scene and len(case.tag["script"]) == 16
     changed = Mistake("one", "Something", "body", {"import math": "import math as math"})

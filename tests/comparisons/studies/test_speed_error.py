@@ -5,7 +5,6 @@ import math
 
 import numpy as np
 import pytest
-from engine_cases import needs
 
 from analytic import simulate
 from analytic.rocking import restitution
@@ -381,7 +380,6 @@ def test_a_study_repeats_bit_for_bit_and_the_page_comes_from_its_result_alone(st
 
 @pytest.mark.parametrize("name", [name for name, engine in ENGINES.items() if engine.script])
 def test_a_script_as_it_is_written_is_a_solver_with_errors_of_its_own(free, name):
-    needs(name)
     (entry,) = (one for one in entries([free], [name], quick=False) if one.variant == scripts.NAME)
     values = measure(entry.case(0), entry.case(0).run())
     found = errors(free, values)
