@@ -19,15 +19,13 @@ settings.load_profile("ci" if os.environ.get("CI") else "default")
 
 PROJECT = Path(__file__).parents[1]
 
-# The kernel is compiled without and with vertical motion.
-SCENE = """
+# What is compiled once for all workers, without and with vertical motion: the kernel, and the march of what slides.
+COMPILED = """
 from analytic import PulseMotion, load_scene, simulate
-scene = load_scene("caryatid-rigid").with_(motion=PulseMotion("one-sine", 1.0, 60.0), duration=0.1)
+scene = load_scene("caryatid-rigid").with_(motion=PulseMotion("one-sine", 1.0, 60.0), duration=0.1, friction={friction})
+simulate(scene)
+simulate(scene.with_(motion=PulseMotion("one-sine", 1.0, 60.0, vertical=scene.motion)))
 """
-COMPILED = (
-    SCENE + "simulate(scene)",
-    SCENE + "simulate(scene.with_(motion=PulseMotion('one-sine', 1.0, 60.0, vertical=scene.motion)))",
-)
 
 
 def pytest_configure(config):
@@ -36,7 +34,8 @@ def pytest_configure(config):
     others = os.environ.get("PYTHONPATH")
     os.environ["PYTHONPATH"] = os.pathsep.join([str(PROJECT), *([others] if others else [])])
     if getattr(config.option, "numprocesses", None) and not hasattr(config, "workerinput"):
-        for compiling in [subprocess.Popen([sys.executable, "-c", part], cwd=PROJECT) for part in COMPILED]:
+        codes = [COMPILED.format(friction=friction) for friction in (None, 0.01)]
+        for compiling in [subprocess.Popen([sys.executable, "-c", code], cwd=PROJECT) for code in codes]:
             compiling.wait()
 
 
