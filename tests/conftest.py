@@ -11,6 +11,7 @@ import pytest
 from hypothesis import settings
 
 from analytic.errors import EngineNotInstalled
+from comparisons import cli
 from engines import ENGINES
 
 # In CI the same scenes every time: a new counterexample is found where somebody can look at it.
@@ -67,3 +68,17 @@ def without_engines():
         if wanted == ["exudyn"] or wanted == ["pybullet"] and sys.version_info < (3, 12):
             raise
         pytest.skip(str(lost))
+
+
+@pytest.fixture
+def rocking(capfd):
+    """Runs ``rocking ARGUMENTS`` in this process; returns (exit status, standard output, standard error)."""
+
+    def call(*arguments):
+        capfd.readouterr()
+        with pytest.raises(SystemExit) as end:
+            cli.main([str(argument) for argument in arguments])
+        out, err = capfd.readouterr()
+        return end.value.code or 0, out, err
+
+    return call
