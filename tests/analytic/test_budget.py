@@ -82,7 +82,6 @@ def test_steps_too_short_for_the_run_are_refused_by_the_shortest_that_are_not():
 
 def test_a_stiff_scene_that_runs_is_still_too_much_as_often_as_margins_run_it():
     scene = isolated(**{**TABLE_1, "ka": 1e11})
-    assert simulate(scene, history=False).steps > 3e5
     with pytest.raises(SceneError, match="bearings.ka.* runs of .* steps are too many"):
         margins(scene)
 

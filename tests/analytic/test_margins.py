@@ -292,7 +292,7 @@ LONG = (pytest.mark.long, pytest.mark.timeout(1400))
 
 @pytest.mark.parametrize(
     "seed, index, count",
-    [*((11, i, 101) for i in range(3)), *(pytest.param(12, i, 2000, marks=LONG) for i in range(100))],
+    [*((11, i, 101) for i in range(3)), *(pytest.param(12, i, 2000, marks=LONG) for i in range(10))],
 )
 def test_margins_agree_with_scans(seed, index, count):
     scene = random_scene(seed, index).with_(duration=None)
@@ -356,8 +356,9 @@ def test_the_mirrored_motion_has_the_same_cliffs():
     assert cautions(what) == cautions(mirrored)
 
 
-def test_a_scene_that_costs_too_much_is_refused():
-    stiff = load_scene("caryatid-isolated").with_(bearings={"ka": 1e14}, duration=1e5)
+def test_a_scene_that_costs_too_much_is_refused(monkeypatch):
+    monkeypatch.setattr("analytic.margins.NEARBY_STEPS", 1e5)
+    stiff = load_scene("caryatid-isolated").with_(bearings={"ka": 1e9}, duration=10.0)
     with pytest.raises(SceneError, match="201 runs"):
         nearby(stiff)
 

@@ -51,7 +51,7 @@ def test_random_scenes_are_sound():
         assert_sound(random_scene(0, index, NAMES))
 
 
-@pytest.mark.parametrize("index", range(150))
+@pytest.mark.parametrize("index", range(40))
 def test_mirrored_scenes_are_mirrored_bit_for_bit(index):
     scene = random_scene(2, index, NAMES)
     start = Start(**{name: -value for name, value in scene.start.model_dump().items()})
@@ -65,7 +65,7 @@ def test_mirrored_scenes_are_mirrored_bit_for_bit(index):
 
 @pytest.mark.long
 @pytest.mark.timeout(1400)
-@pytest.mark.parametrize("begin", range(400, 50_400, 5000))
+@pytest.mark.parametrize("begin", (400, 20_000))
 def test_many_more_random_scenes_are_sound(begin):
     for index in range(begin, begin + 5000):
         assert_sound(random_scene(0, index, NAMES))

@@ -18,11 +18,10 @@ import strict_scenes
 from made_up_records import cosmos
 from mutated_files import cases
 from record_files import write
-from undamaged_records import TWICE, records
+from undamaged_records import records
 
 from analytic import SceneError, load_scene
 from analytic.errors import FILE_LENGTH, KEY_LENGTH, TEXT_LENGTH, VALUE_LENGTH
-from analytic.motion import SampledMotion
 from analytic.records import read_record
 from analytic.records.numbers import NUMBER
 
@@ -170,18 +169,6 @@ def test_undamaged_records_hold_the_numbers_they_were_made_of(tmp_path, name, te
         assert (motion.samples - motion.samples[0]) / unit == pytest.approx(np.array(numbers) - numbers[0], rel=1e-10)
 
 
-def test_what_the_damage_does_not_explain_is_seen():
-    (text, truth), right = next((one[1], one[3]) for one in records() if one[0] == "csv"), np.array(TWICE)
-    right[7] = 0.131
-
-    def seen(numbers, unit=0.01, step=0.005):
-        motion = SampledMotion(step, unit * np.asarray(numbers))
-        return explained(motion, truth, text, text.replace("0.0310", "0.1310", 1))
-
-    assert seen(right) and not seen(right, unit=9.81) and not seen(right, step=0.01)
-    assert not any(map(seen, (right[1:], [*right, 0.5], right[::2], right + 0.001, abs(right))))
-
-
 @pytest.mark.parametrize("scene", scenes(), ids=[name for name, _ in scenes()])
 def test_undamaged_scenes_are_judged_the_same(tmp_path, scene):
     assert judged_scene(tmp_path / "file", scene, scene[1].encode()) == "same"
@@ -224,22 +211,13 @@ both_kinds = pytest.mark.parametrize("undamaged, judged", [(records(), judged_re
 WRONG_MATCH = bool(re.fullmatch(NUMBER, "1d"))
 
 
+@pytest.mark.slow
 @pytest.mark.xfail(WRONG_MATCH, reason="re of this Python matches wrongly", raises=ValueError)
 @both_kinds
 def test_damaged_files(tmp_path, undamaged, judged):
-    counts = judgements(tmp_path, 3000, 0, undamaged, judged)
-    assert counts["same"] > 50 and counts["refused"] > 150  # the damage is neither all fatal nor all harmless
-
-
-@pytest.mark.long
-@pytest.mark.timeout(850)
-@pytest.mark.parametrize("seed", range(1, 4))
-@both_kinds
-def test_many_damaged_files(tmp_path, seed, undamaged, judged, record_property):
-    counts = judgements(tmp_path, 10_000, seed, undamaged, judged)
-    for judgement, number in sorted(counts.items()):
-        record_property(judgement, number)
-    assert counts["only the strict one reads"] <= 0.002 * 10_000
+    counts = judgements(tmp_path, 5000, 0, undamaged, judged)
+    assert counts["same"] > 80 and counts["refused"] > 250  # the damage is neither all fatal nor all harmless
+    assert counts["only the strict one reads"] <= 0.002 * 5000
 
 
 KEPT = tomllib.loads((CORPUS / "index.toml").read_text(encoding="utf-8"))
@@ -314,6 +292,7 @@ PASSES = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text, dt, limit", PASSES)
 def test_no_text_takes_more_than_one_pass(tmp_path, text, dt, limit):
     path = write(tmp_path, text)
