@@ -1,4 +1,4 @@
-"""What the pages show of a small fixed set of made-up rows, as text; `python tests/drawn.py` renews it, saying what changed.
+"""What pages show of a small fixed set of made-up rows, as text; `python tests/drawn.py` renews it, and says what changed.
 
 Rows are in tests/comparisons/report/rows: NAME.json of each study, and a folder of the own runs of each report. They
 hold the cases that a page treats differently (good, fair and bad variants, runs that failed or were not made, an engine
@@ -35,11 +35,12 @@ ORIGIN |= {"packages": {"numpy": "2.0"}, "sources": {}, "seed": 3}
 # What the report has of studies stands on their pages too; its formulas are tests/comparisons/showing/test_mathml.py's.
 ELSEWHERE = re.compile('<section id="(?!answer|decision|earthquake|method|part).*?</section>', re.DOTALL)
 DRAWN = ("svg", "math")
+MOST = 5000  # characters of a line; what is longer is what a script reads
 SAID = ("href", "title", "aria-label", "data-says", "data-copies")
 
 
 class Words(HTMLParser):
-    """The words of a page by lines: of each piece, cell and tooltip one; of a picture how much it draws, as a digest."""
+    """The words of a page by lines: of each piece, cell and tooltip one; of a picture a digest."""
 
     def __init__(self, html):
         super().__init__()
@@ -66,7 +67,7 @@ class Words(HTMLParser):
     def handle_data(self, data):
         words = " ".join(data.split())
         if words and not self.hidden:
-            self.lines.append(words)
+            self.lines.append(words if len(words) < MOST else f"[data] {zlib.crc32(words.encode()):08x}")
 
 
 def made(file):
@@ -86,7 +87,10 @@ def drawn():
     found = {}
     with (
         TemporaryDirectory() as place,
-        patch("comparisons.report.answer.results_in", lambda folder: [one.with_suffix("") for one in folder.glob("*.json")]),
+        patch(
+            "comparisons.report.answer.results_in",
+            lambda folder: [one.with_suffix("") for one in folder.glob("*.json")],
+        ),
         patch("comparisons.report.answer.read_study", lambda path: made(path.with_suffix(".json"))),
         patch("comparisons.report.answer.age", lambda result: OLD.get(result.kind)),
         patch("comparisons.report.write.read_result", made),
