@@ -1,4 +1,4 @@
-"""What pages show of a small fixed set of made-up rows, as text; `python tests/drawn.py` renews it, and says what changed.
+"""What pages show of a small fixed set of made-up rows; `python tests/drawn.py` renews it and prints what changed.
 
 Rows are in tests/comparisons/report/rows: NAME.json of each study, and a folder of the own runs of each report. They
 hold the cases that a page treats differently (good, fair and bad variants, runs that failed or were not made, an engine
@@ -12,6 +12,7 @@ import re
 import shutil
 import sys
 import zlib
+from contextlib import contextmanager
 from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
@@ -81,24 +82,37 @@ def made(file):
     return Result(content["kind"], content["settings"], content["rows"], ORIGIN | {"engines": origins}, arrays)
 
 
-@cache
-def drawn():
-    """{name: text} of the pages of all reports."""
-    found = {}
+@contextmanager
+def made_up():
+    """Read made-up rows in place of stored results; one study is old, whatever the code is."""
     with (
-        TemporaryDirectory() as place,
-        patch(
-            "comparisons.report.answer.results_in",
-            lambda folder: [one.with_suffix("") for one in folder.glob("*.json")],
-        ),
+        patch("comparisons.report.answer.results_in", lambda folder: [one.with_suffix("") for one in listed(folder)]),
         patch("comparisons.report.answer.read_study", lambda path: made(path.with_suffix(".json"))),
         patch("comparisons.report.answer.age", lambda result: OLD.get(result.kind)),
         patch("comparisons.report.write.read_result", made),
         patch("comparisons.report.write.age", lambda result: None),
     ):
+        yield
+
+
+def listed(folder):
+    return sorted(folder.glob("*.json"))
+
+
+def write_all(place):
+    """Write the pages of each report into a folder of its name in `place`."""
+    with made_up():
         for report in filter(Path.is_dir, ROWS.iterdir()):
             shutil.copytree(report, Path(place, report.name))
             write_page(Path(place, report.name), ROWS if report.name == WITH_STUDIES else report / "none")
+
+
+@cache
+def drawn():
+    """{name: text} of all pages."""
+    found = {}
+    with TemporaryDirectory() as place:
+        write_all(place)
         for page in Path(place).rglob("*.html"):
             name = "-".join(page.relative_to(place).with_suffix("").parts).replace("-pages", "")
             shown = ELSEWHERE.sub("", page.read_text(encoding="utf-8"))
