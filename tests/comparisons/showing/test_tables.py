@@ -1,14 +1,23 @@
-"""What stands above and below a table of responses: whose outcomes differ, whom a warning concerns, and no more."""
+"""What a terminal says: whose outcomes differ, whom a warning concerns, what was chosen, and no more."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from sliding_scenes import SAVED
 
 from analytic import Caution, Failure, load_scene, simulate
+from analytic.bearing_scan import BearingScan
+from analytic.design import design_bearings
 from analytic.response import COMPARED, Difference
+from comparisons.advice.criteria import Choice, Level, VariantLevels
+from comparisons.commands.design import _chosen
 from comparisons.measuring.horizon import Horizon
+from comparisons.running.options import read_row
+from comparisons.showing.boundaries import under_jumps
+from comparisons.showing.choices import print_choice
+from comparisons.showing.margins import print_bearings
 from comparisons.showing.terminal import comparison, mode_words, show, summary
 
 SCENE = load_scene("free-rocking-rigid")
@@ -113,3 +122,101 @@ def test_more_changes_of_contact_than_are_told_are_counted():
         == "stick, from 1 s slide-rock, from 2 s rock, from 3 s slide-rock, 2 more changes (--json)"
     )
     assert mode_words([(0.0, "rock"), (1.0, "rock")]) == "rock"
+
+
+def level(variant, value, *, cpu=1.0, error=1e-4, passes=False, untried=False, why=None):
+    own = dict(engine="exudyn", variant=variant, parameter="step", value=value, default=value == 0.1, runs=5)
+    return Level(**own, error=error, cpu_per_second=cpu, passes=passes, untried=untried, why=why)
+
+
+def variant(name, *levels, imposed=False):
+    return VariantLevels(
+        engine="exudyn", variant=name, tier="tuned", applies_impact=imposed, order=None, levels=list(levels)
+    )
+
+
+CHOSEN = level("first", 0.2, passes=True)
+VARIANTS = [
+    variant("first", level("first", 0.4, why="error 2.0e-02"), CHOSEN, level("first", 0.1, cpu=2.0, passes=True)),
+    variant("second", level("second", 0.3, cpu=4.0, untried=True), level("second", 0.1, cpu=5.0, untried=True)),
+    variant("third", level("third", 0.3, why="error 3.0e-02"), level("third", 0.1, error=None, why="failed")),
+]
+
+
+def choice(**changed):
+    own = dict(scene="a scene", criterion="tilt", error=1e-3, safety_factor=2.0, neighbours=[1.0, 0.95], until=3.0)
+    own |= dict(chosen=CHOSEN, best=None, cpu_seconds=3.0, analytic_cpu_seconds=1e-3, variants=VARIANTS, parts=[])
+    own |= dict(
+        command="rocking run s.toml --engine exudyn", snippet="response = 1\n", missing={}, left_out={}, warnings=[]
+    )
+    return Choice(**own | changed)
+
+
+def chosen(capsys, **options):
+    print_choice(choice(**options.pop("changed", {})), **options)
+    return capsys.readouterr().out
+
+
+def test_the_answer_comes_first_then_its_use_then_a_line_per_variant(capsys):
+    out = chosen(capsys)
+    first, *rest = out.splitlines()
+    assert first.startswith("exudyn, first, step = 0.2: error 1.0e-04 of tilt, asked for 0.001; 1 s of CPU time")
+    assert out.index("rocking run s.toml") < out.index("response = 1") < out.index("exudyn, second")
+    assert [" ".join(line.split()) for line in rest if "step = " in line] == [
+        "exudyn, first step = 0.2 1.0e-04 1 CHOSEN",
+        "exudyn, second step = 0.3 1.0e-04 4 not tried",
+        "exudyn, third step = 0.1 - 1 failed",
+    ]
+
+
+def test_all_shows_every_level(capsys):
+    out = chosen(capsys, every_level=True)
+    assert out.count("step = ") == 1 + sum(len(each.levels) for each in VARIANTS) and "error 2.0e-02" in out
+
+
+def test_where_none_passes_the_best_is_named(capsys):
+    out = chosen(capsys, changed={"chosen": None, "best": CHOSEN, "command": None, "snippet": None})
+    words = "No level passes 0.001 for tilt with a factor of 2 to spare. The least error: 1.0e-04 by exudyn, first"
+    assert out.startswith(f"{words}, step = 0.2.")
+
+
+def test_an_imposed_impact_names_the_cheapest_that_computes_it(capsys):
+    variants = [variant("first", CHOSEN, imposed=True), variant("second", level("second", 0.3, cpu=4.0, passes=True))]
+    out = chosen(capsys, changed={"criterion": "restitution", "variants": variants})
+    assert "computes the impact: exudyn, second, step = 0.3, at 4 s/s." in out
+    out = chosen(capsys, changed={"criterion": "restitution", "variants": variants[:1] + VARIANTS[1:]})
+    assert "computes the impact: none." in out
+
+
+@pytest.mark.parametrize("place, index", [(0, 1), (1, 0), (2, 1)])
+def test_the_cheapest_that_passes_else_untried_else_the_finest_stands_for_a_variant(place, index):
+    assert VARIANTS[place].cheapest() == VARIANTS[place].levels[index]
+
+
+SCENE = load_scene("caryatid-isolated")
+
+
+@pytest.mark.parametrize("held, words", [(2, "0.10 %"), (700, "35 %"), (1999, "99.95 %"), (2000, "100 %")])
+def test_the_share_that_holds_is_0_and_100_per_cent_only_where_none_and_all_do(capsys, held, words):
+    periods, dampings = np.geomspace(0.3, 5.0, 200), np.linspace(0.02, 0.2, 10)
+    demand = np.where(np.arange(2000) < held, 0.9, 1.1).reshape(10, 200)
+    designs = [design_bearings(SCENE.total_mass, 1.0, float(damping), 0.25) for damping in dampings]
+    scan = BearingScan(periods, dampings, demand, np.full((10, 200), 0.2), designs)
+    chosen = {"least-stroke": _chosen(SCENE, scan, scan.least_stroke, {"own": [SCENE.motion]})}
+    print_bearings(SCENE, scan, 0.25, 0.0, [read_row("own", SCENE.motion)], chosen)
+    assert f", {words} hold." in " ".join(capsys.readouterr().out.split())
+
+
+def test_a_largest_shift_under_a_jump_is_said():
+    rows = [
+        {"part": "edge", "ground": "g", "shape": shape, "frequency": 2.0, "amplitude": 3.0, "min_normal": 0.5}
+        for shape in ("one-sine", "one-cosine")
+    ]
+    for engine, shifts in (("exudyn", (1e-4, -2e-3)), ("pybullet", (2e-4, 1e-4))):
+        for edge, shift in zip(tuple(rows[:2]), shifts, strict=True):
+            rows.append({**edge, "part": "shift", "engine": engine, "variant": "v", "shift": shift})
+    settings = {"default_variants": {"exudyn": "v", "pybullet": "v"}}
+    assert list(under_jumps(SimpleNamespace(rows=rows, settings=settings))) == [
+        "The shift is largest where the acceleration of the ground jumps at the start: −0.20 % under a one-cosine "
+        "pulse (exudyn)."
+    ]
