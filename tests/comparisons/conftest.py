@@ -1,6 +1,7 @@
 """What the tests of the command line share."""
 
 import pytest
+from javascript import NEEDED, chromium
 
 from comparisons import cli
 
@@ -17,3 +18,15 @@ def rocking(capfd):
         return end.value.code or 0, out, err
 
     return call
+
+
+@pytest.fixture(scope="module")
+def browser():
+    if chromium() is None:
+        pytest.skip(NEEDED)
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as play:
+        found = play.chromium.launch(executable_path=chromium(), args=["--no-sandbox"])
+        yield found
+        found.close()

@@ -1,6 +1,5 @@
 """The playground and the exported pages in a browser: they ask for nothing, and sliders give the kernel's numbers."""
 
-import dataclasses
 import math
 
 import pytest
@@ -9,7 +8,9 @@ from javascript import quiet_page
 from analytic import PulseMotion, load_scene, simulate
 from comparisons.lessons import export
 from comparisons.lessons.playground import PAGE, playground_page
-from comparisons.lessons.topics import lesson, lessons
+from comparisons.lessons.topics import lessons
+
+pytestmark = pytest.mark.slow
 
 
 @pytest.fixture
@@ -90,18 +91,6 @@ def test_reduced_motion_stands_still(opened):
     page.wait_for_function("parseFloat(document.getElementById('clock').textContent) > 0.1")
 
 
-def test_a_view_out_of_sight_is_painted_when_it_is_seen(opened):
-    page = opened("#amplitude=0.35", viewport={"width": 390, "height": 844})
-    picture = "document.getElementById('phase').toDataURL()"
-    page.wait_for_selector("body[data-map=done]")
-    before = page.evaluate(picture)
-    page.fill("#s-slenderness", "0.2")
-    page.wait_for_selector("body[data-map=done]")
-    assert page.evaluate(picture) == before  # nobody sees it: no time is spent on it
-    page.locator("#phase").scroll_into_view_if_needed()
-    page.wait_for_function(f"{picture} !== '{before}'")
-
-
 def visit(browser, path):
     """The page on a phone; it asks for nothing, has no error, and does not scroll sideways."""
     page, wrong = quiet_page(browser.new_context(reduced_motion="reduce", viewport={"width": 390, "height": 844}))
@@ -113,24 +102,9 @@ def visit(browser, path):
 
 @pytest.fixture(scope="module")
 def pages(tmp_path_factory):
-    """Pages with one lesson at three places of its slider."""
-    chosen = lesson("impacts")
-    short = dataclasses.replace(chosen, controls=(dataclasses.replace(chosen.controls[0], values=(0.2, 0.28, 0.4)),))
     folder = tmp_path_factory.mktemp("pages")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(export, "lessons", lambda: [short])
-        export.export_pages(folder)
+    export.export_pages(folder)
     return folder
-
-
-def test_a_moved_slider_shows_the_kernels_number(browser, pages):
-    page = visit(browser, pages / "lesson-2.html")
-    before = page.inner_html("#picture")
-    page.press("#c-0", "ArrowRight")
-    shown = page.get_attribute('[data-name="rate after / before, simulated"]', "data-value")
-    assert float(shown) == pytest.approx(1 - 1.5 * math.sin(0.4) ** 2, rel=1e-9)
-    assert page.inner_html("#picture") != before
-    assert page.inner_text("#o-0") == "0.40 rad"
 
 
 def test_the_other_pages(browser, pages):
@@ -143,16 +117,16 @@ def test_the_other_pages(browser, pages):
     assert export.LICENCE in (pages / "figures/lesson-2.svg").read_text()
 
 
-@pytest.mark.long
-def test_every_lesson(browser, tmp_path):
-    export.export_pages(tmp_path)
+def test_a_moved_slider_of_every_lesson_shows_the_kernels_number(browser, pages):
     for one in lessons():
-        page = visit(browser, tmp_path / f"lesson-{one.number}.html")
+        page = visit(browser, pages / f"lesson-{one.number}.html")
+        before = page.inner_html("#picture")
         for k, control in enumerate(one.controls):
             if control.in_words:
                 page.check(f'[name="c-{k}"][value="{len(control.values) - 1}"]')
             else:
                 page.press(f"#c-{k}", "End")
+        assert page.inner_html("#picture") != before
         for label, (value, _) in one.view(*one.places()[-1]).numbers.items():
             shown = page.get_attribute(f'[data-name="{label}"]', "data-value")
             if not isinstance(value, str) and "CPU" not in label:

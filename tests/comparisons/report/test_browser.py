@@ -10,12 +10,12 @@ from pathlib import Path
 import pytest
 from contrast import contrast
 from drawn import ROWS, WITH_STUDIES, made, write_all
-from javascript import NEEDED, chromium, quiet_page
+from javascript import quiet_page
 from page_numbers import number_in
 
 from comparisons.report.write import write_page
 
-pytestmark = [pytest.mark.xdist_group("report"), pytest.mark.skipif(chromium() is None, reason=NEEDED)]
+pytestmark = pytest.mark.xdist_group("report")  # its pages are written once
 PHONE, DESKTOP = {"width": 390, "height": 844}, {"width": 1280, "height": 800}
 FIRST, PAPER = 900, 696  # pixels: of the first screen; between the margins of A4
 LEAST_LETTER = 11  # pixels
@@ -59,16 +59,6 @@ def pages(tmp_path_factory):
         write_page(shutil.copytree(ROWS / WITH_STUDIES, place / "all"))
         write_page(shutil.copytree(ROWS / "own", place / "own"), studies=place / "none")
     return sorted(place.rglob("*.html"))
-
-
-@pytest.fixture(scope="module")
-def browser():
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as play:
-        browser = play.chromium.launch(executable_path=chromium(), args=["--no-sandbox"])
-        yield browser
-        browser.close()
 
 
 @pytest.fixture

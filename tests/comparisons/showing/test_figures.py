@@ -1,7 +1,6 @@
 """Charts can be read back: figures draw every row where it belongs, tell series apart, and write numbers in cells."""
 
 import json
-import math
 import re
 from dataclasses import replace
 from xml.etree import ElementTree
@@ -16,8 +15,8 @@ from analytic import Start, load_scene, simulate
 from analytic.layout import MODES
 from comparisons.showing import modes
 from comparisons.showing.charts import HAIR, INK, SHAPES, STYLE, TONES, Axis, Chart, figure, key_of, log_axis, marker
-from comparisons.showing.figures import beside, lines, ranks, regions, shades
-from comparisons.showing.parts import NAME, Column
+from comparisons.showing.figures import lines, regions
+from comparisons.showing.parts import Column
 from comparisons.showing.plots import draw_histories, style
 from engines import ENGINES
 
@@ -117,29 +116,6 @@ def place_of(mark):
     return tuple(map(float, re.findall(r"[\d.]+", mark.get("transform"))[:2]))
 
 
-def groups(panel):
-    """{series: (its lines, its marks)} of a panel, those in the margin aside."""
-    found = {}
-    for group in panel.iter("g"):
-        if group.get("data-who") and not list(group.iter("text")):
-            kinds = [part.get("class") for part in group.iter("path")]
-            lines, marks = found.get(group.get("data-who"), (0, 0))
-            found[group.get("data-who")] = lines + kinds.count("line"), marks + sum("dot" in kind for kind in kinds)
-    return found
-
-
-def test_each_panel_holds_its_series_and_every_row_that_can_be_drawn():
-    made = lines(ROWS, X, Y, "Errors.", panel="ground", log="y")
-    rigid, sliding = panels(made)
-    assert groups(rigid) == {f"{FIRST}, fine": (1, 2), f"{FIRST}, coarse": (1, 1)}
-    assert groups(sliding) == {f"{SECOND}, fine": (1, 1)}  # nothing at 0 on a logarithmic axis
-    assert json.loads(rigid.get("data-read")) == json.loads(sliding.get("data-read"))  # one pair of axes
-    assert made.solvers == (f"{FIRST}, fine", f"{FIRST}, coarse", f"{SECOND}, fine") and set(made.keys) == set(
-        made.solvers
-    )
-    assert lines([ROWS[3]], X, Y, "Errors.") is None
-
-
 def test_marks_stand_on_their_line_and_tell_their_values():
     (panel,) = panels(lines(ROWS[:2], X, Y, "Errors.", log="y"))
     marks = [part for part in panel.iter("path") if part.get("data-says")]
@@ -163,69 +139,6 @@ def test_marks_beyond_the_panel_stand_at_its_frame_with_an_arrowhead_that_points
     right, left, top, bottom = chart.right, chart.left, chart.top, chart.bottom
     assert list(map(place_of, marks)) == [(x, y), (right, y), (right, top), (left, y), (x, top), (x, bottom)]
     assert [re.search(r"rotate\((.*)\)", one)[1] for one in arrows] == ["0", "-45", "180", "-90", "90"]
-
-
-def test_figures_beside_each_other_share_legend_caption_and_words_for_those_who_cannot_see_them():
-    one, two = lines(ROWS[:2], X, Y, "One."), lines(ROWS, X, Y, "Two.", panel="ground")
-    both = beside(one, None, two, one)
-    assert len(panels(both)) == 4 and both.caption == "One. Two." and both.alt == f"{one.alt} {two.alt} {one.alt}"
-    assert both.solvers == two.solvers and beside(None) is None
-
-
-def test_ranked_values_stand_below_each_other_with_their_intervals_and_no_further_than_the_axis():
-    rows = [row("analytic", "model", 0, 0.5), row(FIRST, "fine", 0, 0.0), row(SECOND, "fine", 0, None, "sliding")]
-    rows = [one | {"ends": [0.25, 2.0] if one["y"] else None} for one in rows]
-    share = Column("share [-]", "y", within="ends")
-    axis, opened = Axis("share [-]", 0.1, 1.0, "log"), lambda one: one["engine"] == FIRST
-    made = ranks(rows, NAME, share, "Shares.", axis, panel="ground", opened=opened)
-    (panel,) = panels(made)
-    assert [part.get("class") for part in panel.iter("path") if part.get("data-says")] == ["dot", "dot open"]
-    assert [part.get("class") for part in panel.iter("path")].count("beyond") == 1  # of 0
-    assert made.solvers == (FIRST,) and ENGINES[FIRST].colour in made.svg.decode()
-    told = [part for part in panel.iter("path") if part.get("data-says")]
-    assert [part.get("data-says") for part in told] == ["analytic, model: 0.50 (0.25 to 2.0)", f"{FIRST}, fine: 0"]
-    (x0, x1), (y0, y1) = (json.loads(panel.get("data-read"))[key]["at"] for key in "xy")
-    middle, low = (pytest.approx(x0 + math.log10(times) * (x1 - x0), abs=0.1) for times in (5, 2.5))
-    assert list(map(place_of, told)) == [(middle, y1 + (y0 - y1) / 4), (x0, y1 + (y0 - y1) * 0.75)]
-    reach = next(part.get("d") for part in panel.iter("path") if part.get("class") == "reach")
-    assert list(map(float, re.findall(r"[\d.]+", reach)))[::2] == [low, x1]
-    assert ranks(rows[2:], NAME, share, "Shares.", Axis("share [-]", 0.1, 1.0)) is None
-
-
-CELLS = [
-    {"engine": "one", "variant": "fine", "ratio": ratio, "gamma": gamma, "rms": rms, "failed": failed}
-    for ratio, gamma, rms, failed in (
-        (10.0, 0.1, 2e-5, 0),
-        (10.0, 0.2, 3e-3, 0),
-        (0.5, 0.1, 0.4, 1),
-        (0.5, 0.2, None, 4),
-    )
-]
-RATIO, GAMMA = Column("base over block mass [-]", "ratio", digits=None), Column("γ [rad]", "gamma", digits=None)
-
-
-def test_cells_hold_their_numbers_shades_and_failures():
-    made = shades(
-        CELLS,
-        RATIO,
-        GAMMA,
-        Column("rms [-]", "rms", digits=1),
-        "Map.",
-        bounds=(1e-4, 1e-2),
-        panel=NAME.of,
-        failed=lambda one: f"{one['failed']}/4" if one["failed"] else "",
-    )
-    cells, scale = panels(made)
-    signs = [text.text for text in cells.iter("text") if "sign" in text.get("class", "")]
-    assert signs == ["2·10⁻⁵", "0.003", "✗ 1/4", "✗ 4/4"]
-    assert [part.get("class") for part in cells.iter("rect")] == ["shade s0", "shade s1", "shade s2 lost", "shade lost"]
-    told = [part.get("data-says") for part in cells.iter("rect")]
-    assert told[2] == "0.1, 0.5: 0.4; failed: 1/4" and told[3] == "0.2, 0.5: –; failed: 4/4"
-    corners = [(float(part.get("x")), float(part.get("y"))) for part in cells.iter("rect")]
-    assert corners[0][0] == corners[1][0] < corners[2][0] and corners[1][1] < corners[0][1] == corners[2][1]
-    assert [part.get("class") for part in scale.iter("rect")] == ["shade s0", "shade s1", "shade s2"]
-    assert {"10⁻⁴", "0.01"} <= {text.text for text in scale.iter("text")}
-    assert shades([], RATIO, GAMMA, Column("rms [-]", "rms"), "Map.", bounds=(1.0,)) is None
 
 
 @pytest.mark.parametrize("scheme", [0, 1], ids=["light", "dark"])

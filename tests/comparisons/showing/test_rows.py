@@ -8,33 +8,8 @@ from page_numbers import number_in
 
 from analytic.response import COMPARED, EDGE, UNCOMPARED, Difference
 from comparisons.showing import parts as module
-from comparisons.showing.parts import (
-    NAME,
-    SIGNS,
-    Column,
-    Figure,
-    Head,
-    Mark,
-    Page,
-    grouped,
-    number,
-    percent,
-    short,
-    table,
-    where,
-)
-from comparisons.showing.wording import (
-    ENDS,
-    differing,
-    ends,
-    ends_in_words,
-    equal_mark,
-    indexed,
-    least_shown,
-    left_out,
-    listed,
-    tally,
-)
+from comparisons.showing.parts import NAME, SIGNS, Column, Mark, grouped, number, percent, short, table, where
+from comparisons.showing.wording import ENDS, differing, ends, equal_mark, indexed, least_shown, left_out, listed, tally
 
 ROWS = [
     {"part": "cell", "engine": "one", "variant": "fine", "ratio": None, "rms": 1.234e-5, "failed": 0, "runs": 4},
@@ -98,18 +73,6 @@ def test_chosen_numbers_are_as_short_as_they_are(value, words):
     assert short(value) == words
 
 
-def test_a_page_opens_the_report_and_leaves_out_what_is_not_there():
-    figure, tables = Figure(b"<svg/>", "A line.", "Look."), [table(str(k), ROWS, NAME) for k in range(2)]
-    empty = table("None", [], NAME)
-    more = (Head("More"), "Words.", tables[1], None, empty)
-    page = Page("Subject: found", ("Lead.",), (figure, tables[0]), more, ("How.",), (("reason", "message"),))
-    opening, whole = page.opening(), page.whole()
-    assert opening.shown == (figure, tables[0]) and opening.evidence == () and opening.measured == ("How.",)
-    assert whole.shown == (figure, tables[0], Head("More"), "Words.", tables[1])
-    assert whole.tables == tuple(tables) and whole.figures == (figure,) and whole.evidence == (("reason", "message"),)
-    assert Page("Subject: found", ("Lead.",), more=more).opening() is None
-
-
 @pytest.mark.parametrize(
     "given, shown",
     [
@@ -127,10 +90,6 @@ def test_a_page_opens_the_report_and_leaves_out_what_is_not_there():
 )
 def test_numbers_are_written_for_reading(given, shown):
     assert number(given) == shown
-
-
-def test_fractions_in_per_cent():
-    assert percent(0.0213) == "2.1 %" and percent(None) == "–"
 
 
 @pytest.mark.parametrize(
@@ -229,20 +188,6 @@ def test_a_fall_at_another_time_is_no_other_outcome_and_each_run_is_in_one_colum
     ]
     assert left_out(found) == "left out: 1 near an outcome boundary, 1 otherwise"
     assert left_out(bare) == "left out: 0 near an outcome boundary"
-
-
-def test_a_title_says_what_each_engine_did_and_no_rule_that_none_can_meet():
-    one, two = (
-        {"engine": name, "variant": "v", "tier": "tuned", **tally(rows, "group", turned)}
-        for name, rows in (("a", RUNS[3:7]), ("b", RUNS))
-    )
-    assert ends_in_words([one]) == (
-        "tuned, 4 of 4 runs (a) end otherwise than the model’s; no overturning is missed or added"
-    )
-    assert ends_in_words([one, two | {"tier": "defaults"}]) == (
-        "4 of 4 runs (a) and 7 of 8 (b) end otherwise than the model’s or fail; 2 miss or add an overturning"
-    )
-    assert "(a, v)" in ends_in_words([one, one]) and ends_in_words([]) == "no run is judged"
 
 
 def test_what_so_few_motions_can_show_is_computed_from_their_number():

@@ -1,7 +1,6 @@
 """What a terminal says: whose outcomes differ, whom a warning concerns, what was chosen, and no more."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,14 +9,14 @@ from sliding_scenes import SAVED
 from analytic import Caution, Failure, load_scene, simulate
 from analytic.bearing_scan import BearingScan
 from analytic.design import design_bearings
+from analytic.margins import Contact
 from analytic.response import COMPARED, Difference
 from comparisons.advice.criteria import Choice, Level, VariantLevels
 from comparisons.commands.design import _chosen
 from comparisons.measuring.horizon import Horizon
 from comparisons.running.options import read_row
-from comparisons.showing.boundaries import under_jumps
 from comparisons.showing.choices import print_choice
-from comparisons.showing.margins import print_bearings
+from comparisons.showing.margins import _friction_words, _normal_words, print_bearings
 from comparisons.showing.terminal import comparison, mode_words, show, summary
 
 SCENE = load_scene("free-rocking-rigid")
@@ -169,11 +168,6 @@ def test_the_answer_comes_first_then_its_use_then_a_line_per_variant(capsys):
     ]
 
 
-def test_all_shows_every_level(capsys):
-    out = chosen(capsys, every_level=True)
-    assert out.count("step = ") == 1 + sum(len(each.levels) for each in VARIANTS) and "error 2.0e-02" in out
-
-
 def test_where_none_passes_the_best_is_named(capsys):
     out = chosen(capsys, changed={"chosen": None, "best": CHOSEN, "command": None, "snippet": None})
     words = "No level passes 0.001 for tilt with a factor of 2 to spare. The least error: 1.0e-04 by exudyn, first"
@@ -207,16 +201,18 @@ def test_the_share_that_holds_is_0_and_100_per_cent_only_where_none_and_all_do(c
     assert f", {words} hold." in " ".join(capsys.readouterr().out.split())
 
 
-def test_a_largest_shift_under_a_jump_is_said():
-    rows = [
-        {"part": "edge", "ground": "g", "shape": shape, "frequency": 2.0, "amplitude": 3.0, "min_normal": 0.5}
-        for shape in ("one-sine", "one-cosine")
-    ]
-    for engine, shifts in (("exudyn", (1e-4, -2e-3)), ("pybullet", (2e-4, 1e-4))):
-        for edge, shift in zip(tuple(rows[:2]), shifts, strict=True):
-            rows.append({**edge, "part": "shift", "engine": engine, "variant": "v", "shift": shift})
-    settings = {"default_variants": {"exudyn": "v", "pybullet": "v"}}
-    assert list(under_jumps(SimpleNamespace(rows=rows, settings=settings))) == [
-        "The shift is largest where the acceleration of the ground jumps at the start: −0.20 % under a one-cosine "
-        "pulse (exudyn)."
-    ]
+@pytest.mark.parametrize(
+    "least, friction, demand, words",
+    [
+        (-0.1, None, 0.2, "The normal force falls to -0.1 m g: the outcome is outside the model."),
+        (0.0, 0.3, 0.2, "The normal force falls to 0: the block flies."),
+        (0.25, None, 0.2, "The normal force falls to 0.25 m g; at 0 the block would jump."),
+        (1.0, None, 0.2, "The friction demand is 0.2; the scene gives no coefficient to hold it against."),
+        (1.0, 0.3, 0.4, "The friction demand is 0.4, the scene's coefficient 0.3, and the block slides."),
+        (1.0, 0.5, 0.4, "The friction demand is 0.4, the scene's coefficient 0.5."),
+    ],
+)
+def test_what_a_margin_says_of_contact(least, friction, demand, words):
+    """A block flies in the model only where it may slide: without friction its outcome is outside."""
+    contact = Contact(least, demand, friction, slides=demand > (friction or 1.0))
+    assert " ".join(filter(None, (_normal_words(contact), _friction_words(contact)))).startswith(words)
