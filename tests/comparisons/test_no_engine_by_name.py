@@ -4,6 +4,8 @@ import ast
 import re
 from pathlib import Path
 
+from engine_cases import VARIANTS
+
 import comparisons
 from engines import BUILT_IN
 
