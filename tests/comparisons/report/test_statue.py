@@ -177,9 +177,10 @@ def fate(scene, motion, width=None):
     return simulate(scene.with_(block=block, motion=motion, duration=None), history=False).outcome
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[] if name == "calm.toml" else [pytest.mark.slow]) for name in CARDS]
-)
+COSTS = {"a block's file.toml": [pytest.mark.slow], "bust.toml": [pytest.mark.long]}
+
+
+@pytest.mark.parametrize("name", [pytest.param(name, marks=COSTS.get(name, [])) for name in CARDS])
 def test_the_command_on_the_card_runs_on_this_file(rocking, tmp_path, monkeypatch, name):
     monkeypatch.chdir(tmp_path)
     text, command, base_mass = CARDS[name]
