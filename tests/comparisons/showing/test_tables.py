@@ -1,6 +1,7 @@
 """What a terminal says: whose outcomes differ, whom a warning concerns, what was chosen, and no more."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -20,7 +21,13 @@ from comparisons.showing.margins import _friction_words, _normal_words, print_be
 from comparisons.showing.terminal import comparison, mode_words, show, summary
 
 SCENE = load_scene("free-rocking-rigid")
-MODEL = simulate(SCENE, history=False)
+
+
+@cache
+def model():
+    return simulate(SCENE, history=False)
+
+
 FELL = Difference("outcome", "overturns", "rocks", None)
 SLIDES = "the friction demand {:.3g} is above the scene's friction 0.1"
 
@@ -30,7 +37,7 @@ def slides(value):
 
 
 def solved(name, **changes):
-    return replace(MODEL, engine=name, variant="one", comparable=COMPARED, **changes)
+    return replace(model(), engine=name, variant="one", comparable=COMPARED, **changes)
 
 
 def horizon(parted):
@@ -50,23 +57,23 @@ def wide(monkeypatch):
 
 def test_outcomes_that_differ_stand_in_the_first_line_with_who_has_them(capsys):
     fell = solved("exudyn", outcome="overturns", differences=(FELL,))
-    first, *_ = printed(capsys, [MODEL, fell, solved("pybullet")])
+    first, *_ = printed(capsys, [model(), fell, solved("pybullet")])
     assert first == (
         "Outcomes differ: in analytic and pybullet it rocks and stays upright, in exudyn it overturns; "
         "exudyn differs from the analytic model."
     )
-    first, *_ = printed(capsys, [MODEL, solved("exudyn")])
+    first, *_ = printed(capsys, [model(), solved("exudyn")])
     assert first == "In both solvers it rocks and stays upright."
     failed = solved("exudyn", outcome="failed", failure=Failure("it gave up"))
-    first, *_ = printed(capsys, [MODEL, failed])  # no outcome
+    first, *_ = printed(capsys, [model(), failed])  # no outcome
     assert first == "In analytic it rocks and stays upright, in exudyn it failed."
-    assert printed(capsys, [MODEL])[0].split() == [SCENE.name.split()[0], *SCENE.name.split()[1:]]
+    assert printed(capsys, [model()])[0].split() == [SCENE.name.split()[0], *SCENE.name.split()[1:]]
 
 
 def test_a_warning_is_said_once_with_all_whom_it_concerns(capsys):
     odd, ours = Caution("record", "the peak is above 3 g."), Caution("engine", "steps are too long")
     responses = [
-        replace(MODEL, warnings=(odd, slides(0.258))),
+        replace(model(), warnings=(odd, slides(0.258))),
         solved("exudyn", warnings=(odd, slides(0.159))),
         solved("pybullet", warnings=(odd, ours)),
     ]
@@ -81,7 +88,7 @@ def test_a_warning_is_said_once_with_all_whom_it_concerns(capsys):
 
 
 def test_why_engines_cannot_be_compared_is_said_once(capsys):
-    responses = [MODEL, *(replace(solved(name), comparable="N falls to 0") for name in ("exudyn", "pybullet"))]
+    responses = [model(), *(replace(solved(name), comparable="N falls to 0") for name in ("exudyn", "pybullet"))]
     (said,) = [line for line in printed(capsys, responses) if "N falls" in line]
     assert said == "each of exudyn and pybullet cannot be compared with the analytic model: N falls to 0"
 
@@ -91,7 +98,7 @@ def test_why_engines_cannot_be_compared_is_said_once(capsys):
 )
 def test_how_long_histories_are_compared_contradicts_no_dependence_on_the_motion(capsys, parted, words):
     cliff = Caution("motion", "The outcome depends on less than 5% of the motion.", "outcome", 0.01, 0.05)
-    lines = printed(capsys, [replace(MODEL, warnings=(cliff,)), solved("exudyn")], {"exudyn": horizon(parted)})
+    lines = printed(capsys, [replace(model(), warnings=(cliff,)), solved("exudyn")], {"exudyn": horizon(parted)})
     out = " ".join(" ".join(lines).split())
     assert lines[-1] == str(cliff) and words in out and "ot sensitive" not in out
     assert ("a difference between histories is a solver's error, to the end" in out) == (not parted)
@@ -187,17 +194,17 @@ def test_the_cheapest_that_passes_else_untried_else_the_finest_stands_for_a_vari
     assert VARIANTS[place].cheapest() == VARIANTS[place].levels[index]
 
 
-SCENE = load_scene("caryatid-isolated")
+ISOLATED = load_scene("caryatid-isolated")
 
 
 @pytest.mark.parametrize("held, words", [(2, "0.10 %"), (700, "35 %"), (1999, "99.95 %"), (2000, "100 %")])
 def test_the_share_that_holds_is_0_and_100_per_cent_only_where_none_and_all_do(capsys, held, words):
     periods, dampings = np.geomspace(0.3, 5.0, 200), np.linspace(0.02, 0.2, 10)
     demand = np.where(np.arange(2000) < held, 0.9, 1.1).reshape(10, 200)
-    designs = [design_bearings(SCENE.total_mass, 1.0, float(damping), 0.25) for damping in dampings]
+    designs = [design_bearings(ISOLATED.total_mass, 1.0, float(damping), 0.25) for damping in dampings]
     scan = BearingScan(periods, dampings, demand, np.full((10, 200), 0.2), designs)
-    chosen = {"least-stroke": _chosen(SCENE, scan, scan.least_stroke, {"own": [SCENE.motion]})}
-    print_bearings(SCENE, scan, 0.25, 0.0, [read_row("own", SCENE.motion)], chosen)
+    chosen = {"least-stroke": _chosen(ISOLATED, scan, scan.least_stroke, {"own": [ISOLATED.motion]})}
+    print_bearings(ISOLATED, scan, 0.25, 0.0, [read_row("own", ISOLATED.motion)], chosen)
     assert f", {words} hold." in " ".join(capsys.readouterr().out.split())
 
 
