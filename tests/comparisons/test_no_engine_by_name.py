@@ -4,15 +4,14 @@ import ast
 import re
 from pathlib import Path
 
-import pytest
+from engine_cases import VARIANTS
 
 import comparisons
-from engines import BUILT_IN, ENGINES
+from engines import BUILT_IN
 
 FOLDER = Path(comparisons.__file__).parent
-VARIANTS = {variant for name in BUILT_IN if ENGINES[name].installed for variant in ENGINES[name].variants}
 ENGINE = re.compile(rf"(?<![\w-])({'|'.join(BUILT_IN)})(?![\w-])", re.IGNORECASE)
-VARIANT = re.compile(rf"(^|, )({'|'.join(sorted(VARIANTS))})$")
+VARIANT = re.compile(rf"(^|, )({'|'.join(sorted({name for own in VARIANTS.values() for name in own}))})$")
 
 
 def names_in(source):
@@ -29,34 +28,9 @@ def names_in(source):
     return found
 
 
-@pytest.mark.parametrize(
-    "line",
-    [
-        'ENGINES = ("exudyn", "pybullet")',
-        'if "mujoco" in engines: pass',
-        'CORNERS = "exudyn, compliant-corners"',
-        'TITLE = "Phase of the step (PyBullet)"',
-        'words = f"in exudyn {number}"',
-        'apart = variant == "compliant-corners"',
-        "from engines.pybullet import scene",
-        "import mujoco",
-    ],
-)
-def test_a_name_is_seen(line):
-    pytest.importorskip("exudyn")  # else its variants are not known
-    assert names_in(line)
-    assert names_in('"""As exudyn does."""\n# as in PyBullet\nKIND = "fixed-step RK4"\n') == []  # prose is none
-
-
-def test_no_module_names_an_engine():
-    found = {
-        str(file.relative_to(FOLDER)): names
-        for file in sorted(FOLDER.rglob("*.py"))
-        if (names := names_in(file.read_text()))
-    }
-    assert found == {}
-
-
-def test_no_template_names_an_engine():
+def test_no_module_or_template_names_an_engine():
+    seen = ('CORNERS = "exudyn, compliant-corners"', 'T = "a step (PyBullet)"', "from engines.pybullet import scene")
+    assert all(map(names_in, seen)) and names_in('"""As exudyn does."""\nKIND = "fixed-step RK4"\n') == []
+    assert {file: names for file in FOLDER.rglob("*.py") if (names := names_in(file.read_text()))} == {}
     templates = list(FOLDER.rglob("*.html"))
     assert templates and not [file.name for file in templates if ENGINE.search(file.read_text())]

@@ -166,36 +166,10 @@ def test_the_crowd_one_by_one():
     assert chaos.code() == 100 * np.mean([run.outcome == "overturns" for run in runs])
 
 
-def halved(steps, error):
-    """(error at a step, error at half of it) where both are among `steps`."""
-    return [(error(step), error(step / 2)) for step in steps if step / 2 in steps]
-
-
-def test_no_step_to_choose_errs_by_as_little_as_its_half():
-    """By chance some do: 20 and 10 ms, 2 and 1 ms, and three halves in a row of 1.25 ms."""
-    by_step = {run.value: run.error for run in engine_runs.own_runs()}
-    assert corner.rate_error(0.02) == pytest.approx(corner.rate_error(0.01), rel=0.05)
-    pairs = halved(corner.STEPS, lambda step: corner.rate_error(1e-3 * step)) + halved(by_step, by_step.get)
-    assert len(pairs) > 5 and all(here > 1.3 * finer for here, finer in pairs)
-    assert corner.LESSON.controls[0].start / 2 in corner.STEPS
-    errors = [by_step[step] for step in sorted(by_step)]
-    assert errors == sorted(errors)
-    levels = [checks.checks("fixed steps", level) for level in checks.LEVELS]
-    defects = [found["closed form"] for found in levels]
-    assert defects == sorted(defects, reverse=True) and all(found["finer level"] > 1e-5 for found in levels)
-
-
 def test_over_phases_half_the_step_is_half_the_error():
     for step in (0.02, 0.012, 0.006):
         whole, half = engine_runs.straddled(step), engine_runs.straddled(step / 2)
         assert [whole[0] / half[0], whole[1] / half[1]] == pytest.approx([2, 2], rel=0.15)
-
-
-def test_a_lesson_writes_one_form_of_minus_and_powers_of_ten():
-    for view in (corner.view(12.0), corner.view(28.0), *(checks.view(solver, 6.0) for solver in checks.SOLVERS)):
-        words = " ".join((view.says, *(str(number) for number, _ in view.numbers.values() if isinstance(number, str))))
-        assert not re.search(r"(?<!\w)-\d|\de-?\d", words), words
-    assert " early" in corner.view(12.0).says and " late" in corner.view(28.0).says
 
 
 def test_the_next_step_is_off_by_more():

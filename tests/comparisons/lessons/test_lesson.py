@@ -1,14 +1,23 @@
-"""What every lesson has to have: its symbols explained once, and a question before its controls."""
+"""What every lesson has: symbols explained once, formulas that can be set, a notebook that gives its number."""
 
+import functools
 import re
+import runpy
+import textwrap
+import xml.etree.ElementTree as xml
 
 import pytest
 
+from comparisons.lessons import engine_runs
+from comparisons.lessons.export import PAGES, _environment
 from comparisons.lessons.lesson import SYMBOLS
-from comparisons.lessons.topics import lessons
+from comparisons.lessons.notebook import code_of, notebook_of, open_notebook
+from comparisons.lessons.topics import NAMES, corner, cost, lesson, lessons
+from comparisons.showing.mathml import mathml, prose
 
 WORDS = re.compile(r"\\text\{[^}]*\}|\\(?:frac|sin|cos|tan|exp|left|right|quad|approx|propto|ddot|dot|[,;!])")
 NAME = re.compile(r"\\tilde\{m\}|\\Delta (?:\\phi|t)|(?:\\[a-z]+|[A-Za-z])(?:_(?:\{[a-z]+\}|\\phi|[A-Za-z0-9]))?")
+CHILDREN = {"mfrac": 2, "msub": 2, "msup": 2, "msubsup": 3, "mover": 2}
 
 
 def names_of(tex):
@@ -18,29 +27,82 @@ def names_of(tex):
     return {name.replace(r"e_\phi", r"e_{\phi}").strip() for name in NAME.findall(bare)}
 
 
-def test_names_of_a_formula():
-    assert names_of(r"e_{\phi} = 1 - \frac{2 m b^2}{J_O - m \tilde{m} h^2}") == {
-        r"e_{\phi}", "m", "b", "J_O", r"\tilde{m}", "h",
-    }  # fmt: skip
+def test_every_symbol_is_explained_once_and_a_question_stands_before_the_controls():
+    for one in lessons():
+        assert len(set(one.symbols)) == len(one.symbols) and one.guess.rstrip().endswith("?")
+        used = set().union(*(names_of(equation.tex) for equation in one.equations))
+        assert used - {r"\pi"} <= set(one.symbols), one.name
+    assert {symbol for one in lessons() for symbol in one.symbols} == set(SYMBOLS)
+    assert [one.number for one in lessons() if one.drawing] == [1, 2, 3]  # the labelled block, at their head
+    assert all({"b", "h", r"\gamma", "R", "J_O", r"\phi"} <= set(one.symbols) for one in lessons()[:3])
 
 
-@pytest.mark.parametrize("lesson", lessons(), ids=lambda lesson: lesson.name)
-def test_symbols_of_the_equations_are_explained(lesson):
-    assert len(set(lesson.symbols)) == len(lesson.symbols)
-    used = set().union(*(names_of(equation.tex) for equation in lesson.equations))
-    assert used - {r"\pi"} <= set(lesson.symbols)
+def check(text):
+    """Every element of MathML has the children that it needs."""
+    for part in xml.fromstring(text).iter():
+        assert len(part) == CHILDREN.get(part.tag, len(part)), text
 
 
-def test_no_symbol_is_explained_for_nobody():
-    assert {symbol for lesson in lessons() for symbol in lesson.symbols} == set(SYMBOLS)
+def test_every_formula_is_set():
+    for one in lessons():
+        texts = [one.question, one.look, *one.wrong, *(equation.says for equation in one.equations)]
+        for text in [*texts, *(t for exercise in one.exercises for t in (exercise.question, exercise.because))]:
+            assert text.count("$") % 2 == 0
+            check(f"<p>{prose(text)}</p>")
+        for equation in one.equations:
+            check(mathml(equation.tex, display=True))
+    page = _environment().get_template("derivations.html").render(rocking="", impact="", isolated="")
+    found = re.findall("<math.*?</math>", page)
+    assert len(found) >= (PAGES / "derivations.html").read_text().count("eq(") - 1 > 10
+    check(f"<all>{''.join(found)}</all>")
+    assert "<msup><mi>sin</mi><mn>2</mn></msup>" in mathml(r"\sin^2 \gamma")
 
 
-@pytest.mark.parametrize("lesson", lessons(), ids=lambda lesson: lesson.name)
-def test_a_question_stands_before_the_controls(lesson):
-    assert lesson.guess.rstrip().endswith("?")
+@pytest.mark.parametrize("tex", [r"\unknown", "{a", "a}", r"\frac{a}"])
+def test_a_formula_that_is_not_known_is_refused(tex):
+    with pytest.raises(ValueError):
+        mathml(tex)
 
 
-def test_the_labelled_block_stands_at_the_head_of_the_first_three():
-    assert [lesson.number for lesson in lessons() if lesson.drawing] == [1, 2, 3]
-    block = {"b", "h", r"\gamma", "R", "J_O", r"\phi"}
-    assert all(block <= set(lesson.symbols) for lesson in lessons()[:3])
+# The exercise that the few lines answer; in the first lesson it is the picture's number.
+PLACES = {"impacts": 0, "bearing": 0, "caryatid": 1, "corner": 0, "chaos": 2, "cost": 2, "checks": 0}
+
+
+@pytest.mark.parametrize(
+    "name", [name if name == "impacts" else pytest.param(name, marks=pytest.mark.slow) for name in NAMES]
+)
+def test_a_notebook_runs_and_its_few_lines_give_the_lessons_number(name, monkeypatch, tmp_path):
+    """In those that run engines, with none here."""
+    pytest.importorskip("marimo", reason="needs marimo: pip install marimo")
+    asked = functools.cache(engine_runs.engine_runs.__wrapped__)
+    for module in (engine_runs, corner, cost):
+        monkeypatch.setattr(module, "engine_runs", asked)
+    monkeypatch.setattr(engine_runs, "installed_engines", tuple)
+    (tmp_path / "notebook.py").write_text(notebook_of(lesson(name)), encoding="utf-8")
+    outputs, definitions = runpy.run_path(str(tmp_path / "notebook.py"))["app"].run()
+    first = name == "tipping" and lesson(name).first().numbers["peak tilt / γ"][0]
+    known = first or lesson(name).exercises[PLACES[name]].compute()
+    assert definitions["found"] == pytest.approx(known, rel=1e-9)
+    assert len(outputs) == 6 and outputs[-1] is not None
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_few_lines_stand_in_the_notebook_and_are_few(name):
+    code = code_of(lesson(name))
+    assert "found = " in code and "return" not in code and len(code.splitlines()) <= 12
+    assert textwrap.indent(code, "    ") in notebook_of(lesson(name))
+
+
+def test_a_students_work_is_kept_where_it_was_asked_for(tmp_path, monkeypatch, capsys):
+    pytest.importorskip("marimo", reason="needs marimo: pip install marimo")
+    opened = []
+    monkeypatch.setattr("subprocess.call", lambda words: opened.append(words[-1]) or 0)
+    file = tmp_path / "mine" / "tipping.py"
+    assert open_notebook("tipping", str(file.parent)) == 0
+    assert opened == [str(file)] and file.read_text() == notebook_of(lesson("tipping"))
+    assert str(file) in capsys.readouterr().err
+    file.write_text("changed")
+    open_notebook("tipping", str(file.parent))
+    assert file.read_text() == "changed"
+    open_notebook("tipping")
+    assert "--to FOLDER" in capsys.readouterr().err

@@ -1,4 +1,4 @@
-"""The playground in a browser, opened from a file: it asks for nothing, and its sliders give the kernel's numbers."""
+"""The playground and the exported pages in a browser: they ask for nothing, and sliders give the kernel's numbers."""
 
 import math
 
@@ -6,7 +6,11 @@ import pytest
 from javascript import quiet_page
 
 from analytic import PulseMotion, load_scene, simulate
+from comparisons.lessons import export
 from comparisons.lessons.playground import PAGE, playground_page
+from comparisons.lessons.topics import lessons
+
+pytestmark = pytest.mark.slow
 
 
 @pytest.fixture
@@ -87,13 +91,43 @@ def test_reduced_motion_stands_still(opened):
     page.wait_for_function("parseFloat(document.getElementById('clock').textContent) > 0.1")
 
 
-def test_a_view_out_of_sight_is_painted_when_it_is_seen(opened):
-    page = opened("#amplitude=0.35", viewport={"width": 390, "height": 844})
-    picture = "document.getElementById('phase').toDataURL()"
-    page.wait_for_selector("body[data-map=done]")
-    before = page.evaluate(picture)
-    page.fill("#s-slenderness", "0.2")
-    page.wait_for_selector("body[data-map=done]")
-    assert page.evaluate(picture) == before  # nobody sees it: no time is spent on it
-    page.locator("#phase").scroll_into_view_if_needed()
-    page.wait_for_function(f"{picture} !== '{before}'")
+def visit(browser, path):
+    """The page on a phone; it asks for nothing, has no error, and does not scroll sideways."""
+    page, wrong = quiet_page(browser.new_context(reduced_motion="reduce", viewport={"width": 390, "height": 844}))
+    page.goto(path.as_uri())
+    assert wrong == []
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    return page
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("pages")
+    export.export_pages(folder)
+    return folder
+
+
+def test_the_other_pages(browser, pages):
+    for name in ("index", "derivations", "teacher"):
+        page = visit(browser, pages / f"{name}.html")
+        for image in page.query_selector_all("img"):
+            image.scroll_into_view_if_needed()
+            page.wait_for_function("image => image.complete && image.naturalWidth > 0", arg=image)
+    assert (pages / "figures/lesson-2.png").read_bytes()[16:24] == (1920).to_bytes(4, "big") + (1080).to_bytes(4, "big")
+    assert export.LICENCE in (pages / "figures/lesson-2.svg").read_text()
+
+
+def test_a_moved_slider_of_every_lesson_shows_the_kernels_number(browser, pages):
+    for one in lessons():
+        page = visit(browser, pages / f"lesson-{one.number}.html")
+        before = page.inner_html("#picture")
+        for k, control in enumerate(one.controls):
+            if control.in_words:
+                page.check(f'[name="c-{k}"][value="{len(control.values) - 1}"]')
+            else:
+                page.press(f"#c-{k}", "End")
+        assert page.inner_html("#picture") != before
+        for label, (value, _) in one.view(*one.places()[-1]).numbers.items():
+            shown = page.get_attribute(f'[data-name="{label}"]', "data-value")
+            if not isinstance(value, str) and "CPU" not in label:
+                assert float(shown) == pytest.approx(float(value), rel=1e-12, abs=1e-300), (one.name, label)

@@ -1,4 +1,4 @@
-"""The answers side by side: ratings are the worst of what was tested, and what was not tested is said."""
+"""The first screen: ratings are the worst of what was tested, counts are those of runs, what was not tested is said."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -6,10 +6,12 @@ from types import SimpleNamespace
 import pytest
 
 from analytic import Block, Scene, Start, simulate
-from comparisons.report.answer import Stored, judgements_of, not_to_do, own_restitution, setups_of
+from comparisons.report.answer import Stored, judgements_of, own_restitution, setups_of
+from comparisons.report.first import QUESTION, advice, lines, shown, title
 from comparisons.report.runs import restitution_computed
 from comparisons.report.sections import restitution_section
 from comparisons.report.write import _outside
+from comparisons.showing.glance import Advised, Endings, Glance, Peaks, counted
 from comparisons.showing.parts import RESTITUTION, Judgement, Mark, Section
 from comparisons.showing.wording import rating
 
@@ -19,12 +21,16 @@ VARIANTS = [
     dict(engine=engine, variant=variant, tier=tier, best=variant == "fine", applies_impact=tier == "assisted")
     for (engine, variant), tier in TIERS.items()
 ]
+ERRORS = {FINE: 1e-5, COARSE: 0.2, GIVEN: 1e-9, OTHER: 1e-4}
+JUDGED = Judgement(
+    "restitution",
+    {who: Mark(f"{error:g}", rating(error, 0), value=error) for who, error in ERRORS.items()},
+    RESTITUTION,
+)
 
 
-def restitution(fine=1e-5):
-    errors = {FINE: fine, COARSE: 0.2, GIVEN: 1e-9, OTHER: 1e-4}
-    marks = {name: Mark(f"{error:g}", rating(error, 0), value=error) for name, error in errors.items()}
-    return Judgement("restitution", marks, RESTITUTION)
+def decided(*judgements):
+    return {(one.engine, one.variant): one for one in setups_of(VARIANTS, judgements)}
 
 
 def test_rows_of_one_heading_are_one_that_says_what_each_study_found_and_is_as_bad_as_the_worst():
@@ -35,63 +41,34 @@ def test_rows_of_one_heading_are_one_that_says_what_each_study_found_and_is_as_b
     for order in ((first, second), (second, first)):
         stored = [Stored(str(k), Section(""), judgements=(each,)) for k, each in enumerate(order)]
         assert judgements_of([*stored, Stored("x", Section(""))]) == [Judgement("shift", marks)]
-    none = Judgement("shift", {one: Mark("none found", "bad")})
-    (row,) = judgements_of([Stored("a", Section(""), judgements=(first, none))])
-    assert row.marks[one] == Mark("none found; 1 % (3 of 4)", "bad", "; a")
 
 
-def decided(*judgements):
-    return {(one.engine, one.variant): one for one in setups_of(VARIANTS, judgements)}
-
-
-def test_what_was_not_tested_is_said_and_counts_for_less_than_trust():
-    found = decided(restitution(), Judgement("boundary", {FINE: Mark("0.1 %", "good")}))
-    assert found[FINE].rating.level == "good"
-    assert found[GIVEN].marks["boundary"].words == "not tested" and found[GIVEN].rating.level == "part"
-    assert list(found) == [FINE, COARSE, GIVEN, OTHER]  # the subject's tuned and default settings, then the others
+@pytest.mark.parametrize(
+    "marks, level",
+    [
+        ({FINE: Mark("x", "good")}, "good"),
+        ({FINE: Mark("x", "fair")}, "fair"),
+        ({FINE: Mark("x", "bad")}, "bad"),
+        ({COARSE: Mark("x", "good")}, "part"),  # not tested in all
+        ({FINE: Mark("0 of 9 (at most 30 %)", "part")}, "part"),
+        ({FINE: Mark("42 %", "none"), COARSE: Mark("0.1 %", "none")}, "good"),  # it informs, and rates nobody
+        ({FINE: Mark("42 %", "none"), COARSE: Mark("x", "bad")}, "part"),
+        ({("exudyn", ""): Mark("9 of 9", "fair")}, "fair"),  # of an engine's main variant
+    ],
+)
+def test_the_rating_is_the_worst_mark_and_what_was_not_tested_is_no_trust(marks, level):
+    found = decided(JUDGED, Judgement("a", marks))
+    assert found[FINE].rating.level == level and found[COARSE].rating.level == "bad"
+    assert list(found) == [FINE, COARSE, GIVEN, OTHER]  # the subject's tuned and default variants, then the others
     assert [one.in_first_table for one in found.values()] == [True, True, False, False]
-    assert not decided(Judgement("a", {}))  # nothing judges any of them
-
-
-@pytest.mark.parametrize("level", ["fair", "bad"])
-def test_the_worst_mark_is_the_rating(level):
-    judgement = Judgement("a", {FINE: Mark("x", level)})
-    assert decided(restitution(), judgement)[FINE].rating.level == level
-
-
-def test_a_row_that_only_informs_changes_no_rating():
-    """Whatever it says of whom; where it rates one, whom it does not test is not trusted in all."""
-    informs = Judgement("peak", {FINE: Mark("42 %", "none"), COARSE: Mark("0.1 %", "none")})
-    alone, beside = decided(restitution()), decided(restitution(), informs)
-    assert {name: one.rating for name, one in alone.items()} == {name: one.rating for name, one in beside.items()}
-    assert alone[FINE].rating.words == "✓ trust" and not informs.rates
-    few = Judgement("outcomes", {FINE: Mark("0 of 9 (at most 30 %)", "part")})
-    assert few.rates and decided(restitution(), few)[FINE].rating.words == "✓ as far as tested"
-    rates = Judgement("peak", {FINE: Mark("42 %", "none"), COARSE: Mark("x", "bad")})
-    assert decided(restitution(), rates)[FINE].rating.level == "part"
-
-
-def test_a_study_of_engines_as_they_come_judges_the_default_variant():
-    judgement = Judgement("odds", {("exudyn", ""): Mark("0 of 9", "good"), COARSE: Mark("5 of 9", "bad")})
-    found = decided(judgement)
-    assert found[FINE].marks["odds"].words == "0 of 9" and found[COARSE].marks["odds"].words == "5 of 9"
-
-
-def test_what_not_to_do_counts_the_defaults_that_are_not_to_be_trusted():
-    assert "1 of 1 tested are not to be trusted" in not_to_do(list(decided(restitution()).values()))[0]
-    good = Judgement("restitution", {COARSE: Mark("1e-5", "good", value=1e-5)}, RESTITUTION)
-    assert "0 of 1 tested are" in not_to_do(list(decided(good).values()))[0]
+    assert found[GIVEN].marks["a"].words == "not tested"
 
 
 def test_the_blocks_own_restitution_is_that_of_its_engines():
     """The model's row, which has no error to tell, is no setup; a failed run takes the trust away and is said."""
     row = {"engine": "exudyn", "variant": "fine", "rms": 1e-5, "worst": 2e-5, "failed": 0, "lost": 0, "impacts": 9}
-    rows = [
-        {**row, "engine": "analytic", "variant": None, "rms": 1e-12},
-        row,
-        {**row, "variant": "coarse", "failed": 2, "lost": 1},
-        {**row, "variant": "deaf", "lost": 3},
-    ]
+    model = {**row, "engine": "analytic", "variant": None, "rms": 1e-12}
+    rows = [model, row, {**row, "variant": "coarse", "failed": 2, "lost": 1}, {**row, "variant": "deaf", "lost": 3}]
     judgement = own_restitution(SimpleNamespace(rows=rows))
     assert {name: (mark.words, mark.level) for name, mark in judgement.marks.items()} == {
         FINE: ("1.0·10⁻⁵", "good"),
@@ -102,24 +79,26 @@ def test_the_blocks_own_restitution_is_that_of_its_engines():
     assert {mark.level for mark in outside.marks.values()} == {"part"}
 
 
+@pytest.mark.parametrize("rms, level", [(1e-3, "good"), (1.01e-3, "fair"), (1e-2, "fair"), (1.01e-2, "bad")])
+def test_restitution_is_trusted_to_a_thousandth_and_usable_to_a_hundredth(rms, level):
+    assert rating(rms, 0) == level and rating(rms, 1) == rating(None, 0) == "bad"
+
+
 def test_impacts_that_an_engine_misses_on_the_scenes_own_block_are_counted():
     scene = Scene(block=Block(mass=1000.0, radius=1.0, slenderness=0.25), start=Start(tilt=0.15), duration=3.0)
     model = simulate(scene, history=False)
     deaf = replace(model, engine="exudyn", impacts=model.impacts[1:])
+    runs = (("analytic", None, model), ("exudyn", "compliant-corners", deaf))
+    cases = [SimpleNamespace(scene=scene, solver=solver, variant=variant) for solver, variant, _ in runs]
     rows = [
-        SimpleNamespace(
-            case=SimpleNamespace(scene=scene, solver=solver, variant=variant),
-            failed=False,
-            values=response.to_json(),
-            cost={"cpu_seconds": 1.0},
-        )
-        for solver, variant, response in (("analytic", None, model), ("exudyn", "compliant-corners", deaf))
+        SimpleNamespace(case=case, failed=False, values=response.to_json(), cost={"cpu_seconds": 1.0})
+        for case, (_, _, response) in zip(cases, runs, strict=True)
     ]
     found = restitution_computed(rows).rows
     assert [row["lost"] for row in found] == [0, 1] and found[1]["failed"] == 0
     settings = {"starts": [0.6], "seconds": 3.0, "bases": [None]}
-    (shown,) = restitution_section(SimpleNamespace(rows=found, settings=settings)).tables
-    assert [row[1] for row in shown.rows] == ["may be trusted", "is not to be trusted"]
+    (table,) = restitution_section(SimpleNamespace(rows=found, settings=settings)).tables
+    assert [row[1] for row in table.rows] == ["may be trusted", "is not to be trusted"]
 
 
 def test_a_scene_is_outside_the_range_by_what_an_engine_warns_of():
@@ -129,3 +108,64 @@ def test_a_scene_is_outside_the_range_by_what_an_engine_warns_of():
 
     assert _outside(rows("engine", "slenderness")) == "slenderness 0.01 is outside the range"
     assert _outside(rows("engine", None)) == _outside(rows("limit", "tilt")) == ""
+
+
+SETUPS = setups_of(VARIANTS, (JUDGED,))
+PLAIN = Endings("recorded motions", *COARSE, "defaults", 50, 4, 3, 2, 1, (0.1, 0.3), late=6, left_out=5)
+TUNED = Endings("recorded motions", *FINE, "tuned", 170, 0, 0, 1, 0, (0.0, 0.04), late=2, left_out=30)
+TABLE = Endings("a table", *FINE, "tuned", 80, 0, 0, 0, 0, (0.0, 0.2), untold=7, left_out=20)
+SHARES = [PLAIN, TUNED, replace(TUNED, engine="mujoco"), TABLE]
+
+
+def test_the_first_screen_counts_outcomes_that_are_changed_of_engines_in_question():
+    """Of 170 + 80 runs 1 + 7, of 50 ten; a fall at another time is no other outcome."""
+    found = shown(SHARES, SETUPS)
+    assert {one.engine for one in found} == {"exudyn"}
+    assert "tuned exudyn end otherwise than the model, or fail, in 8 of 250 runs; with defaults, in 10 of 50." in title(
+        found
+    )
+    assert title([]) == title([TABLE]) == QUESTION
+    told = dict(lines(SETUPS, (JUDGED,), found, {}))
+    counts = (
+        "in 1 of 170 (exudyn); with defaults, in 10 of 50 (exudyn)",
+        "tuned, in 2 (exudyn) more",
+        "7 of 80 (7 under",
+    )
+    assert all(words in told["Outcomes"] for words in counts)
+    assert "30 of 200 (recorded motions) and 20 of 100 (a table)" in told["Near outcome boundaries"]
+    assert "by 1.0·10⁻⁵ (exudyn)" in told["Restitution"] and "by 0.20 (exudyn)" in told["Restitution"]
+
+
+def test_advice_says_what_its_levels_give_elsewhere_and_where_they_were_not_run():
+    level = Advised(1e-3, *FINE, "stiffness", 2e9, 0.02, "rocking run SCENE", {"a pulse": 2e-3, "a jump": 4e-4})
+    found = Glance(advice=(Advised(1e-2), level), asked=("exudyn",), scene="a scene", alike=1.5)
+    peaks = Peaks("recorded motions", *FINE, "stiffness", 1e9, (1e-5, 5e-4, 2e-3, float("inf")))
+    first, second = advice(found, [peaks])
+    assert first.rows[0] == ["1 %", "not reached", "–", "–", "–"]
+    assert first.rows[1] == ["0.1 %", "exudyn", "stiffness = 2·10⁹ N/m", "20 ms", "rocking run SCENE"]
+    there = "not run; at stiffness = 10⁹ N/m: 2 of 4 (50 %)"
+    assert second.rows == [["0.1 %", "exudyn, stiffness = 2·10⁹ N/m", "0.20 %: missed", "0.040 %", there]]
+    for other, words in ((replace(peaks, level=2e9), "2 of 4 (50 %)"), (replace(peaks, engine="another"), "not run")):
+        assert advice(found, [other])[1].rows[0][-1] == words
+
+
+def test_endings_are_counted_run_by_run_and_an_interval_goes_by_group():
+    """Of runs left out those count that overturn in one of both alone, or failed."""
+    kinds = (
+        ("right", True, True, False, 1),
+        ("differs", True, False, True, 1),
+        ("differs", False, True, True, 2),
+        ("differs", True, True, False, 2),
+        ("differs", False, False, True, 2),
+        ("failed", True, None, False, 3),
+        ("left out", True, True, False, 3),
+        ("left out", True, False, True, 4),
+        ("left out", False, None, False, 4),
+    )
+    names = ("class", "model_falls", "falls", "changed", "group")
+    rows = [dict(zip(names, kind, strict=True), engine="e", variant="v", tier="tuned") for kind in kinds]
+    (found,) = counted("pulses", rows)
+    assert (found.runs, found.failed, found.missed, found.added, found.other, found.late) == (6, 1, 1, 1, 1, 1)
+    assert (found.changed, found.differing, found.left_out, found.left_differing) == (4, 5, 3, 2)
+    (alone,) = counted("pulses", [{**row, "group": k} for k, row in enumerate(rows)])
+    assert alone.interval[0] > found.interval[0] and alone.interval[1] < found.interval[1]

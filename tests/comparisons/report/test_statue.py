@@ -1,137 +1,73 @@
-"""The report on one's own scenes: each sentence of a statue's card against runs, and nothing of the Caryatid."""
+"""The card of a statue: what it says against runs; the command that it gives next runs on the file."""
 
+import html
 import json
 import re
+import shlex
+import shutil
 
+import numpy as np
 import pytest
 from own_scenes import BRONZE, BUST, CLIFF
-from sliding_scenes import SAVED, SLIDES
+from record_files import pairs
+from sliding_scenes import SLIDES
 
-from analytic import PulseMotion, SampledMotion, load_scene, simulate, synthetic_motion
+from analytic import Bearings, PulseMotion, SampledMotion, load_scene, simulate, synthetic_motion
 from analytic.errors import SceneError
 from analytic.response import COMPARED, EDGE, OUTCOMES
 from comparisons.commands.report import form
 from comparisons.report import statue
 from comparisons.report.detail import assets, environment
+from comparisons.report.next_step import needed_by, next_step, on_plate
 from comparisons.report.runs import RESTITUTION, SCENES, load_scenes
 from comparisons.report.statue import _by_record, _engines, _worst, statue_of
 from comparisons.report.study import make_own_results
 from comparisons.report.write import PAGE, write_page
-from comparisons.running.provenance import read_result
-from comparisons.showing.parts import number
+from comparisons.running.provenance import RESULTS, read_result
 
-BEARINGS = """[bearings]
-ka = 22950.5
-kb = 2295.05
-alpha = 66.6021
-count = 4
-x_max = 0.2"""
-CABINET = """
-friction = 0.4
-[block]
-mass = 220.0
-radius = 0.94868
-slenderness = 0.32175
-[base]
-mass = 60.0
-[start]
-tilt = 0.05
-[motion]
-pulse = "one-sine"
-amplitude = 2.0
-frequency = 6.0
-"""
-pytestmark = pytest.mark.xdist_group("statue")  # its page is made once
-TEXTS = {"bronze": BRONZE.format(scale=CLIFF), "bust": BUST.format(bearings=BEARINGS), "cabinet": CABINET}
+GROUND = load_scene("caryatid-rigid")
+ISOLATED = load_scene("caryatid-isolated")
 
 
-@pytest.fixture(scope="module")
-def scenes(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("scenes")
-    for name, text in TEXTS.items():
-        (folder / f"{name}.toml").write_text(text)
-    return load_scenes([str(folder / f"{name}.toml") for name in TEXTS])
+def written(folder, text):
+    (folder / "scene.toml").write_text(text)
+    return load_scene(folder / "scene.toml")
 
 
-@pytest.fixture(scope="module")
-def made(scenes, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("page")
-    make_own_results(folder, scenes, engines=[], motions={"bust": {"other": MOTIONS}})
-    return folder
-
-
-MOTIONS = [synthetic_motion(seed=7), synthetic_motion(seed=8).scaled(2.5)]
-
-
-def peak(scene, motion):
-    """Peak base displacement [m]."""
-    return simulate(scene.with_(motion=motion, duration=None), history=False).peak_base_displacement
-
-
-@pytest.fixture(scope="module")
-def page(made):
-    return write_page(made, studies=made / "none").read_text()
-
-
-@pytest.fixture(scope="module")
-def statues(made):
-    """What `statue_of` found of each."""
-    return read_result(made / SCENES).settings["statues"]
-
-
-def cards(page):
-    return [
-        " ".join(re.sub("<[^>]+>", " ", card).split())
-        for card in re.findall(r'<section class="statue">(.*?)</section>', page, flags=re.DOTALL)
-    ]
-
-
-def test_each_scene_has_its_card_first_with_its_outcome_in_the_title(page, scenes):
-    found, titles = cards(page), page[: page.index("</title>")]
-    assert len(found) == len(scenes)
-    for card, (name, scene) in zip(found, scenes.items(), strict=True):
-        outcome = simulate(scene, history=False).outcome
-        words = {"stands": "does not lift", "rocks": "rocks and stays upright", "overturns": "overturns"}[outcome]
-        if name == "bust":  # the other record's second motion, which is the worst
-            words = f"rocks and stays upright under 1 of 2 motions; under its own motion it {words}"
-            assert [peak(scene, motion) > 0.2 for motion in (scene.motion, *MOTIONS)] == [False, True, True]
-            words += "; the base exceeds x_max under 1 of 2 motions"
-        title = f"{name}: the block {words}"
-        assert card.startswith(f"{title} ") and title in titles
-        assert "Engines None was run." in card
-    assert page.index('class="statue"') < page.index('id="answer"')
-
-
-def test_the_cliff_is_said_loudly_and_only_where_it_is(page):
-    bronze, bust, _ = cards(page)
-    assert "sensitive to changes of the motion below 5%" in bronze
-    assert "depends on" not in bust
-
-
-def test_a_base_that_nothing_holds_is_said_loudly_and_only_there(page):
-    heads = [card.partition("quantity")[0] for card in cards(page)]  # above the first table
-    assert ["No friction is modelled under the base" in head for head in heads] == [False, False, True]
-    assert page.count("No friction is modelled") == 1
-
-
-def test_the_nearest_change_is_where_single_runs_change(scenes, statues):
-    scene = scenes["bronze"]
-    first = statues["bronze"]["margins"][0]
+def test_the_nearest_change_and_five_per_cent_of_the_motion_are_where_single_runs_are(tmp_path):
+    scene = written(tmp_path, BRONZE.format(scale=CLIFF))
+    found, own = statue_of(scene, {}), simulate(scene, history=False)
+    assert found["own"]["outcome"] == own.outcome and any("below 5%" in words for words in found["cautions"])
+    first = found["margins"][0]
     assert first["quantity"] == "slenderness"
-    own = simulate(scene, history=False).outcome
-    for way, outcome in ((-1e-4, own), (1e-4, first["then"])):
+    for way, outcome in ((-1e-4, own.outcome), (1e-4, first["then"])):
         changed = scene.with_(block={"slenderness": scene.block.slenderness * (1 + first["nearest"] + way)})
         assert simulate(changed, history=False).outcome == outcome
+    for row in found["near"][:3]:
+        run = simulate(scene.with_(motion=scene.motion.scaled(1 + row["change"])), history=False)
+        assert row["outcome"] == run.outcome
+        assert row["tilt"] == pytest.approx(run.peak_tilt_ratio, rel=1e-9)
+    assert found["near"][3]["tilt"] >= max(row["tilt"] for row in found["near"][:3])
 
 
-def test_five_per_cent_of_the_motion_are_runs_of_their_own(scenes, statues):
-    scene = scenes["bust"]
-    rows = statues["bust"]["near"]
-    for row in rows[:3]:
-        found = simulate(scene.with_(motion=scene.motion.scaled(1 + row["change"])), history=False)
-        assert row["outcome"] == found.outcome
-        assert row["stroke"] == pytest.approx(found.peak_base_displacement, rel=1e-9)
-    assert rows[3]["stroke"] >= max(row["stroke"] for row in rows[:3])
+@pytest.fixture
+def quick(monkeypatch):
+    monkeypatch.setattr(statue, "margins", lambda *_, **__: [])  # they take most of it
+
+
+def test_a_copy_reversed_or_free_standing_is_a_run_of_its_own(quick, tmp_path):
+    bearings = "[bearings]\nka = 22950.5\nkb = 2295.05\nalpha = 66.6021\ncount = 4\nx_max = 0.2"
+    scene = written(tmp_path, BUST.format(bearings=bearings))
+    found = statue_of(scene, {})
+    free = simulate(scene.with_(base=None, bearings=None), history=False)
+    assert "reversed" not in found and found["free"]["outcome"] == free.outcome == "overturns"
+    started = GROUND.with_(start={"tilt": 0.05})
+    found, mirrored = statue_of(started, {}), simulate(started.with_(start={"tilt": -0.05}), history=False)
+    assert "free" not in found and found["reversed"]["outcome"] == mirrored.outcome
+    assert found["reversed"]["tilt"] == pytest.approx(mirrored.peak_tilt_ratio, rel=1e-6)
+    slid = simulate(SLIDES, history=False).sliding
+    own = statue_of(SLIDES, {})["own"]
+    assert (own["slip"], own["slip_end"]) == (slid.peak, slid.end)
 
 
 TITLES = {  # worst of each record, the scene's own motion and, where it is not that of the first record, its outcome
@@ -161,9 +97,8 @@ def test_the_title_without_other_motions_and_where_the_scene_has_none_or_is_cut(
     assert words.endswith("; under its own motion it does not lift (not decided when the run ended)")
 
 
-def test_the_scenes_own_motion_counts_among_the_records_and_once(scenes, monkeypatch):
-    monkeypatch.setattr(statue, "margins", lambda *_, **__: [])  # they take most of it
-    scene, other = scenes["bronze"], synthetic_motion(seed=7).scaled(0.1)
+def test_the_scenes_own_motion_counts_among_the_records_and_once(quick, tmp_path):
+    scene, other = written(tmp_path, BRONZE.format(scale=CLIFF)), synthetic_motion(seed=7).scaled(0.1)
     same = SampledMotion(scene.motion.dt, scene.motion.samples, "the record in the folder")
     for motions, count in (({"other": [other]}, 2), ({"a pair": [other, same]}, 1), ({}, 0)):
         rows = _by_record(statue_of(scene, motions)["motions"])
@@ -171,93 +106,43 @@ def test_the_scenes_own_motion_counts_among_the_records_and_once(scenes, monkeyp
         assert [row["overturns"] for row in rows if row["record"] != "other"] == [1] * bool(count)
 
 
-def test_a_symmetric_scene_is_the_same_reversed_and_another_is_run(scenes, statues):
-    assert "reversed" not in statues["bust"]
-    scene = scenes["cabinet"]
-    found = statues["cabinet"]["reversed"]
-    mirrored = simulate(scene.with_(start={"tilt": -scene.start.tilt}), history=False)
-    assert found["outcome"] == mirrored.outcome
-    assert found["tilt"] == pytest.approx(mirrored.peak_tilt_ratio, rel=1e-6)
-
-
-def test_free_standing_beside_isolated(page, scenes, statues):
-    found = statues["bust"]
-    free = simulate(scenes["bust"].with_(base=None, bearings=None), history=False)
-    assert found["free"]["outcome"] == free.outcome == "overturns"
-    assert "Free-standing, the block overturns." in cards(page)[1]
-    assert "free" not in statues["bronze"] and scenes["bronze"].base is None
-
-
-def test_other_motions_are_counted_by_record(page, scenes):
-    bust, motions = cards(page)[1], (synthetic_motion(seed=7), synthetic_motion(seed=8).scaled(2.5))
-    found = [simulate(scenes["bust"].with_(motion=motion, duration=None), history=False) for motion in motions]
-    own = simulate(scenes["bust"], history=False)
-    lifting = [any(one.outcome != "stands" for one in record) for record in ([own], found)]
-    assert f"lifts under {sum(lifting)} of 2 motions" in bust and "Motions Warning" in bust
-    assert "By motion motion runs largest peak" in bust
-    assert "the scene&#39;s own motion 1 " in bust and "other 2 " in bust
-    assert f"{max(one.peak_base_displacement for one in found):.3f}" in bust
-
-
 def test_the_engines_that_agree_and_what_the_others_have_other():
     fell = {"quantity": "outcome", "here": "overturns", "model": "rocks", "limit": None}
+    kinds = {
+        "analytic": (COMPARED, []),
+        "one": (COMPARED, []),
+        "near": (EDGE, []),
+        "two": (EDGE, [fell]),
+        "three": ("N <= 0", []),
+        "four": ("no", []),
+    }
     rows = [
-        {"engine": solver, "failure": failure, "comparable": comparable, "differences": differences}
-        for solver, failure, comparable, differences in (
-            ("analytic", None, COMPARED, []),
-            ("one", None, COMPARED, []),
-            ("near", None, EDGE, []),
-            ("two", None, COMPARED, [fell]),
-            ("three", None, EDGE, [fell]),
-            ("four", None, "N <= 0", []),
-            ("five", {"reason": "it gave up"}, "no", []),
-            ("six", None, "no", []),
-        )
+        {"engine": name, "failure": None, "comparable": how, "differences": off} for name, (how, off) in kinds.items()
     ]
-    said = _engines(rows).split("; ")
-    assert said[0] == "one and near agree with the analytic model"
-    assert said[1].startswith("two differs from the analytic model: the block overturns")
-    assert said[2].startswith("three differs from the analytic model: the block overturns")
-    assert said[3].startswith("four cannot be compared with the analytic model: N <= 0")
-    assert said[4:] == ["five failed: it gave up", "six was not compared."]
+    rows.append({**rows[-1], "engine": "five", "failure": {"reason": "it gave up"}})
+    agree, two, *others = _engines(rows).split("; ")
+    assert agree == "one and near agree with the analytic model"
+    assert two.startswith("two differs from the analytic model: the block overturns")
+    three = "three cannot be compared with the analytic model: N <= 0"
+    assert others == [three, "four was not compared", "five failed: it gave up."]
 
 
-BUST_ON_PULSE = load_scene("caryatid-isolated").with_(name="bust", motion=PulseMotion("one-sine", 1.0, 6.0))
-
-
-def page_of(folder, **scenes):
-    """The HTML of a report on these scenes, and of the page of its runs."""
-    make_own_results(folder, scenes, engines=[])
-    return write_page(folder, studies=folder / "none").read_text() + (folder / "pages/runs.html").read_text()
-
-
-RELEASED = load_scene("free-rocking-rigid").with_(name="released", block={"restitution": 0.9})
-
-
-def test_one_that_rocks_gets_its_own_restitution_and_replaces_an_older_report(tmp_path):
+def test_one_that_rocks_gets_its_own_restitution_and_replaces_an_older_report(quick, tmp_path):
     (tmp_path / SCENES).write_text("of an older report")
-    page = page_of(tmp_path, bust=BUST_ON_PULSE, released=RELEASED)
+    bust = ISOLATED.with_(name="bust", motion=PulseMotion("one-sine", 1.0, 6.0))
+    released = load_scene("free-rocking-rigid").with_(name="released", block={"restitution": 0.9})
+    make_own_results(tmp_path, {"bust": bust, "released": released}, engines=[])
+    page = write_page(tmp_path, studies=tmp_path / "none").read_text()
     assert read_result(tmp_path / SCENES).settings["scenes"]["released"]["restitution"] == 0.9
     result = read_result(tmp_path / RESTITUTION)
     assert result.settings["bases"] == [None] and max(row["rms"] for row in result.rows) < 1e-9
     assert sum(row["impacts"] for row in result.rows) >= 8
-    assert "Restitution of this block" in page and "slides without friction" not in page
-    assert "it is left out here, as it rates no engine" in page
     assert "Table 1(a)" not in page and "aryatid" not in page
     told = json.loads(form(tmp_path / PAGE).text())
     assert told["schema"] == "rocking report 5" and len(told["results"]) == 2
     assert [(row["scene"], row["outcome"]) for row in told["rows"]] == [("bust", "stands"), ("released", "rocks")]
-    assert "released: in analytic it rocks and stays upright" in page and "bust: in analytic it never lifts" in page
-
-
-@pytest.mark.long
-def test_a_scene_that_stands_gets_no_word_of_restitution(tmp_path):
-    page = page_of(tmp_path, bust=BUST_ON_PULSE)
-    assert (tmp_path / SCENES).exists() and not (tmp_path / RESTITUTION).exists()
-    assert "Restitution of this block" not in page and "aryatid" not in page
-    titles = " ".join(re.findall('role="img" aria-label="([^"]*)"', page))
-    assert "base displacement" in titles and "tilt φ" not in titles
-    assert re.search(r">mass of the block m \[kg\]</th><td[^>]*>3172.05<", page)
+    make_own_results(tmp_path, {"bust": bust}, engines=[])
+    assert not (tmp_path / RESTITUTION).exists()  # of a block that never rocks
 
 
 def test_a_record_takes_the_place_of_the_scenes_motions(tmp_path):
@@ -270,31 +155,178 @@ def test_a_record_takes_the_place_of_the_scenes_motions(tmp_path):
         load_scenes([str(tmp_path / "none.toml")])
 
 
-def test_no_slip_stands_on_the_card_of_a_block_that_its_friction_holds(page):
-    assert not any("slip" in card.lower() for card in cards(page))
-
-
-@pytest.mark.parametrize("place, scene", [pytest.param("saved", SAVED, marks=pytest.mark.long), ("slides", SLIDES)])
-def test_the_slip_stands_on_the_card_of_a_block_that_slides(place, scene, tmp_path):
-    named = scene.with_(name=place, duration=None)
-    make_own_results(tmp_path / place, {place: named}, engines=[], motions={})
-    text = write_page(tmp_path / place, studies=tmp_path / "none").read_text()
-    (card,) = cards(text)
-    slid = simulate(named, history=False).sliding
-    assert f"It slides by up to {number(slid.peak, 3)} m, and ends {number(abs(slid.end), 3)} m from" in card
-    assert f"largest slip on the support [m] {number(slid.peak, 3)}" in card and "slip [m]" in card
-    stage = json.loads(re.search('id="histories">(.*?)</script>', text)[1])
-    (track,) = stage["scenes"][0]["tracks"]
-    assert max(map(abs, track["slip"])) == pytest.approx(slid.peak, abs=2e-3)
-    assert stage["scenes"][0]["reach"] == pytest.approx(max(map(abs, track["slip"])), abs=1e-3)
-    moved = float(re.search(r'data-track="0".*?translate[(](-?[\d.]+) 0', text)[1])
-    assert moved == pytest.approx(track["slip"][round(stage["still"] / stage["step"])], abs=1e-4)
-    assert 'class="stood"' in text and "Shaded: the block slides in" in text
-
-
 def test_every_outcome_has_a_colour_in_the_bar_of_a_margin():
     draw = environment().get_template("statue.html").module.bar
     for outcome in OUTCOMES:
         shown = draw({"quantity": "motion", "bands": [(-0.2, 0.2, outcome)]})
         kind = re.search('<rect class="(.*?)" x="20.0" y="18"', shown)[1]
         assert f"rect.{kind} {{" in assets()["style"]
+
+
+WEAK = "[bearings]\nka = 229505\nkb = 22950.5\nalpha = 66.6021\ncount = 4\n"
+CARDS = {
+    "a block's file.toml": (BRONZE.format(scale=CLIFF), "design", "739"),
+    "bust.toml": (BUST.format(bearings=WEAK + "x_max = 0.2"), "design", None),
+    "calm.toml": (BRONZE.format(scale=0.2), "margin", None),
+}
+FIRST = "First write this motion into the table [motion] of its file."
+
+
+def fate(scene, motion, width=None):
+    block = scene.block if width is None else on_plate(scene.block, width)
+    return simulate(scene.with_(block=block, motion=motion, duration=None), history=False).outcome
+
+
+COSTS = {"a block's file.toml": [pytest.mark.slow], "bust.toml": [pytest.mark.long]}
+
+
+@pytest.mark.parametrize("name", [pytest.param(name, marks=COSTS.get(name, [])) for name in CARDS])
+def test_the_command_on_the_card_runs_on_this_file(rocking, tmp_path, monkeypatch, name):
+    monkeypatch.chdir(tmp_path)
+    text, command, base_mass = CARDS[name]
+    (tmp_path / name).write_text(text)
+    (tmp_path / "my records").mkdir()
+    shutil.copytree(RESULTS / "tolerances", tmp_path / "stored" / "tolerances")
+    pairs(tmp_path / "my records", 1, seconds=2.0)
+    many = ("--records", "my records", "--directions", "2", "--both-signs") if command == "design" else ()
+    place = str(tmp_path / name) if command == "margin" else name
+    status, _, err = rocking("report", place, *many, "--engine", "analytic", "--output", "page", "--studies", "stored")
+    assert status == 0, err
+    stages = [line for line in err.splitlines() if line.startswith(("runs:", "studies")) and "done in" not in line]
+    assert stages[0] == "runs: 1 to do in 1 solver"  # though nobody sees a bar
+    page = (tmp_path / "page/report.html").read_text()
+    (shown,) = re.findall('<p class="next">.*?data-copies="(.*?)"', page)
+    words = shlex.split(html.unescape(shown))
+    assert words[:3] == ["rocking", command, place] and FIRST not in page and set(many) <= set(words)
+    given = dict(zip(words, words[1:], strict=False))
+    assert given.get("--base-mass") == base_mass
+    status, out, err = rocking(*words[1:])
+    assert status == 0 and "Traceback" not in err, err
+    assert ("of critical damping" in out) == (command == "design")
+
+
+def test_a_block_on_a_plate_has_the_same_mass_and_height_and_moves_about_the_plates_corners():
+    block = on_plate(GROUND.block, 0.9)
+    assert 2 * block.half_width == pytest.approx(0.9, rel=1e-14)
+    assert block.half_height == pytest.approx(GROUND.block.half_height, rel=1e-14)
+    assert block.centre_inertia == pytest.approx(GROUND.block.centre_inertia, rel=1e-12)
+
+
+def test_on_the_ground_the_width_that_does_not_lift_is_the_height_times_the_peak_in_g():
+    motions = [GROUND.motion, synthetic_motion(seed=7).scaled(1.4)]
+    found = needed_by(GROUND, motions)
+    height = 2 * GROUND.block.half_height
+    assert found["stands"] == pytest.approx(height * max(motion.peak for motion in motions) / GROUND.gravity, rel=5e-3)
+    assert [fate(GROUND, motion, found["stands"]) for motion in motions] == ["stands"] * 2
+    assert "rocks" in [fate(GROUND, motion, 0.99 * found["stands"]) for motion in motions]
+
+
+def test_the_width_that_stays_upright_does_so_under_all_motions_and_a_little_less_does_not():
+    motions = [GROUND.motion, synthetic_motion(seed=7).scaled(1.4)]
+    upright = needed_by(GROUND, motions)["upright"]
+    assert "overturns" in [fate(GROUND, motion) for motion in motions]
+    assert 2 * GROUND.block.half_width < upright
+    assert "overturns" not in [fate(GROUND, motion, upright) for motion in motions]
+    less = upright * np.linspace(0.984, 0.999, 16)
+    assert "overturns" in [fate(GROUND, motion, width) for motion in motions for width in less]
+    assert needed_by(GROUND, [PulseMotion("one-sine", 3.5, 20.0)])["upright"] is None  # it rocks as it is
+
+
+def test_the_width_on_bearings_and_under_vertical_motion_is_that_of_the_run():
+    stiff = ISOLATED.with_(bearings=Bearings(law="linear", ka=1e6, count=4, damping=1e4))
+    up = SampledMotion(GROUND.motion.dt, 0.5 * np.roll(GROUND.motion.samples, 40))
+    both = SampledMotion(GROUND.motion.dt, GROUND.motion.samples, vertical=up)
+    for scene, motion in ((stiff, stiff.motion), (GROUND, both)):
+        width = needed_by(scene, [motion])["stands"]
+        assert fate(scene, motion, width) == "stands" and fate(scene, motion, 0.99 * width) == "rocks"
+    weightless = SampledMotion(GROUND.motion.dt, GROUND.motion.samples, vertical=up.scaled(6.0))
+    assert needed_by(GROUND, [weightless])["stands"] is None  # nothing presses it on the ground
+
+
+def test_the_stroke_is_the_x_max_of_the_bearings_and_none_where_none_would_do():
+    weak = ISOLATED.with_(motion=ISOLATED.motion.scaled(3.0))
+    assert needed_by(weak, [weak.motion])["stroke"] > 0.1
+    built = weak.with_(bearings={"x_max": 0.07})
+    assert needed_by(built, [built.motion])["stroke"] == 0.07
+    assert needed_by(GROUND, [PulseMotion("one-sine", 10.0, 2.3)])["stroke"] is None
+    nothing = dict.fromkeys(("stroke", "stands", "upright", "slip", "friction"))
+    assert needed_by(load_scene("free-rocking-isolated"), []) == nothing
+    assert needed_by(GROUND.with_(start={"tilt": 0.01}), [GROUND.motion]) == nothing
+
+
+SCENE = {"block": {"mass": 1551.83}, "base": None, "bearings": None, "half_width": 0.275}
+BASE = {**SCENE, "base": {"mass": 400.0}}
+NEEDED = {"stroke": 0.25, "stands": 0.8, "upright": 0.61}
+SAID = [
+    (SCENE, None, "rocking margin FILE", "there is nothing to do"),
+    (SCENE, NEEDED, "rocking design FILE --base-mass 1550 --stroke 0.25", "Both numbers are examples"),
+    (BASE, None, "rocking margin FILE", "On a base that nothing holds it does not lift"),
+    (BASE, NEEDED, "rocking design FILE --stroke 0.25", "The stroke [m] is an example"),
+    (
+        {**BASE, "bearings": {"x_max": 0.25}},
+        NEEDED,
+        "rocking design FILE --stroke 0.25",
+        "is the x_max of its bearings",
+    ),
+    (SCENE, NEEDED, "", "0.610 m wide (now 0.550 m) it does not overturn, to one of 0.800 m it does not lift"),
+    (SCENE, {**NEEDED, "upright": None}, "", "fixed to a plate 0.800 m wide (now 0.550 m) it does not lift"),
+    (SCENE, {**NEEDED, "stroke": None}, "rocking margin FILE", "No bearings are likely to keep it from lifting; widen"),
+    (
+        {**SCENE, "friction": 0.3},
+        {**NEEDED, "upright": None, "friction": 0.4},
+        "rocking design FILE --base-mass 1550 --stroke 0.25",
+        "neither lifts nor slides. Both",
+    ),
+    (
+        {**SCENE, "friction": 0.3},
+        {"stroke": None, "stands": None, "upright": None, "friction": 0.4},
+        "rocking margin FILE",
+        "from lifting or sliding; it needs a friction of 0.400 (now 0.300) not to slide.",
+    ),
+    (
+        {**SCENE, "friction": 0.3},
+        {**NEEDED, "slip": 0.0123, "friction": 0.4},
+        "",
+        "to one of 0.800 m it does not lift, but slides by up to 0.0123 m; it needs a friction of 0.400",
+    ),
+    (
+        {**SCENE, "friction": 0.3},
+        {"stroke": None, "stands": 0.8, "upright": None, "slip": 0.41, "friction": 0.4},
+        "rocking margin FILE",
+        "or sliding; fix it, as a plate does not do: on one 0.800 m wide (now 0.550 m) it slides by 0.410 m, beyond "
+        "half of that; it needs a friction of 0.400 (now 0.300) not to slide.",
+    ),
+    (SCENE, dict.fromkeys(NEEDED), "rocking margin FILE", "lifting; widen, fix or lower it."),
+]
+
+
+@pytest.mark.parametrize("scene, needed, command, words", SAID)
+def test_what_is_said_next(scene, needed, command, words):
+    found, said = next_step(scene, needed, "FILE")
+    assert command in ("", found) and words in said and said.endswith(".")
+
+
+@pytest.mark.parametrize("amplitude, beyond", [(5.0, False), (8.0, True)])
+def test_a_plate_on_which_the_block_slips_beyond_half_of_it_is_not_advised(amplitude, beyond):
+    """A block that does not lift slips as far on every plate: by the run of a broad one."""
+    motions = [PulseMotion("one-sine", amplitude, 3.0), PulseMotion("one-sine", 1.0, 3.0)]
+    rubs = GROUND.with_(friction=0.35)
+    found = needed_by(rubs, motions)
+    broad = rubs.with_(block=on_plate(rubs.block, 9.0), motion=motions[0], duration=None)
+    assert found["slip"] == pytest.approx(simulate(broad, history=False).sliding.peak, rel=1e-6)
+    assert (found["slip"] > found["stands"] / 2) == beyond
+    words = next_step({**SCENE, "friction": 0.35}, found, "FILE")[1]
+    assert ("a plate does not do" in words) == beyond and ("fixed to a plate" in words) != beyond
+
+
+def test_where_the_friction_is_less_than_the_block_needs_it_is_said_and_how_wide_it_only_slides():
+    rubs = GROUND.with_(friction=0.35)  # tan(gamma) is .288, the peak of the motion .515 g
+    found = needed_by(rubs, [rubs.motion])
+    assert found["friction"] == pytest.approx(rubs.motion.peak / rubs.gravity, rel=5e-3)
+    assert fate(rubs, rubs.motion, found["stands"]) == "slides"
+    assert fate(rubs, rubs.motion, 0.95 * found["stands"]) in ("rocks", "overturns")
+    held = rubs.with_(friction=found["friction"])
+    assert fate(held, held.motion, found["stands"] * found["friction"] / 0.35 * 1.01) == "stands"
+    assert needed_by(held, [held.motion])["friction"] is None
+    slides = needed_by(rubs.with_(friction=0.2), [rubs.motion])  # before it lifts, on any plate
+    assert (slides["stands"], slides["upright"]) == (None, None) and slides["friction"] == found["friction"]

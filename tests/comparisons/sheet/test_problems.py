@@ -1,9 +1,13 @@
-"""The reference answers of the problem sheet, held to the second implementation."""
+"""The problem sheet: answers held to the second implementation, files complete for a reader who has another code."""
 
+import re
+
+import numpy as np
 import pytest
 
 from analytic.twin import simulate_twin
-from comparisons.sheet.problems import PROBLEMS
+from comparisons.sheet.pages import markdown, write_sheet
+from comparisons.sheet.problems import PROBLEMS, UNITS
 
 EXACT = 1e-7  # of the tolerance: so well the answers are known, as index.md says
 
@@ -41,3 +45,34 @@ def test_a_tolerance_is_a_thousandth_of_the_scale_of_its_page():
     tolerances = {one.kind: PROBLEMS[0].tolerance(one) for one in PROBLEMS[0].quantities}
     expected = {"outcome": None, "time": 1e-3 / rate, "angle": 0.25e-3, "rate": 0.25e-3 * rate}
     assert tolerances == {kind: value and pytest.approx(value, rel=1e-12) for kind, value in expected.items()}
+
+
+@pytest.fixture(scope="module")
+def sheet(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("sheet")
+    write_sheet(folder)
+    return folder
+
+
+def test_pages_say_all_that_is_asked_with_answers_and_nothing_of_our_code(sheet):
+    for problem in PROBLEMS:
+        text, page = markdown(problem), (sheet / f"{problem.name}.html").read_text()
+        assert not re.search(r"python|kernel|exudyn|analytic|comparisons|rocking (sheet|run)", text, re.IGNORECASE)
+        for one in problem.quantities:
+            assert re.search(rf"\| {re.escape(one.name)} \|.*\| {re.escape(str(problem.answers[one.name]))} \|", text)
+            assert f">{one.name}<" in page
+        assert not re.search(r"\de[-+]?\d|\b[^\W\d_]_[^\W_]\b", page)  # indices and powers as one writes them
+    samples = np.loadtxt(sheet / "inputs" / "record.csv", delimiter=",", skiprows=1)[:, 1]
+    motion = next(one.scene.motion for one in PROBLEMS if one.name == "record")
+    assert samples.tolist() == motion.samples.tolist()
+
+
+def test_the_table_of_answers_holds_each_of_each_page(sheet):
+    head, *lines = (sheet / "reference.csv").read_text().splitlines()
+    assert head == "scene,quantity,unit,answer,tolerance"
+    expected = [
+        [problem.name, one.name, UNITS[one.kind], str(problem.answers[one.name]), str(problem.tolerance(one) or "")]
+        for problem in PROBLEMS
+        for one in problem.quantities
+    ]
+    assert [line.split(",") for line in lines] == expected

@@ -1,31 +1,23 @@
-"""Charts can be read back; figures draw every row where it belongs, tell series apart, and write numbers in cells."""
+"""Charts can be read back: figures draw every row where it belongs, tell series apart, and write numbers in cells."""
 
 import json
-import math
 import re
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 from contrast import contrast
 from page_numbers import number_in
+from sliding_scenes import SAVED
 
-from comparisons.showing.charts import (
-    HAIR,
-    INK,
-    SHAPES,
-    STYLE,
-    TONES,
-    Axis,
-    Chart,
-    curve,
-    figure,
-    key_of,
-    log_axis,
-    marker,
-)
-from comparisons.showing.figures import as_it_comes, beside, lines, ranks, regions, shades
-from comparisons.showing.parts import NAME, Column
+from analytic import Start, load_scene, simulate
+from analytic.layout import MODES
+from comparisons.showing import modes
+from comparisons.showing.charts import HAIR, INK, SHAPES, STYLE, TONES, Axis, Chart, figure, key_of, log_axis, marker
+from comparisons.showing.figures import lines, regions
+from comparisons.showing.parts import Column
+from comparisons.showing.plots import draw_histories, style
 from engines import ENGINES
 
 LINEAR, LOG = Axis("x [m]", -2.0, 6.0), Axis("error [-]", 1e-6, 1e2, "log")
@@ -97,21 +89,6 @@ def test_every_solver_has_a_marker_of_its_own_and_its_name_on_what_it_drew():
     assert ENGINES["exudyn"].colour in chart.svg() and ENGINES["exudyn"].colour in key_of("exudyn")
 
 
-def test_scipy_and_time_stepping_are_told_apart_in_one_ink():
-    scipy, stepping = key_of("scipy, DOP853"), key_of("time-stepping")
-    assert all("--c:var(--soft)" in key for key in (scipy, stepping))
-    assert SHAPES[marker("scipy")] in scipy and SHAPES[marker("time-stepping")] in stepping
-    assert "--d:7 4" in scipy and "--d:2 3.5" in stepping and "--d:none" in key_of("analytic")
-
-
-def test_labels_are_pushed_apart_and_stay_inside():
-    chart = Chart(LINEAR, LINEAR, "Labels.", right=80)
-    for k in range(8):
-        chart.label(-1.9 + 0.01 * k, f"line {k}")
-    tops = sorted(float(text.get("y")) for text in element(chart).iter("text") if (text.text or "").startswith("line"))
-    assert len(tops) == 8 and min(np.diff(tops)) >= 13 and tops[-1] <= chart.bottom + 5
-
-
 X, Y = Column("slenderness γ [rad]", "x", digits=None), Column("error [-]", "y")
 FIRST, SECOND = list(ENGINES)[:2]
 
@@ -139,29 +116,6 @@ def place_of(mark):
     return tuple(map(float, re.findall(r"[\d.]+", mark.get("transform"))[:2]))
 
 
-def groups(panel):
-    """{series: (its lines, its marks)} of a panel, those in the margin aside."""
-    found = {}
-    for group in panel.iter("g"):
-        if group.get("data-who") and not list(group.iter("text")):
-            kinds = [part.get("class") for part in group.iter("path")]
-            lines, marks = found.get(group.get("data-who"), (0, 0))
-            found[group.get("data-who")] = lines + kinds.count("line"), marks + sum("dot" in kind for kind in kinds)
-    return found
-
-
-def test_each_panel_holds_its_series_and_every_row_that_can_be_drawn():
-    made = lines(ROWS, X, Y, "Errors.", panel="ground", log="y")
-    rigid, sliding = panels(made)
-    assert groups(rigid) == {f"{FIRST}, fine": (1, 2), f"{FIRST}, coarse": (1, 1)}
-    assert groups(sliding) == {f"{SECOND}, fine": (1, 1)}  # nothing at 0 on a logarithmic axis
-    assert json.loads(rigid.get("data-read")) == json.loads(sliding.get("data-read"))  # one pair of axes
-    assert made.solvers == (f"{FIRST}, fine", f"{FIRST}, coarse", f"{SECOND}, fine") and set(made.keys) == set(
-        made.solvers
-    )
-    assert lines([ROWS[3]], X, Y, "Errors.") is None
-
-
 def test_marks_stand_on_their_line_and_tell_their_values():
     (panel,) = panels(lines(ROWS[:2], X, Y, "Errors.", log="y"))
     marks = [part for part in panel.iter("path") if part.get("data-says")]
@@ -170,35 +124,6 @@ def test_marks_stand_on_their_line_and_tell_their_values():
         f"{FIRST}, fine: 1.0·10⁻⁴ at 0.2",
     ]
     assert [place_of(one) for one in marks] == points(*drawn_lines(panel))
-
-
-def test_variants_of_an_engine_share_its_colour_and_differ_in_their_marks():
-    made = lines(ROWS, X, Y, "Errors.", log="y")
-    fine, coarse = (made.keys[f"{FIRST}, {variant}"] for variant in ("fine", "coarse"))
-    assert ENGINES[FIRST].colour in fine and ENGINES[FIRST].colour in coarse
-    assert 'class="dot"' in fine and 'class="dot open"' in coarse
-    alone = lines([row(FIRST, "fine", 0.1, None), ROWS[2]], X, Y, "Errors.", log="y")
-    assert alone.keys == {f"{FIRST}, coarse": coarse}  # as where the other one is drawn
-    assert lines(ROWS[2:3], X, Y, "Errors.", log="y", like=ROWS).keys == alone.keys
-    many = lines([row(FIRST, f"variant {k}", 0.1, 10.0**-k) for k in range(4)], X, Y, "", log="y")
-    assert len({re.search('<path class="(dot[^>]*)>', str(key))[1] for key in many.keys.values()}) == 4
-
-
-def test_grey_series_stand_behind_and_are_in_no_legend():
-    made = lines(ROWS, X, Y, "Errors.", grey=lambda one: one["variant"] == "coarse", log="y")
-    assert made.solvers == (f"{FIRST}, fine", f"{SECOND}, fine")
-    (panel,) = panels(made)
-    whole = ElementTree.tostring(panel, encoding="unicode")
-    assert whole.index("--faint") < whole.index(ENGINES[FIRST].colour) and f"{FIRST}, coarse" in whole
-    # with one coloured series an engine, each is named where it ends
-    assert {FIRST, SECOND} <= {text.text for text in panel.iter("text")}
-
-
-def test_marks_stand_at_their_values_though_they_cover_each_other():
-    same = [row(FIRST, f"variant {k}", 0.2, 1e-3) for k in range(4)]
-    (panel,) = panels(lines(same, X, Y, "Errors.", log="y"))
-    places = [place_of(part) for part in panel.iter("path") if (part.get("class") or "").startswith("dot")]
-    assert len(places) == 4 and len(set(places)) == 1
 
 
 def test_marks_beyond_the_panel_stand_at_its_frame_with_an_arrowhead_that_points_there():
@@ -216,112 +141,6 @@ def test_marks_beyond_the_panel_stand_at_its_frame_with_an_arrowhead_that_points
     assert [re.search(r"rotate\((.*)\)", one)[1] for one in arrows] == ["0", "-45", "180", "-90", "90"]
 
 
-def test_series_as_the_engine_comes_have_open_marks_the_others_filled_ones():
-    made = lines(ROWS, X, Y, "Errors.", log="y", opened=lambda one: one["variant"] == "fine")
-    drawn = {who: re.search('<path class="(dot[^"]*)"', str(key))[1] for who, key in made.keys.items()}
-    assert drawn == {f"{FIRST}, fine": "dot open", f"{FIRST}, coarse": "dot", f"{SECOND}, fine": "dot open"}
-    (panel,) = panels(lines(ROWS[2:3], X, Y, "Errors.", opened=as_it_comes))  # of a row without a kind
-    assert [part.get("class") for part in panel.iter("path") if "dot" in (part.get("class") or "")] == ["dot"]
-
-
-def test_a_long_title_is_not_cut_off():
-    short, long = (Chart(LINEAR, LINEAR, "Titles.", left=200, title=words) for words in ("short", 45 * "m"))
-    begins = [float(next(one for one in element(chart).iter("text")).get("x")) for chart in (short, long)]
-    assert begins[0] == 200 and begins[1] < 30
-
-
-def test_rules_are_named_outside_the_plot():
-    made = lines(ROWS, X, Y, "Errors.", log="y", rules=[("y", 1e-3, "trusted"), ("x", 0.15, "needed")])
-    (panel,) = panels(made)
-    (inside,) = panel.findall("svg")
-    left, top, width, _ = (float(inside.get(key)) for key in ("x", "y", "width", "height"))
-    words = {text.text: text for text in panel.iter("text") if text.text in ("trusted", "needed")}
-    assert float(words["trusted"].get("x")) > left + width and float(words["needed"].get("y")) < top
-    assert len([part for part in inside.iter("path") if part.get("class") == "rule"]) == 2
-
-
-def test_the_model_is_a_line_without_marks():
-    (panel,) = panels(lines([row("analytic", "damped", 0.1, 1.0), row("analytic", "damped", 0.2, 2.0)], X, Y, ""))
-    assert groups(panel) == {"analytic, damped": (1, 0)}
-
-
-def test_figures_beside_each_other_share_legend_caption_and_words_for_those_who_cannot_see_them():
-    one, two = lines(ROWS[:2], X, Y, "One."), lines(ROWS, X, Y, "Two.", panel="ground")
-    both = beside(one, None, two, one)
-    assert len(panels(both)) == 4 and both.caption == "One. Two." and both.alt == f"{one.alt} {two.alt} {one.alt}"
-    assert both.solvers == two.solvers and beside(None) is None
-
-
-def test_ranked_values_stand_below_each_other_with_their_intervals_and_no_further_than_the_axis():
-    rows = [row("analytic", "model", 0, 0.5), row(FIRST, "fine", 0, 0.0), row(SECOND, "fine", 0, None, "sliding")]
-    rows = [one | {"ends": [0.25, 2.0] if one["y"] else None} for one in rows]
-    share = Column("share [-]", "y", within="ends")
-    axis, opened = Axis("share [-]", 0.1, 1.0, "log"), lambda one: one["engine"] == FIRST
-    made = ranks(rows, NAME, share, "Shares.", axis, panel="ground", opened=opened)
-    (panel,) = panels(made)
-    assert [part.get("class") for part in panel.iter("path") if part.get("data-says")] == ["dot", "dot open"]
-    assert [part.get("class") for part in panel.iter("path")].count("beyond") == 1  # of 0
-    assert made.solvers == (FIRST,) and ENGINES[FIRST].colour in made.svg.decode()
-    told = [part for part in panel.iter("path") if part.get("data-says")]
-    assert [part.get("data-says") for part in told] == ["analytic, model: 0.50 (0.25 to 2.0)", f"{FIRST}, fine: 0"]
-    (x0, x1), (y0, y1) = (json.loads(panel.get("data-read"))[key]["at"] for key in "xy")
-    middle, low = (pytest.approx(x0 + math.log10(times) * (x1 - x0), abs=0.1) for times in (5, 2.5))
-    assert list(map(place_of, told)) == [(middle, y1 + (y0 - y1) / 4), (x0, y1 + (y0 - y1) * 0.75)]
-    reach = next(part.get("d") for part in panel.iter("path") if part.get("class") == "reach")
-    assert list(map(float, re.findall(r"[\d.]+", reach)))[::2] == [low, x1]
-    assert ranks(rows[2:], NAME, share, "Shares.", Axis("share [-]", 0.1, 1.0)) is None
-
-
-CELLS = [
-    {"engine": "one", "variant": "fine", "ratio": ratio, "gamma": gamma, "rms": rms, "failed": failed}
-    for ratio, gamma, rms, failed in (
-        (10.0, 0.1, 2e-5, 0),
-        (10.0, 0.2, 3e-3, 0),
-        (0.5, 0.1, 0.4, 1),
-        (0.5, 0.2, None, 4),
-    )
-]
-RATIO, GAMMA = Column("base over block mass [-]", "ratio", digits=None), Column("γ [rad]", "gamma", digits=None)
-
-
-def test_cells_hold_their_numbers_shades_and_failures():
-    made = shades(
-        CELLS,
-        RATIO,
-        GAMMA,
-        Column("rms [-]", "rms", digits=1),
-        "Map.",
-        bounds=(1e-4, 1e-2),
-        panel=NAME.of,
-        failed=lambda one: f"{one['failed']}/4" if one["failed"] else "",
-    )
-    cells, scale = panels(made)
-    signs = [text.text for text in cells.iter("text") if "sign" in text.get("class", "")]
-    assert signs == ["2·10⁻⁵", "0.003", "✗ 1/4", "✗ 4/4"]
-    assert [part.get("class") for part in cells.iter("rect")] == ["shade s0", "shade s1", "shade s2 lost", "shade lost"]
-    told = [part.get("data-says") for part in cells.iter("rect")]
-    assert told[2] == "0.1, 0.5: 0.4; failed: 1/4" and told[3] == "0.2, 0.5: –; failed: 4/4"
-    corners = [(float(part.get("x")), float(part.get("y"))) for part in cells.iter("rect")]
-    assert corners[0][0] == corners[1][0] < corners[2][0] and corners[1][1] < corners[0][1] == corners[2][1]
-    assert [part.get("class") for part in scale.iter("rect")] == ["shade s0", "shade s1", "shade s2"]
-    assert {"10⁻⁴", "0.01"} <= {text.text for text in scale.iter("text")}
-    assert shades([], RATIO, GAMMA, Column("rms [-]", "rms"), "Map.", bounds=(1.0,)) is None
-
-
-def test_a_map_leaves_room_for_long_words_at_both_axes():
-    words = "measure of intensity {gamma}", "displacement above {ratio} m"
-    rows = [one | {"gamma": k} for one in CELLS for k in range(5)]
-    columns = [Column(head, form) for head, form in zip(("measure", "state"), words, strict=True)]
-    panel, _ = panels(shades(rows, *columns, Column("rms [-]", "rms"), "Map.", bounds=(1.0,)))
-    (inside,) = panel.findall("svg")
-    assert float(inside.get("x")) > 6 * len("displacement above 10.0 m")
-    slanted = [text for text in panel.iter("text") if "rotate(-35)" in (text.get("transform") or "")]
-    (below,) = [text for text in panel.iter("text") if text.text == "measure"]
-    bottom = float(inside.get("y")) + float(inside.get("height")) + 17
-    reach = 6 * len("measure of intensity 0") * math.sin(math.radians(35))
-    assert len(slanted) == 5 and float(below.get("y")) > bottom + reach
-
-
 @pytest.mark.parametrize("scheme", [0, 1], ids=["light", "dark"])
 def test_lines_and_shades_can_be_told_from_the_page(scheme):
     def rgb(colour):
@@ -335,42 +154,6 @@ def test_lines_and_shades_can_be_told_from_the_page(scheme):
         assert contrast(mixed, colours["paper"]) >= 3, tone
     assert contrast(colours["faint"], colours["paper"]) >= 3
     assert min(contrast(colours["ink"], colours[f"s{shade}"]) for shade in range(6)) >= 4.5
-
-
-def test_curves_of_the_model_alone_are_told_apart_and_named_where_they_end():
-    rows = [row("analytic", f"{level:g}", x, 1.0 + level * x) for level in (0.2, 0.4, 0.6) for x in (0.1, 0.3)]
-    made = lines(rows, X, Y, "Levels.")
-    (panel,) = panels(made)
-    assert groups(panel) == {f"analytic, {level}": (1, 2) for level in ("0.2", "0.4", "0.6")}
-    for part in ("--c:", "--d:"):
-        drawn = {
-            re.search(f"{part}([^;]*)", group.get("style"))[1] for group in panel.iter("g") if group.get("data-who")
-        }
-        assert len(drawn) == 3, drawn
-    named = {text.text: float(text.get("y", 0)) for text in panel.iter("text")}
-    assert named["0.6"] < named["0.4"] < named["0.2"]  # upward
-    assert len(set(made.keys.values())) == 3 and "analytic" not in named
-    assert len({curve(rank) for rank in range(12)}) == 12
-    assert not {engine.colour for engine in ENGINES.values()} & set(TONES)
-    long = [{**one, "variant": f"with a long name, {one['variant']}"} for one in rows]
-    assert not any("long" in text.text for text in panels(lines(long, X, Y, "Levels."))[0].iter("text"))
-
-
-def test_one_curve_of_the_model_or_an_engine_beside_it_keep_their_ink_and_colour():
-    one, both = (row("analytic", "0.2", 0.1, 1.0), row("analytic", "0.4", 0.1, 2.0))
-    assert "--c:var(--ink)" in lines([one], X, Y, "One.").svg.decode()
-    drawn = lines([one, both, row(FIRST, "fine", 0.2, 1e-4)], X, Y, "An engine, too.").svg.decode()
-    assert drawn.count("--c:var(--ink)") == 2 and ENGINES[FIRST].colour in drawn and TONES[0] not in drawn
-
-
-def test_names_pushed_down_by_others_go_back_no_farther_than_into_the_panel():
-    chart = Chart(LINEAR, LINEAR, "Labels.", right=80)
-    for y in (4.0, -1.9, -2.0):
-        chart.label(y, f"at {y:g}")
-    found = {text.text: float(text.get("y")) for text in element(chart).iter("text") if (text.text or "")[:2] == "at"}
-    assert found["at -2"] == pytest.approx(chart.bottom + 4, abs=0.1)
-    assert found["at -1.9"] == pytest.approx(found["at -2"] - 15, abs=0.1)
-    assert found["at 4"] == pytest.approx(float(chart.at([0], [4.0])[0][1]) + 4, abs=0.1)  # where its line ends
 
 
 def test_a_map_of_many_cells_draws_a_rectangle_for_each_run_of_equal_ones():
@@ -389,3 +172,66 @@ def test_a_map_of_many_cells_draws_a_rectangle_for_each_run_of_equal_ones():
     np.testing.assert_allclose(sides, [(0.5, 1.5, 15, 35), (1.5, 2.5, 5, 15), (1.5, 2.5, 25, 35)], atol=0.02)
     assert drawn.get("data-who") == "overturns" and made.solvers == ("stands", "overturns")
     assert "falls" in made.keys["overturns"] and panel.get("aria-label").startswith("stands, overturns")
+
+
+def test_every_mode_of_the_march_is_there_once_and_what_ends_it():
+    words = [text.text for text in ElementTree.fromstring(str(modes.modes())).iter("text")]
+    assert [word for word in words if word in (*MODES, modes.FALLEN)] == [*MODES, modes.FALLEN]
+    ends = "".join(words for _, _, told in modes.CHANGES for words, _ in told)
+    for end in ("|H| = μ N", "|H| = N tan γ", "slip stops", "impact", "N = 0", "|φ| = π/2"):
+        assert end in ends and end in " ".join(words) and (end in modes.SAYS or end == "slip stops")
+
+
+def test_blocks_are_as_their_mode_is():
+    sliding = [mode for mode, (_, _, slides) in modes.LOOKS.items() if slides]
+    assert sliding == [mode for mode in MODES if "slide" in mode]
+    assert [mode for mode, (tilt, _, _) in modes.LOOKS.items() if tilt == 0] == ["stick", "slide"]
+
+
+LOOP = "force of all bearings [kN]"
+
+
+def drawn(name, horizon=None, count=1):
+    scene = load_scene(name)
+    response = simulate(scene)
+    figure = draw_histories(scene, [response] * count, horizon)
+    return scene, response, {axis.get_ylabel().split("\n")[-1]: axis for axis in figure.axes}
+
+
+def test_isolated_scene_has_ground_tilt_displacement_and_loop():
+    _, response, axes = drawn("caryatid-isolated")
+    tilt = axes["tilt / slenderness [-]"]
+    assert set(axes) == {"acceleration [m/s²]", "tilt / slenderness [-]", "base displacement [m]", LOOP}
+    np.testing.assert_array_equal(axes[LOOP].lines[0].get_ydata(), response.history.bearing_force / 1e3)
+    assert axes[LOOP].get_xlabel() == "base displacement [m]"
+    assert "synthetic" in axes["acceleration [m/s²]"].get_title()
+    assert 0.05 <= tilt.get_ylim()[1] == -tilt.get_ylim()[0] < 0.06  # a tiny tilt is not blown up
+
+
+@pytest.mark.parametrize("horizon", [3.0, None])
+def test_what_lies_beyond_the_horizon_is_shaded_and_overturning_does_not_flatten_the_rest(horizon):
+    axis = drawn("caryatid-rigid", horizon, count=2)[2]["tilt / slenderness [-]"]
+    labels = [text.get_text() for text in axis.get_legend().get_texts()]
+    assert ("beyond the sensitivity horizon" in labels) == (horizon is not None)
+    assert "analytic, kernel: overturns" in labels and axis.get_ylim()[1] == 2.0
+
+
+def test_solvers_differ_in_colour_and_in_dashes():
+    """Those of the model's second implementations too, which stand beside the engines."""
+    looks = [style(solver) for solver in ("analytic", *ENGINES, "time-stepping")]
+    assert len({look["color"] for look in looks}) == len({look["linestyle"] for look in looks}) == len(looks)
+
+
+def test_slip_has_a_panel_of_its_own_where_the_block_slides_and_when_is_shaded():
+    response = simulate(SAVED)
+    told = [response, replace(response, engine="pybullet", sliding=replace(response.sliding, modes=()))]
+    axes = {axis.get_ylabel().split("\n")[0]: axis for axis in draw_histories(SAVED, told).axes}
+    slip = axes["slip of the block"]
+    assert len(slip.lines) == 1 + len(told)
+    np.testing.assert_array_equal(slip.lines[1].get_ydata(), response.history.slip)
+    (shaded,) = slip.patches
+    begin, end = (time for time, mode in response.sliding.modes[2:4])
+    assert [shaded.get_x(), shaded.get_x() + shaded.get_width()] == pytest.approx([begin, end])
+    assert [text.get_text() for text in slip.get_legend().get_texts()] == ["slides"]
+    still = SAVED.with_(motion=None, start=Start(tilt=0.1))
+    assert len(draw_histories(still, [simulate(still)]).axes) == 1

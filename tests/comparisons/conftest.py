@@ -1,4 +1,4 @@
-"""What the tests of the pages share."""
+"""What the tests of pages share."""
 
 import pytest
 from javascript import NEEDED, chromium

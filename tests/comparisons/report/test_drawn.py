@@ -1,0 +1,18 @@
+"""What all pages show of made-up rows is what they showed: each word, cell and tooltip, and each picture."""
+
+import pytest
+from drawn import PAGES, drawn
+
+from comparisons.studies import BUILT_IN
+
+
+@pytest.mark.parametrize("name", sorted(file.stem for file in PAGES.glob("*.txt")))
+def test_it_shows_what_it_showed(name):
+    """Renewed, where a change is meant, by `python tests/drawn.py`, which prints what it changes."""
+    assert drawn()[name].splitlines() == (PAGES / f"{name}.txt").read_text(encoding="utf-8").splitlines()
+
+
+def test_every_study_has_its_rows_and_none_of_them_is_refused():
+    studies = {name for name in BUILT_IN if any(page.startswith(name) for page in drawn())}
+    assert studies == set(BUILT_IN) and drawn().keys() == {file.stem for file in PAGES.glob("*.txt")}
+    assert not [name for name, text in drawn().items() if "cannot be shown" in text]
