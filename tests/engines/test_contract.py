@@ -203,7 +203,9 @@ def test_runs_repeat_bit_for_bit_also_in_other_processes(engine, variant):
             )
 
 
-@pytest.mark.parametrize("present", [("exudyn",), ()], ids=["one", "none"])
+@pytest.mark.parametrize(
+    "present", [pytest.param(("exudyn",), id="one"), pytest.param((), id="none", marks=pytest.mark.slow)]
+)
 def test_all_else_works_where_engines_are_not_installed(present):
     missing = [name for name in ENGINES if name not in present]
     program = f"""

@@ -134,6 +134,7 @@ def test_an_assisted_variant_takes_a_restitution_that_no_couple_reaches(tmp_path
         assert first.rate_after / first.rate_before == pytest.approx(given, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_the_commands_know_it(tmp_path):
     folder = install_fake_engine(tmp_path)
     listed = rocking(folder, "engines", "crude")

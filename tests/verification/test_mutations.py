@@ -56,6 +56,7 @@ def test_another_restitution_fails(monkeypatch):
     assert_caught([row("restitution, rms", *DEFAULT, scenes) for scenes in ("rigid ground", "sliding base")])
 
 
+@pytest.mark.slow
 def test_another_restitution_in_the_model_shifts_times_peaks_and_boundary(monkeypatch):
     def other(scene, **given):
         e = restitution(scene) * 1.01
@@ -90,6 +91,7 @@ def test_eq_8_as_printed_fails(monkeypatch):
 # Bearing law.
 
 
+@pytest.mark.slow
 def test_another_alpha_in_the_engine_fails(monkeypatch):
     """The engine is given alpha 1 % larger than the law that its force is held against."""
     run_otherwise(monkeypatch, lambda scene: scene.with_(bearings={"alpha": 1.01 * scene.bearings.alpha}))
@@ -97,6 +99,7 @@ def test_another_alpha_in_the_engine_fails(monkeypatch):
     assert_caught([row("bearing force replayed", *DEFAULT, isolated), row("peak displacement", *DEFAULT, isolated)])
 
 
+@pytest.mark.slow
 def test_eq_12_as_printed_fails(monkeypatch):
     """Unloading with the printed sign of x: the force jumps at a reversal."""
 
@@ -132,6 +135,7 @@ class Lagging(BearingLaw):
         return lagging
 
 
+@pytest.mark.slow
 def test_a_bearing_force_that_lags_one_step_fails(monkeypatch):
     one = row("bearing force replayed", *DEFAULT, "isolated Caryatid, synthetic motion")
     monkeypatch.setattr("engines.stepping.BearingLaw", Lagging)
@@ -142,6 +146,7 @@ def test_a_bearing_force_that_lags_one_step_fails(monkeypatch):
 # A mutation that changes nothing: no test can see it, and none has to as long as this holds.
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("base", [None, 212.0])
 def test_the_share_of_a_penetration_that_bullet_takes_back_does_not_matter(monkeypatch, base):
     """contactERP at .08; where it shows one day, it must be set."""
@@ -159,6 +164,7 @@ def test_the_share_of_a_penetration_that_bullet_takes_back_does_not_matter(monke
 LARGE, STEP = {"largest_step": 5e-3}, {"step": 1e-3}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "engine, variant, changes, quantity, scenes",
     [
