@@ -316,22 +316,20 @@ def test_a_script_without_a_friction_has_as_much_as_a_couple_needs(tmp_path):
         assert float(said[1]) == pytest.approx(mu, rel=1e-5) and unkept_friction(scene) == ""
 
 
-@every_engine
 @pytest.mark.parametrize("damage", [("0.005 ", "1e9 "), ("0.01 ", "nan "), ("0.015 ", "0.015 nan #")])
-def test_a_damaged_record_stops_a_script(engine, damage, tmp_path):
-    script = written(engine, SOME["isolated, record"], tmp_path)
+def test_a_damaged_record_stops_a_script(damage, tmp_path):
+    script = written(ABLE[0], SOME["isolated, record"], tmp_path)
     record = script.with_name("script-motion.txt")
     record.write_text(record.read_text().replace(*(f"\n{text}" for text in damage), 1))
     with pytest.raises(AssertionError, match="the record needs numbers, and times that increase"):
         run_alone(script)
 
 
-@every_engine
-def test_a_record_of_uneven_times_is_the_same_motion(engine, tmp_path):
+def test_a_record_of_uneven_times_is_the_same_motion(tmp_path):
     """The zeros before the motion left out."""
     scene = on_ground(block_of(0.2)).with_(motion=PulseMotion("half-sine", 3.0, 6.0, start=1.0), duration=2.5)
     motion = SampledMotion(0.01, scene.motion.acceleration(np.arange(301) * 0.01))
-    script = written(engine, scene.with_(motion=motion), tmp_path)
+    script = written(ABLE[0], scene.with_(motion=motion), tmp_path)
     run_alone(script, "--csv", tmp_path / "even.csv")
     record = script.with_name("script-motion.txt")
     head, *rows = record.read_text().splitlines()

@@ -25,7 +25,7 @@ from engines.leapfrog import failure_of, raw_trace_of, trace_of
 from engines.placement import placement
 from engines.readback import require
 from engines.step_size import GROWTH, HOLD, NEAR, SHARE, aligned, gap_rule, limits
-from engines.stepping import NoSolution, march, mean_loads, sampled_loads
+from engines.stepping import ImpactAware, NoSolution, march, mean_loads, sampled_loads, step_limits
 from engines.vibration import added_mass
 
 LINEAR = Bearings(law="linear", count=1, ka=2e6)
@@ -130,8 +130,10 @@ def test_what_a_contact_leaves_to_a_pivot_is_no_landing(grown):
     assert grown((APART, (1.1 * NEAR * G * LARGEST**2, fall))) < LARGEST
 
 
-def test_times_go_with_the_root_of_a_length(fresh):
+def test_times_go_with_the_root_of_a_length_and_the_smallest_step_with_the_square_of_the_largest(fresh):
     """Lengths by 4 and times by 2: no digit changes."""
+    usual, twice = (step_limits(TILTED, ImpactAware(largest_step=step)) for step in (2e-4, 4e-4))
+    assert twice == pytest.approx((2 * usual[0], 4 * usual[1]))
     large = gap_rule(2 * LARGEST, 2 * SMALLEST, G)
     for k in range(60):
         gap, closing = abs(math.cos(k)) ** 9 * 1e-3, math.sin(k)

@@ -3,6 +3,7 @@
 import pickle
 
 import pytest
+from engine_cases import ACCURATE
 
 from comparisons.measuring import agreement
 from comparisons.measuring.tolerances import TABLE
@@ -24,10 +25,13 @@ def shared(monkeypatch):
     monkeypatch.setattr(agreement, "traced", once)
 
 
-@pytest.mark.parametrize(
-    "row",
-    [pytest.param(row, id=row.name, marks=pytest.mark.xdist_group(f"{row.engine} {row.variant}")) for row in TABLE],
-)
+def marks(row):
+    """Main variants first; the others, and other engines by the hook, in the second command."""
+    group = pytest.mark.xdist_group(f"{row.engine} {row.variant}")
+    return [group] if ACCURATE.get(row.engine) == row.variant else [group, pytest.mark.slow]
+
+
+@pytest.mark.parametrize("row", [pytest.param(row, id=row.name, marks=marks(row)) for row in TABLE])
 def test_row_of_the_tolerance_table(row, shared):
     value = row.check(RUNS)
     # Much better than when the bound was set: then the bound says nothing any more.
