@@ -103,21 +103,7 @@ def test_another_alpha_in_the_engine_fails(monkeypatch):
 def test_eq_12_as_printed_fails(monkeypatch):
     """Unloading with the printed sign of x: the force jumps at a reversal."""
 
-    def printed_force(law, x):
-        a, double, d0 = 1 - law.constants.alpha, 2 * law.constants.x0, law.constants.d0
-        force, s, shift = np.zeros(len(x)), 0.0, 0.0
-        for i in range(1, len(x)):
-            way = math.copysign(1.0, x[i] - x[i - 1]) if x[i] != x[i - 1] else s
-            if way != s:
-                z = np.clip(force[i - 1] - law.kb * x[i - 1], -law.f0, law.f0)
-                inner = max(d0, d0 + a * (way * z - law.f0) / law.dk)
-                shift, s = x[i - 1] + way * (1 + double - inner ** (1 / a)), way
-            if s:
-                inner = 1 + x[i] - shift + double if s > 0 else 1 + x[i] + shift + double  # (9), (12) as printed
-                force[i] = law.kb * x[i] + law.dk * (inner**a - d0) / (s * a) + s * law.f0
-        return law.count * force
-
-    monkeypatch.setattr(agreement, "paper_force", printed_force)
+    monkeypatch.setattr(agreement, "branch", functools.partial(agreement.branch, misprinted=True))
     assert_caught([row("bearing force replayed", *DEFAULT, "isolated Caryatid, synthetic motion")])
 
 
