@@ -306,8 +306,7 @@ def test_fixed_steps_are_of_first_order(engine, slenderness, starts, seconds, fi
     assert least < coarse / fine < most  # `finer` but for the phase of the steps
 
 
-@every_ruled
-@pytest.mark.parametrize("base, fine", [(None, 2e-5), (212.0, 5e-6)])
+@pytest.mark.parametrize("engine, base, fine", [("pybullet", None, 2e-5), *((engine, 212.0, 5e-6) for engine in RULED)])
 def test_the_error_of_restitution_falls_along_the_ladder(engine, base, fine):
     """From the energies of swings, which count what flight loses."""
     engine, errors = get_engine(engine), []
