@@ -7,7 +7,7 @@ Each engine has one or more variants, of three kinds. ``defaults``: the engine a
 ``tuned``: only the engine moves a body or sets a velocity; the adapter chooses what a skilled user could choose in any
 scene. ``assisted``: the adapter sets a velocity, a position or a constraint by the model's event. No tuned variant uses
 the formula of the restitution: with another formula every trace stays the same, bit for bit
-(``tests/engines/test_kinds.py``).
+(``tests/engines/test_contract.py``).
 
 Examples
 --------

@@ -1,4 +1,4 @@
-"""exudyn, beside what every engine must fulfil: its corners, its two integrators, friction, how runs end."""
+"""exudyn, beside what every engine must fulfil: its corners, its two integrators, what is imposed, how runs end."""
 
 import gc
 import math
@@ -15,26 +15,24 @@ import pytest
 from bearing_laws import NAMES, bearings_of
 from engine_cases import scene
 
-exu = pytest.importorskip("exudyn")
+from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start, load_scene
+from analytic import simulate as exact
+from analytic.bearing import BearingLaw
+from analytic.caryatid import BEARINGS
+from analytic.rocking import restitution
+from engines import get_engine
+from engines.contract import Mismatch
+from engines.events import find_events
+from engines.ground_velocity import ground_velocity
+from engines.swings import find_swings
 
-from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start, load_scene  # noqa: E402
-from analytic import simulate as exact  # noqa: E402
-from analytic.bearing import BearingLaw  # noqa: E402
-from analytic.caryatid import BEARINGS  # noqa: E402
-from analytic.rocking import restitution  # noqa: E402
-from engines import get_engine  # noqa: E402
-from engines.contract import Mismatch  # noqa: E402
-from engines.events import find_events  # noqa: E402
-from engines.exudyn import corners, phases, stepping  # noqa: E402
-from engines.exudyn import scene as scenes  # noqa: E402
-from engines.exudyn.ground import Ground  # noqa: E402
-from engines.exudyn.model import Bearing  # noqa: E402
-from engines.ground_velocity import ground_velocity  # noqa: E402
-from engines.swings import find_swings  # noqa: E402
-
-INITIAL = exu.ConfigurationType.Initial
-simulate, VARIANTS = get_engine("exudyn").simulate, sorted(get_engine("exudyn").variants)
+VARIANTS = "compliant-corners", "native-contact"
 RELEASED = scene(0.2, duration=1.0, start=Start(tilt=0.12))
+JUMP = 1.25 * 9.81 * math.tan(0.2)  # of the ground's acceleration: it lifts a block of this slenderness
+
+
+def simulate(given, **options):
+    return get_engine("exudyn").simulate(given, **options)
 
 
 def trace_of(given):
@@ -44,23 +42,49 @@ def trace_of(given):
     return trace
 
 
+def ratio(impact):
+    return impact.rate_after / impact.rate_before
+
+
 def restitution_error(given, **settings):
     """Largest error of restitution; exudyn and the model have the same impacts."""
     response, reference = simulate(given, history=False, **settings), exact(given, history=False)
     assert response.outcome == reference.outcome == "rocks", response.failure
     assert len(response.impacts) == len(reference.impacts) > 0
-    return max(abs(impact.rate_after / impact.rate_before - restitution(given)) for impact in response.impacts)
+    return max(abs(ratio(impact) - restitution(given)) for impact in response.impacts)
+
+
+def assembled(given):
+    """(corner, contact tilt) of a scene with the usual settings."""
+    from engines.exudyn import corners
+
+    return corners.assemble(given, corners.scaled(given, corners.CompliantCorners()))
 
 
 # Corners.
 
 
-@pytest.mark.parametrize("share", [0.59, 0.73, 0.8])
-@pytest.mark.parametrize("base", [None, 3172.05])
+def test_settings_go_with_weight_size_and_gravity():
+    """A block scaled by lengths of 4, times of 4 (gravity of a quarter) and masses of 64: each number by its unit."""
+    from engines.exudyn.sizing import MEASURED, CompliantCorners, scaled
+
+    mass, radius, gravity = MEASURED
+    block, usual = Block(mass=64 * mass, radius=4 * radius, slenderness=0.2), CompliantCorners()
+    found = scaled(Scene(block=block, start=Start(tilt=0.1), gravity=gravity / 4), usual)
+    assert found.stiffness == pytest.approx(usual.stiffness * 64 / 4**2)
+    assert (found.rebound, found.slip) == pytest.approx((usual.rebound, usual.slip))
+    steps = usual.longest_step, usual.pivoting_step
+    assert (found.longest_step, found.pivoting_step) == pytest.approx((4 * steps[0], 4 * steps[1]))
+    heavy = scaled(Scene(block=block, start=Start(tilt=0.1), gravity=4 * gravity), usual)
+    assert (heavy.rebound, heavy.slip) == pytest.approx((4 * usual.rebound, 4 * usual.slip))
+    assert (found.tolerance, heavy.tolerance) == pytest.approx((usual.tolerance, usual.tolerance / 4))
+    assert (heavy.friction, heavy.sticking, heavy.damping) == (usual.friction, usual.sticking, usual.damping)
+
+
+@pytest.mark.parametrize("share, base", [(0.59, None), (0.8, 3172.05)])
 def test_no_impact_of_a_stocky_fast_block_is_lost(share, base):
     """It hops for 15 ms after an impact, so that the lift carried back lies microseconds after the landing."""
-    given = scene(0.45, base, 0.9, start=Start(tilt=0.45 * share))
-    assert restitution_error(given) < 2e-4
+    assert restitution_error(scene(0.45, base, 0.9, start=Start(tilt=0.45 * share))) < 2e-4
 
 
 def test_error_of_compliant_corners_goes_as_one_over_stiffness():
@@ -72,15 +96,16 @@ def test_error_of_compliant_corners_goes_as_one_over_stiffness():
 def test_a_block_left_alone_does_not_sink(base):
     """It starts on the corners as they carry it."""
     given = scene(0.2, base, 0.2)
-    _, contact_tilt = corners.assemble(given, corners.scaled(given, corners.CompliantCorners()))
-    sink, height = contact_tilt * given.block.half_width, trace_of(given).centre[:, 1]
+    sink, height = assembled(given)[1] * given.block.half_width, trace_of(given).centre[:, 1]
     assert height[0] == pytest.approx(-sink, rel=1e-9)
     assert np.ptp(height) < 0.1 * sink  # what the tolerance of the steps leaves
 
 
 @pytest.mark.parametrize("law", NAMES)
-@pytest.mark.parametrize("way", [-3e-2, -1e-4, 2e-5, 1e-3, 0.2])
+@pytest.mark.parametrize("way", [-3e-2, 2e-5, 0.2])
 def test_the_bearings_spring_meets_the_law_at_both_ends_of_a_step(law, way):
+    from engines.exudyn.model import Bearing
+
     rule = BearingLaw.of(bearings_of(law, count=4))
     bearing = Bearing(rule, 0.01)
     spring = bearing.spring(way)
@@ -93,33 +118,17 @@ def test_the_bearings_spring_meets_the_law_at_both_ends_of_a_step(law, way):
 @pytest.mark.parametrize("shape, frequency, bound", [("rectangular", 6.0, 1e-4), ("one-cosine", 5.0, 2e-3)])
 def test_a_jump_of_the_ground_lifts_a_block_without_a_kick(shape, frequency, bound, start):
     """Standing under its weight alone it was kicked by the corner that lifts: peaks off by .01 and .13."""
-    given = scene(0.2, duration=1.5, motion=PulseMotion(shape, 1.25 * 9.81 * math.tan(0.2), frequency, start))
+    given = scene(0.2, duration=1.5, motion=PulseMotion(shape, JUMP, frequency, start))
     assert simulate(given).peak_tilt == pytest.approx(exact(given).peak_tilt, rel=bound)
 
 
 def test_a_leaning_block_starts_as_it_is_given_whatever_the_ground_does():
-    pulse = PulseMotion("rectangular", 4.0, 6.0)
-    given = RELEASED.with_(motion=pulse)
+    given = RELEASED.with_(motion=PulseMotion("rectangular", 4.0, 6.0))
     assert simulate(given).impacts[0].time == pytest.approx(exact(given).impacts[0].time, abs=2e-4)
-    late = RELEASED.with_(motion=replace(pulse, start=3.0), start=Start(), duration=2.0)
-    assert simulate(late).outcome == "stands"
+    assert simulate(scene(0.2, motion=replace(given.motion, start=3.0))).outcome == "stands"
 
 
-def test_a_jump_under_the_weight_alone_errs_by_the_root_of_stiffness(monkeypatch):
-    """As one that lifts a block which was released and came to rest before."""
-    given = scene(0.2, duration=1.2, motion=PulseMotion("rectangular", 1.25 * 9.81 * math.tan(0.2), 6.0))
-
-    def ratio(*stiffnesses):
-        soft, stiff = (simulate(given, stiffness=k).peak_tilt - exact(given).peak_tilt for k in stiffnesses)
-        return soft / stiff
-
-    assert math.log10(ratio(2e9, 2e10)) == pytest.approx(1.0, abs=0.2)
-    standing = corners.deflected
-    monkeypatch.setattr(corners, "deflected", lambda scene, corner: standing(scene.with_(motion=None), corner))
-    assert math.log10(ratio(2e10, 2e12)) / 2 == pytest.approx(0.5, abs=0.1)
-
-
-@pytest.mark.parametrize("settle", [0.5, 1.0, 2.0])
+@pytest.mark.parametrize("settle", [0.5, 2.0])
 def test_e_does_not_hang_on_how_long_a_contact_is_left_to_settle(settle):
     """In that time a damper takes from the base what the impact gave it: e of the fourth was read off by .023."""
     given = Scene(
@@ -133,7 +142,7 @@ def test_e_does_not_hang_on_how_long_a_contact_is_left_to_settle(settle):
     trace = replace(trace, settle=settle * trace.settle)
     impacts = find_events(given, trace, find_swings(trace))[0][:4]
     assert 0.29 < min(abs(impact.rate_before) for impact in impacts)
-    assert max(abs(impact.rate_after / impact.rate_before - restitution(given)) for impact in impacts) < 1e-3
+    assert max(abs(ratio(impact) - restitution(given)) for impact in impacts) < 1e-3
 
 
 def test_an_impact_at_the_end_of_a_run_is_read_when_corners_have_settled():
@@ -141,9 +150,8 @@ def test_an_impact_at_the_end_of_a_run_is_read_when_corners_have_settled():
     block = Block(mass=0.0239329, radius=0.90504, slenderness=0.119293)
     given = Scene(block=block, start=Start(tilt=-0.0511423), duration=5.2527)
     response = simulate(given, history=False)
-    last = response.impacts[-1]
     assert len(response.impacts) == 8 and not response.differences
-    assert last.rate_after / last.rate_before == pytest.approx(restitution(given), abs=1e-3)
+    assert ratio(response.impacts[-1]) == pytest.approx(restitution(given), abs=1e-3)
 
 
 # Two integrators: explicit steps through impacts, implicit ones while contact stays as it is.
@@ -153,12 +161,12 @@ def test_an_impact_at_the_end_of_a_run_is_read_when_corners_have_settled():
 def test_the_implicit_steps_change_no_impact_and_save_most_steps(base, monkeypatch):
     given = scene(0.2, base, 2.0, start=Start(tilt=0.12))
     both = simulate(given)
-    monkeypatch.setattr(phases, "WORTHWHILE", math.inf)
+    monkeypatch.setattr("engines.exudyn.phases.WORTHWHILE", math.inf)
     explicit = simulate(given)
     assert both.steps < 0.5 * explicit.steps and len(both.impacts) >= 2
     for one, other in zip(both.impacts[:3], explicit.impacts[:3], strict=True):
         assert one.time == pytest.approx(other.time, abs=1e-5)
-        assert one.rate_after / one.rate_before == pytest.approx(other.rate_after / other.rate_before, abs=3e-6)
+        assert ratio(one) == pytest.approx(ratio(other), abs=3e-6)
 
 
 def test_the_error_of_time_falls_with_the_square_of_the_implicit_step():
@@ -172,6 +180,8 @@ def test_the_error_of_time_falls_with_the_square_of_the_implicit_step():
 
 
 def test_where_newton_finds_no_end_the_explicit_steps_go_on(monkeypatch):
+    from engines.exudyn import stepping
+
     usual = simulate(RELEASED).steps
 
     def hopeless(*asked, **settings):
@@ -179,9 +189,8 @@ def test_where_newton_finds_no_end_the_explicit_steps_go_on(monkeypatch):
         made.timeIntegration.newton.relativeTolerance = 1e-300
         return made
 
-    monkeypatch.setattr(phases, "solver_settings", hopeless)
-    monkeypatch.setattr(phases, "RESIDUAL", 1e-30)
-    monkeypatch.setattr(phases, "ROUNDING", 0.0)
+    for name, value in (("solver_settings", hopeless), ("RESIDUAL", 1e-30), ("ROUNDING", 0.0)):
+        monkeypatch.setattr(f"engines.exudyn.phases.{name}", value)
     response = simulate(RELEASED)
     assert response.failure is None and response.steps > 2 * usual
     assert response.impacts[0].time == pytest.approx(exact(RELEASED).impacts[0].time, abs=2e-5)
@@ -190,17 +199,15 @@ def test_where_newton_finds_no_end_the_explicit_steps_go_on(monkeypatch):
 def test_small_swings_on_the_stiff_corners_they_ask_for_are_stepped_implicitly():
     """Newton's differences must stay within a corner's depth, here 5e-10 m, and its end above rounding errors."""
     given = scene(0.2, duration=3.0, motion=PulseMotion("one-sine", 1.1 * 9.81 * math.tan(0.2), 20.0))
-    response, expected = simulate(given, stiffness=5e13), exact(given)
-    assert response.peak_tilt == pytest.approx(expected.peak_tilt, rel=0.02)
-    assert response.steps < 40_000
+    response = simulate(given, stiffness=5e13)
+    assert response.peak_tilt == pytest.approx(exact(given).peak_tilt, rel=0.02) and response.steps < 40_000
 
 
 # Coulomb's law.
 
 
 @pytest.mark.parametrize(
-    "friction, slenderness, push, duration",
-    [(0.2, 0.45, 0.3, 0.05), (0.1, 0.3, 0.25, 0.05), (0.3, 0.45, 0.4, 0.1), (0.31, 0.45, 0.3, 0.1)],
+    "friction, slenderness, push, duration", [(0.2, 0.45, 0.3, 0.05), (0.3, 0.45, 0.4, 0.1), (0.31, 0.45, 0.3, 0.1)]
 )
 def test_a_block_that_slid_stays_where_it_came_to_rest(friction, slenderness, push, duration):
     """It was drawn back to where it had stood; the slip of a push of acceleration a for T: v T/2 + v^2/(2 mu g)."""
@@ -216,13 +223,12 @@ def test_an_impact_that_slips_has_its_restitution():
     """Held viscously up to .1 m/s, as the corners were, e is off by .014."""
     mu = 0.9 * 0.381  # of the friction below which the impact of this block slips
     given = scene(0.5, friction=mu, duration=0.6, start=Start(tilt=0.15))
-    fine, usual, coarse = (simulate(given, slip=slip).impacts[0] for slip in (1e-3, 1e-2, 1e-1))
-    e = [impact.rate_after / impact.rate_before for impact in (fine, usual, coarse)]
-    assert abs(e[1] - e[0]) < 2e-3 < 1e-2 < abs(e[2] - e[0])
+    fine, usual, coarse = (ratio(simulate(given, slip=slip).impacts[0]) for slip in (1e-3, 1e-2, 1e-1))
+    assert abs(usual - fine) < 2e-3 < 1e-2 < abs(coarse - fine)
 
 
 def test_a_block_that_friction_holds_has_no_anchor():
-    assert corners.assemble(RELEASED, corners.scaled(RELEASED, corners.CompliantCorners()))[0].anchor is None
+    assert assembled(RELEASED)[0].anchor is None
 
 
 # What the adapter imposes.
@@ -230,13 +236,16 @@ def test_a_block_that_friction_holds_has_no_anchor():
 
 def run_seen(variant):
     """A run on bearings that gives a restitution, as exudyn got it: its model, solvers, starts, loads and springs."""
-    given = load_scene("caryatid-isolated").with_(duration=3.0)
-    given = given.with_(
-        block={"slenderness": 0.12, "restitution": 0.93 * restitution(given)} if variant != "native-contact" else {},
-        motion=PulseMotion("one-sine", 3.0, 4.0, start=0.5),
-    )
+    import exudyn as exu
+
+    from engines.exudyn import phases, scene, stepping
+    from engines.exudyn.ground import Ground
+
+    given = load_scene("caryatid-isolated").with_(duration=3.0, motion=PulseMotion("one-sine", 3.0, 4.0, start=0.5))
+    if variant != "native-contact":
+        given = given.with_(block={"slenderness": 0.12, "restitution": 0.93 * restitution(given)})
     found = SimpleNamespace(scene=given, solvers=set(), starts=[], loads=[], springs=set())
-    made, prepared, solved = scenes.Model, Ground.prepare, stepping.solve
+    made, prepared, solved = scene.Model, Ground.prepare, stepping.solve
 
     def model(*asked):
         found.model = made(*asked)
@@ -249,12 +258,13 @@ def run_seen(variant):
         return done
 
     def solve(solver, mbs, settings):
-        found.solvers.add(settings.timeIntegration.solverType)
-        found.starts.append((settings.timeIntegration.startTime, mbs.systemData.GetODE2Coordinates(INITIAL)))
+        found.solvers.add(settings.timeIntegration.solverType.name)
+        initial = mbs.systemData.GetODE2Coordinates(exu.ConfigurationType.Initial)
+        found.starts.append((settings.timeIntegration.startTime, initial))
         return solved(solver, mbs, settings)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(scenes, "Model", model)
+        patch.setattr(scene, "Model", model)
         patch.setattr(Ground, "prepare", prepare)
         patch.setattr(phases, "solve", solve)
         simulate(given, variant=variant)
@@ -283,7 +293,7 @@ IMPOSED = {
         PLANE,
         (
             "steps: explicit through impacts, implicit between",
-            lambda seen: seen.solvers == {exu.DynamicSolverType.DOPRI5, exu.DynamicSolverType.GeneralizedAlpha},
+            lambda seen: seen.solvers == {"DOPRI5", "GeneralizedAlpha"},
         ),
         (
             "start: with the motion, on corners deflected",
@@ -310,18 +320,16 @@ def test_what_is_imposed_is_said_and_done(variant):
 # How runs end.
 
 
-def not_finite(self, displacement, velocity, offset, force=corners.Corner.force):
-    x, y, z = force(self, displacement, velocity, offset)
-    return [x, y * corners.Real(np.nan), z]
+@pytest.mark.parametrize("factor, words", [(math.nan, "finite"), (0.0, "sank")])
+def test_a_corner_that_does_not_carry_surfaces(monkeypatch, factor, words):
+    from engines.exudyn.corners import Corner, Real
 
+    force = Corner.force
 
-def nothing(self, displacement, velocity, offset):
-    return [corners.Real(0.0)] * 3
+    def wrong(self, *moved):
+        return [part * Real(factor) for part in force(self, *moved)]
 
-
-@pytest.mark.parametrize("force, words", [(not_finite, "finite"), (nothing, "sank")])
-def test_a_corner_that_does_not_carry_surfaces(monkeypatch, force, words):
-    monkeypatch.setattr(corners.Corner, "force", force)
+    monkeypatch.setattr(Corner, "force", wrong)
     response = simulate(RELEASED)
     assert response.outcome == "failed" and words in response.failure.reason
 
@@ -333,6 +341,8 @@ def test_newton_failure_surfaces_with_the_engines_message():
 
 
 def test_a_mismatch_with_the_engine_is_refused(monkeypatch):
+    from engines.exudyn import stepping
+
     held = stepping.read_back
     monkeypatch.setattr(stepping, "read_back", lambda model: held(model) | {"block.mass": (6344.1, 3172.05)})
     with pytest.raises(Mismatch, match="block.mass is 6344.1 in exudyn, 3172.05 in the scene"):
@@ -340,7 +350,7 @@ def test_a_mismatch_with_the_engine_is_refused(monkeypatch):
 
 
 def test_run_of_too_many_steps_ends_with_its_evidence(monkeypatch):
-    monkeypatch.setattr(stepping, "STEPS_PER_PERIOD", 200)
+    monkeypatch.setattr("engines.exudyn.stepping.STEPS_PER_PERIOD", 200)
     response = simulate(RELEASED)
     assert response.outcome == "failed" and "too many steps" in response.failure.reason
     assert "of 1 s" in response.failure.message and response.steps <= 200 * 3
@@ -365,6 +375,7 @@ def test_interrupt_ends_the_run_within_a_second_and_is_no_failure(variant):
         signal.signal(signal.SIGINT, outside)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("variant, settings", [("native-contact", {"step": 1e-4}), ("compliant-corners", {})])
 def test_memory_does_not_grow_with_the_number_of_runs(variant, settings):
     """exudyn keeps a system alive that has a user function: its steps (400 bytes each) and the ground's segments."""

@@ -14,8 +14,7 @@ SCENE = Scene(block=Block(mass=1000.0, radius=1.0, slenderness=0.2), start=Start
 
 
 def hang():
-    while True:
-        time.sleep(0.01)
+    time.sleep(60.0)
 
 
 def kill():
@@ -52,7 +51,6 @@ def wrong_setting():
 @pytest.mark.parametrize(
     "run, arguments, limit, evidence",
     [
-        (hang, (), 4.0, "4 s"),
         (hang, (), 1.0, "in hang"),  # where it hung
         (kill, (), 30.0, "SIGKILL"),
         (speak, (), 30.0, "assertion failed in contact"),

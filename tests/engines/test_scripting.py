@@ -1,4 +1,4 @@
-"""A scene's script is exact, short and alone, and holds what the scene needs."""
+"""A scene's script is exact, short and alone, and holds what the scene needs; mistakes are data that fit it."""
 
 import ast
 import math
@@ -18,8 +18,11 @@ from analytic.errors import SceneError, SettingError
 from analytic.motion import paired
 from analytic.rocking import RockingModel
 from analytic.synthetic import synthetic_motion
+from comparisons.measuring.scripts import with_mistake
+from comparisons.studies.mistakes.study import scenes
 from engines import ENGINES, get_engine
 from engines.couple import unkept_friction
+from engines.mistakes import GROUPS, NO_MATTER, Mistake
 from engines.scripting import write_script
 
 PROJECT = Path(__file__).parents[2]
@@ -39,6 +42,10 @@ def block_of(slenderness, radius=CARYATID, **parts):
 
 def on_ground(scene):
     return scene.with_(base=None, bearings=None)
+
+
+def isolated(scene):
+    return scene
 
 
 def released(scene, share=0.6):
@@ -66,11 +73,10 @@ SHAPES = ("one-sine", "one-cosine", "half-sine", "rectangular", "ricker")
 RECORD = synthetic_motion("duzce-like", 620)
 FEW = {
     "rigid, released": released(on_ground(block_of(0.2))),
-    "rigid, pulse": pulse(on_ground(block_of(0.35)), size=1.2, speed=3.0),
     "isolated, released": released(block_of(0.3, 0.3)),
-    "isolated, record": block_of(0.15),
     "rigid, given": released(on_ground(block_of(0.2).with_(block={"restitution": 0.85}))),
 }
+SOME = {"rigid, pulse": pulse(on_ground(block_of(0.35)), size=1.2, speed=3.0), "isolated, record": block_of(0.15)}
 OTHERS = {
     "rigid, record, vertical": on_ground(block_of(0.35)).with_(
         motion=paired(RECORD, synthetic_motion("duzce-like", 3).scaled(0.4))
@@ -92,20 +98,17 @@ OTHERS = {
     **{f"rigid, {shape}": pulse(on_ground(block_of(0.2)), shape, 1.25, 3.0) for shape in SHAPES},
     **{f"isolated, {shape}, vertical": upward(pulse(block_of(0.2), shape, 1.2)) for shape in SHAPES},
 }
-GRID = {  # 24 scenes
-    **{
-        f"rigid, {how.__name__}, {slenderness}, {radius}": how(on_ground(block_of(slenderness, radius)))
-        for how in (released, pulse)
-        for slenderness, radius in ((0.1, 0.1), (0.1, 10.0), (0.2, CARYATID), (0.35, 0.1), (0.5, 10.0))
-    },
-    **{
-        f"isolated, {how.__name__}, {slenderness}, {radius}": how(block_of(slenderness, radius))
-        for how in (released, pulse)
-        for slenderness, radius in ((0.1, 0.1), (0.2, 10.0), (0.35, CARYATID), (0.5, CARYATID))
-    },
-    **{f"rigid, record, {slenderness}": on_ground(block_of(slenderness)) for slenderness in (0.2, 0.35)},
-    **{f"isolated, record, {slenderness}": block_of(slenderness) for slenderness in (0.1, 0.2, 0.35)},
-    "isolated, given, 0.2": released(block_of(0.2).with_(block={"restitution": 0.75})),
+# the ends of the range
+GRID = {
+    f"{base.__name__}, {how.__name__}, {slenderness}, {radius}": how(base(block_of(slenderness, radius)))
+    for base, how, slenderness, radius in (
+        (on_ground, released, 0.1, 10.0),
+        (on_ground, pulse, 0.1, 0.1),
+        (on_ground, pulse, 0.5, 10.0),
+        (isolated, released, 0.1, 0.1),
+        (isolated, pulse, 0.2, 10.0),
+        (isolated, pulse, 0.5, CARYATID),
+    )
 }
 SLIDES_ON_BEARINGS = pulse(block_of(0.2), size=3.0, speed=2.0).with_(friction=0.25)
 every_engine = pytest.mark.parametrize("engine", ABLE)
@@ -155,20 +158,13 @@ def check_print(scene, found):
 
 
 @every_engine
-@pytest.mark.parametrize("name", FEW)
+@pytest.mark.parametrize("name", [*FEW, *(pytest.param(name, marks=pytest.mark.long) for name in GRID | OTHERS)])
 def test_a_script_is_exact(engine, name, tmp_path):
-    check(engine, FEW[name], tmp_path)
-
-
-@pytest.mark.long
-@every_engine
-@pytest.mark.parametrize("name", GRID | OTHERS)
-def test_scripts_are_exact(engine, name, tmp_path):
-    check(engine, (GRID | OTHERS)[name], tmp_path)
+    check(engine, (FEW | SOME | GRID | OTHERS)[name], tmp_path)
 
 
 @every_engine
-@pytest.mark.parametrize("scene", [SAVED, SLIDES, SLIDES_ON_BEARINGS], ids=["rocks", "slides", "on bearings"])
+@pytest.mark.parametrize("scene", [SAVED, SLIDES_ON_BEARINGS], ids=["rocks", "on bearings"])
 def test_a_script_slides_as_the_model_does_and_says_how_far(engine, scene, tmp_path):
     found = ran(engine, scene, tmp_path)
     model, slid = found.model, found.model.sliding
@@ -182,48 +178,28 @@ def test_a_script_slides_as_the_model_does_and_says_how_far(engine, scene, tmp_p
         assert found.seen.peak_tilt == pytest.approx(model.peak_tilt, abs=2e-4 * scene.block.slenderness)
 
 
-def test_no_script_of_a_scene_whose_slip_is_not_determined():
-    scene = released(on_ground(block_of(0.28, friction=0.15)))
-    with pytest.raises(SceneError, match="friction = 0.15: below .*give .* or more, or let the block start at rest"):
-        write_script(ENGINES[ABLE[0]], scene)
-
-
 @every_engine
-def test_scripts_are_formatted_and_short(engine, tmp_path):
-    scenes = FEW | OTHERS | {"long name": ISOLATED.with_(name='a "long" name \\' * 20, duration=9.0)}
-    for number, (name, scene) in enumerate(scenes.items()):
-        text = written(engine, scene, tmp_path, f"script{number}").read_text()
-        motion, block = scene.motion, scene.block
-        most = 160 if scene.base else 110 if motion is None else 115 if isinstance(motion, PulseMotion) else 120
-        further = (block.restitution is not None) + (scene.friction is not None) + bool(motion and motion.vertical)
-        further += bool(motion and motion.jumps and not scene.base)  # exudyn's corners start as the jump needs them
-        assert code_lines(text) <= most + 8 * further, name
+def test_scripts_are_formatted_short_and_hold_only_what_their_scenes_need(engine, tmp_path):
+    tried = FEW | SOME | OTHERS | {"long name": ISOLATED.with_(name='a "long" name \\' * 20, duration=9.0)}
+    texts = {
+        name: written(engine, scene, tmp_path, f"script{k}").read_text()
+        for k, (name, scene) in enumerate(tried.items())
+    }
+    for name, scene in tried.items():
+        most = 160 if scene.base else 120
+        further = (scene.block.restitution is not None) + (scene.friction is not None)
+        further += bool(scene.motion and (scene.motion.vertical or scene.motion.jumps))
+        assert code_lines(texts[name]) <= most + 8 * further, name
     ruff = [sys.executable, "-m", "ruff"]
     configured = ["--no-cache", "--config", str(PROJECT / "pyproject.toml"), str(tmp_path)]
     for command in (["check"], ["format", "--diff"]):
         done = subprocess.run([*ruff, *command, *configured], capture_output=True, text=True)
         assert done.returncode == 0, done.stdout + done.stderr
-
-
-@every_engine
-def test_a_script_holds_only_what_its_scene_needs(engine, tmp_path):
-    plain = written(engine, FEW["rigid, released"], tmp_path).read_text()
-    for word in (
-        "def bearing_force",
-        "hysteretic",
-        "mb",
-        "share",
-        "ground_velocity",
-        "vertical_velocity",
-        "given",
-        "couple",
-        "loadtxt",
-    ):
-        assert not re.search(rf"\b{word}\b", plain), word
-    whole = written(engine, OTHERS["isolated, given, record"], tmp_path).read_text()
-    for word in ("hysteretic", "mb", "ground_velocity", "given", "loadtxt"):
-        assert word in whole
-    assert "hysteretic" not in written(engine, OTHERS["linear, damped"], tmp_path).read_text()
+    whole = ("hysteretic", "mb", "ground_velocity", "given", "loadtxt")
+    for word in (*whole, "def bearing_force", "share", "vertical_velocity", "couple"):
+        assert not re.search(rf"\b{word}\b", texts["rigid, released"]), word
+    assert all(word in texts["isolated, given, record"] for word in whole)
+    assert "hysteretic" not in texts["linear, damped"]
 
 
 @every_engine
@@ -259,23 +235,16 @@ def test_a_script_draws_its_history(engine, tmp_path):
 
 
 @every_engine
-@pytest.mark.parametrize("name", ["rocks", "slides", "on bearings", "beyond its balance", "quiet", "decided"])
+@pytest.mark.parametrize("name", ["slides", "on bearings", "beyond its balance", "decided"])
 def test_a_script_ends_with_the_run_and_says_as_it_does_that_nothing_is_decided(engine, name, tmp_path):
     scene = {
-        "rocks": pulse(on_ground(block_of(0.35)), size=1.2, speed=3.0).with_(duration=0.3),
         "slides": SLIDES.with_(duration=0.4),
         "on bearings": SLIDES_ON_BEARINGS.with_(duration=0.4),
         "beyond its balance": on_ground(block_of(0.2)).with_(motion=None, start={"tilt": 0.22}, duration=0.1),
-        "quiet": pulse(on_ground(block_of(0.35)), size=0.1).with_(duration=0.1),
         "decided": released(on_ground(block_of(0.2))).with_(duration=0.3),
     }[name]
-    found = ran(engine, scene, tmp_path)
-    run, last = (
-        get_engine(engine).simulate(scene),
-        np.loadtxt(tmp_path / "history.csv", delimiter=",", skiprows=1)[-1, 0],
-    )
-    assert last == pytest.approx(scene.duration, abs=1e-9)
-    assert run.end.time == pytest.approx(last, abs=1e-9)
+    found, run = ran(engine, scene, tmp_path), get_engine(engine).simulate(scene)
+    assert (found.trace.time[-1], run.end.time) == pytest.approx((scene.duration, found.trace.time[-1]), abs=1e-9)
     assert run.decided == (name == "decided")
     assert re.search(rf"^{re.escape(run.outcome_text)}[;,]", found.said, re.MULTILINE)
 
@@ -286,38 +255,41 @@ def test_a_script_is_written_where_its_engine_is_absent(engine, monkeypatch):
     assert f"import {ENGINES[engine].package}" in "".join(write_script(ENGINES[engine], RIGID).values())
 
 
-@every_engine
-def test_what_is_not_to_be_had_is_said(engine):
-    scene = released(block_of(0.2))
-    with pytest.raises(SceneError, match=r"block.restitution = 0.9: above what a couple .* 0.817\d+ of eq. \(7\)"):
-        write_script(ENGINES[engine], scene.with_(block={"restitution": 0.9}))
+@pytest.mark.parametrize(
+    "engine, scene, error, words",
+    [
+        *(
+            (
+                engine,
+                released(block_of(0.2).with_(block={"restitution": 0.9})),
+                SceneError,
+                r"block.restitution = 0.9: above what a couple .* 0.817\d+ of eq. \(7\)",
+            )
+            for engine in ABLE
+        ),
+        (
+            ABLE[0],
+            released(on_ground(block_of(0.28, friction=0.15))),
+            SceneError,
+            "friction = 0.15: below .*give .* or more, or let the block start at rest",
+        ),
+        ("mujoco", RIGID, SettingError, "mujoco has no script"),
+    ],
+)
+def test_what_is_not_to_be_had_is_said(engine, scene, error, words):
+    with pytest.raises(error, match=words):
+        write_script(ENGINES[engine], scene)
 
 
-def test_an_engine_without_a_template_has_no_script():
-    with pytest.raises(SettingError, match="mujoco has no script"):
-        write_script(ENGINES["mujoco"], RIGID)
-
-
-def test_a_record_is_named_as_its_script_is(tmp_path):
+def test_a_record_stands_beside_its_script_and_is_named_as_it_is(tmp_path):
     name = 'own "record" ö'
     compile(script := written(ABLE[0], ISOLATED, tmp_path, name).read_text(), name, "exec")
     assert r'with_name("own \"record\" ö-motion.txt")' in script
-
-
-def test_a_record_stands_beside_its_script():
     files = write_script(ENGINES[ABLE[0]], ISOLATED.with_(name="a/b c"))
     assert list(files) == [f"a-b-c-{ABLE[0]}.py", f"a-b-c-{ABLE[0]}-motion.txt"]
     rows = np.loadtxt(files[f"a-b-c-{ABLE[0]}-motion.txt"].splitlines())
     assert np.array_equal(rows[:, 1], ISOLATED.motion.samples)
     assert rows[:, 0] == pytest.approx(np.arange(len(rows)) * ISOLATED.motion.dt)
-
-
-@every_engine
-def test_a_restitution_of_equation_7_needs_no_couple(engine):
-    scene = released(on_ground(block_of(0.2)))
-    plain = write_script(ENGINES[engine], scene, "script")
-    natural = RockingModel.of(scene).restitution
-    assert write_script(ENGINES[engine], scene.with_(block={"restitution": natural}), "script") == plain
 
 
 @every_engine
@@ -327,7 +299,10 @@ def test_a_script_keeps_the_friction_of_its_scene_or_says_why_not(engine, tmp_pa
     text = written(engine, scene, tmp_path).read_text()
     words = "The scene's friction, 0.6, is not kept, and the block does not slide: below 4.93 it slips under the couple"
     assert words in " ".join(ast.get_docstring(ast.parse(text)).split()) and words in unkept_friction(scene)
-    natural = RockingModel.of(scene.with_(block={"restitution": None})).restitution
+    plain = scene.with_(block={"restitution": None})
+    natural = RockingModel.of(plain).restitution
+    scripts = [write_script(ENGINES[engine], one, "a") for one in (plain, plain.with_(block={"restitution": natural}))]
+    assert scripts[0] == scripts[1]  # eq. (7) needs no couple
     for kept in (scene.with_(friction=6.0), *(scene.with_(block={"restitution": e}) for e in (natural, None))):
         text = written(engine, kept, tmp_path).read_text()
         assert f"\nmu = {kept.friction}  #" in text and "not kept" not in text and unkept_friction(kept) == ""
@@ -341,22 +316,20 @@ def test_a_script_without_a_friction_has_as_much_as_a_couple_needs(tmp_path):
         assert float(said[1]) == pytest.approx(mu, rel=1e-5) and unkept_friction(scene) == ""
 
 
-@every_engine
 @pytest.mark.parametrize("damage", [("0.005 ", "1e9 "), ("0.01 ", "nan "), ("0.015 ", "0.015 nan #")])
-def test_a_damaged_record_stops_a_script(engine, damage, tmp_path):
-    script = written(engine, FEW["isolated, record"], tmp_path)
+def test_a_damaged_record_stops_a_script(damage, tmp_path):
+    script = written(ABLE[0], SOME["isolated, record"], tmp_path)
     record = script.with_name("script-motion.txt")
     record.write_text(record.read_text().replace(*(f"\n{text}" for text in damage), 1))
     with pytest.raises(AssertionError, match="the record needs numbers, and times that increase"):
         run_alone(script)
 
 
-@every_engine
-def test_a_record_of_uneven_times_is_the_same_motion(engine, tmp_path):
+def test_a_record_of_uneven_times_is_the_same_motion(tmp_path):
     """The zeros before the motion left out."""
     scene = on_ground(block_of(0.2)).with_(motion=PulseMotion("half-sine", 3.0, 6.0, start=1.0), duration=2.5)
     motion = SampledMotion(0.01, scene.motion.acceleration(np.arange(301) * 0.01))
-    script = written(engine, scene.with_(motion=motion), tmp_path)
+    script = written(ABLE[0], scene.with_(motion=motion), tmp_path)
     run_alone(script, "--csv", tmp_path / "even.csv")
     record = script.with_name("script-motion.txt")
     head, *rows = record.read_text().splitlines()
@@ -365,3 +338,45 @@ def test_a_record_of_uneven_times_is_the_same_motion(engine, tmp_path):
     run_alone(script, "--csv", tmp_path / "uneven.csv")
     one, other = (np.loadtxt(tmp_path / name, delimiter=",", skiprows=1) for name in ("even.csv", "uneven.csv"))
     assert abs(other[:, 1]).max() == pytest.approx(abs(one[:, 1]).max(), rel=1e-9)
+
+
+# Mistakes.
+
+
+@pytest.mark.slow
+@every_engine
+def test_every_mistake_can_be_made_in_every_scene_that_has_what_it_concerns(engine):
+    engine = ENGINES[engine]
+    tried = [(scene, with_mistake(engine, scene, None)) for scene in scenes().values()]
+    known = engine.known_mistakes().values()
+    assert len({tuple(one.replacements.items()) for one in known}) == len(known)
+    assert {one.group for one in known} == set(GROUPS)
+    assert all(len(one.key) <= 20 and one.done[0].isupper() or one.done[0].isdigit() for one in known)
+    for one in known:
+        fitting = [(scene, plain) for scene, plain in tried if one.fits(scene)]
+        assert fitting, one.key
+        for scene, plain in fitting:
+            files = with_mistake(engine, scene, one)
+            assert files.keys() == plain.keys() and files != plain, (scene.name, one.key)
+            ast.parse(files["script.py"])
+    assert ENGINES["mujoco"].known_mistakes() == {}
+
+
+def test_a_text_that_is_not_there_once_or_an_unknown_group_is_named_with_the_remedy():
+    mistake = Mistake("twice", "Something", "body", {"a = 1": "a = 2"})
+    assert mistake.made("a = 1\n") == "a = 2\n"
+    for script, count in (("b = 1\n", 0), ("a = 1\na = 1\n", 2)):
+        words = rf"^mistake twice: its text 'a = 1' occurs {count} times .* take the text from the engine's template"
+        with pytest.raises(ValueError, match=words):
+            mistake.made(script)
+    with pytest.raises(ValueError, match="group 'colour'; choose one of body, "):
+        Mistake("odd", "Something", "colour", {})
+
+
+@pytest.mark.parametrize(
+    "needs, fitting", [("", "1111"), ("bearings", "0101"), ("record", "0011"), ("base motion", "0001")]
+)
+def test_a_mistake_fits_scenes_that_have_what_it_concerns(needs, fitting):
+    mistake = Mistake("one", "Something", NO_MATTER, {}, needs)
+    names = ("free-rocking-rigid", "free-rocking-isolated", "caryatid-rigid", "caryatid-isolated")
+    assert "".join("01"[mistake.fits(load_scene(name))] for name in names) == fitting

@@ -1,15 +1,20 @@
 """PyBullet, MuJoCo, pymunk, DART and Drake, beside what every engine must fulfil: what is particular to each."""
 
+import bisect
 import importlib
 import math
+from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
 import pytest
-from engine_cases import impact_errors, scene
+from engine_cases import CASES, impact_errors, scene
 
-from analytic import Start
-from engines import get_engine
+from analytic import Bearings, PulseMotion, Start
+from analytic.caryatid import BEARINGS
+from engines import get_engine, stepping
+from engines.ground_velocity import ground_velocity
+from engines.momentum import IMPULSE_LIMIT, impulse_error
 
 ROCKING = scene(0.2, 212.0, start=Start(tilt=0.1))
 
@@ -26,10 +31,6 @@ def without_mass(change, body, link, mass=None, localInertiaDiagonal=None, **res
     change(body, link, **rest)
 
 
-def missing_the_link(change, body, link, **values):
-    change(body, -1, **values)
-
-
 def other_text(asked, given):
     def read(right, text):
         assert asked in text
@@ -44,19 +45,11 @@ def forgetful_space(name):
     return lambda right: type("Forgetful", (right,), stuck)()
 
 
-def lighter(right, mass, *rest):
-    return right(0.9 * mass, *rest)
-
-
-def smoother(right, body, size, place, friction):
-    right(body, size, place, 0.9)
-
-
 @pytest.mark.parametrize(
     "engine, call, wrong, words",
     [
         ("pybullet", "pybullet.changeDynamics", without_mass, "block: inertia is"),
-        ("pybullet", "pybullet.changeDynamics", missing_the_link, "friction"),
+        ("pybullet", "pybullet.changeDynamics", lambda change, body, link, **one: change(body, -1, **one), "friction"),
         ("mujoco", "mujoco.MjModel.from_xml_string", other_text('mass="3172.05"', 'mass="3000.0"'), "3000.0], not"),
         ("mujoco", "mujoco.MjModel.from_xml_string", other_text('cone="elliptic"', ""), "cone is 0"),
         ("mujoco", "mujoco.MjModel.from_xml_string", other_text('autoreset="disable"', ""), "disabled parts is 0"),
@@ -69,10 +62,14 @@ def smoother(right, body, size, place, friction):
         ),
         ("mujoco", "mujoco.MjModel.from_xml_string", other_text("<option", "<optoin"), "optoin"),
         ("pymunk", "pymunk.Space", forgetful_space("damping"), "damping is 0.9"),
-        ("pymunk", "pymunk.Space", forgetful_space("collision_slop"), "slop is 0.9"),
         ("pymunk", "pymunk.Space", forgetful_space("collision_bias"), "bias is 0.9"),
-        ("dart", "dartpy.dynamics.Inertia", lighter, "block: mass is 2854.8"),
-        ("dart", "_touch", smoother, "friction is 0.9, not 5"),
+        (
+            "dart",
+            "dartpy.dynamics.Inertia",
+            lambda right, mass, *rest: right(0.9 * mass, *rest),
+            "block: mass is 2854.8",
+        ),
+        ("dart", "_touch", lambda right, *rest: right(*rest[:-1], 0.9), "friction is 0.9, not 5"),
     ],
 )
 def test_what_an_engine_does_not_hold_as_asked_is_refused(monkeypatch, engine, call, wrong, words):
@@ -173,6 +170,64 @@ def test_first_script_that_reaches_bullets_velocity_limit_fails():
     assert response.outcome == "failed" and "velocit" in response.failure.reason
 
 
+# The bearings' force that an engine applies: see `test_observe`.
+
+DRIVEN = scene(0.15, 212.0, 2.5, bearings=BEARINGS, motion=PulseMotion("one-sine", 3.0, 8.0))
+
+
+def mutate_exudyn(monkeypatch, gain, delay):
+    """The spring of the bearings is `gain` times as stiff, and acts from where the base was `delay` [s] ago."""
+    from engines.exudyn import model
+
+    spring = model.Bearing.spring
+
+    def changed(self, ahead):
+        one = spring(self, ahead)
+        k = gain * one["stiffness"][0]
+        late = {} if self.connector is None else {"damping": [self.law.count * self.law.damping - k * delay, 0.0, 0.0]}
+        return {**one, "stiffness": [k, 0.0, 0.0], **late}  # at x - delay v
+
+    monkeypatch.setattr(model.Bearing, "spring", changed)
+
+
+def mutate_leapfrog(monkeypatch, gain, delay):
+    """The engine is given another force than the rows say: `gain` times as much, `delay` [s] later."""
+    mean_loads, times, forces = stepping.mean_loads, [], []
+
+    def changed(*given):
+        loads = mean_loads(*given)
+
+        def other(t, h, before, v, force):
+            times.append(t)
+            forces.append(force)
+            late = forces[max(bisect.bisect_right(times, t - delay) - 1, 0)]
+            return loads(t, h, before, v, gain * late)
+
+        return other
+
+    monkeypatch.setattr(stepping, "mean_loads", changed)
+
+
+def error_in(engine, monkeypatch, gain, delay):
+    """(response, error of the impulse) of the engine's default, with a mutated force."""
+    mutate = mutate_exudyn if engine == "exudyn" else mutate_leapfrog
+    mutate(monkeypatch, gain, delay)
+    response, trace = get_engine(engine).traced(DRIVEN)
+    return response, impulse_error(DRIVEN, trace)
+
+
+@pytest.mark.parametrize("engine", ["exudyn", "pybullet", "mujoco", "pymunk", "dart"])
+@pytest.mark.parametrize("gain, delay", [(2.0, 0.0), (1.0, 0.0), (0.0, 0.0), (1.0, 1e-3), (1.01, 0.0)])
+def test_a_force_inside_an_engine_that_is_lost_late_or_off_is_measured_and_a_large_error_a_failure(
+    monkeypatch, engine, gain, delay
+):
+    response, error = error_in(engine, monkeypatch, gain, delay)
+    wrong = abs(gain - 1) > 0.1
+    assert response.outcome == ("failed" if wrong else "rocks")  # by its energy, too, where the force is too small
+    assert (error > IMPULSE_LIMIT) == wrong and (error > 4e-4) == ((gain, delay) != (1, 0))  # a clean run shows 4e-5
+    assert delay or error == pytest.approx(abs(gain - 1), rel=0.02, abs=4e-5)
+
+
 def test_where_bodies_will_be_is_where_chipmunk_then_moves_them(monkeypatch):
     """The adapter reads a step ahead: what it said is, to round-off, what the next call begins with."""
     given = scene(0.2, 212.0, 1.0, start=Start(tilt=0.15, tilt_rate=0.1, base_displacement=0.01, base_velocity=0.02))
@@ -192,3 +247,98 @@ def test_where_bodies_will_be_is_where_chipmunk_then_moves_them(monkeypatch):
         before = length
     np.testing.assert_allclose(moved[1:], told[:-1], rtol=0, atol=1e-12)
     np.testing.assert_allclose(moved[0][::2], (0.15, 0.01), rtol=0, atol=1e-12)
+
+
+# What a record says that its adapter imposes is what it does, and all of it.
+
+BEGIN = 0.02037
+MOTION = PulseMotion("rectangular", 2.0, 60.0, start=BEGIN)
+DAMPED = Bearings(law="linear", count=4, ka=6e4, damping=300.0)
+GIVEN = scene(0.2, 212.0, 0.06, bearings=DAMPED, motion=MOTION, start=Start(tilt=2e-3))
+
+
+@dataclass
+class Seen:
+    """A run: its bodies, their loads in each step, masses and couples that were set, rows and trace."""
+
+    bodies: object
+    loads: list = field(default_factory=list)
+    added: list = field(default_factory=list)
+    couples: list = field(default_factory=list)
+    moved: float = math.inf  # m/s, of the base by an impulse of 10 N s after the run, where 1e9 kg are added to it
+
+    def __post_init__(self):
+        weigh = self.bodies.weigh  # of which the loads know, too
+        self.bodies.weigh = lambda added: self.added.append(added) or weigh(added)
+
+    def step(self, *loads):
+        self.loads.append(loads)
+        return self.bodies.step(*loads)
+
+    def twist(self, moment):
+        self.couples.append(moment)
+        self.bodies.twist(moment)
+
+
+def ran(monkeypatch, engine, variant, given):
+    """(what was `Seen` of a run, its rows, its trace)."""
+    march, found = stepping.march, []
+
+    def watched(held, *rest):
+        found.append(Seen(held))
+        rows, ended = march(bodies := found[-1], *rest)
+        bodies.bodies.weigh(1e9)
+        bodies.moved = abs(bodies.step(1e-4, 1e-4, 0.0, 0.0, 10.0)[-1] - rows[-1, 5])
+        found.append(rows)
+        return rows, ended
+
+    with monkeypatch.context() as patched:
+        patched.setattr(stepping, "march", watched)
+        run = engine.run(given, variant, engine.variants[variant].settings)
+    assert run.failure is None and run.steps > 5
+    return *found, run.trace
+
+
+def planar(bodies):
+    """Whether joints leave a body of three dimensions the motions of a plane."""
+    if hasattr(bodies, "model"):
+        return 0 not in bodies.model.jnt_type  # MuJoCo's number of a free joint
+    return hasattr(bodies, "joints")
+
+
+def imposed(monkeypatch, engine, variant):
+    """The clauses that hold of a variant."""
+    seen, rows, trace = ran(monkeypatch, engine, variant, GIVEN)
+    step, before, across, up, _ = np.array(seen.loads[:-1]).T
+    t, velocity = rows[:-1, 0], ground_velocity(MOTION)
+    moments = np.sort([*(t - before / 2), *(t + step / 2)])
+    couples = [0.0]
+    if engine.variants[variant].takes_restitution:
+        slower = GIVEN.with_(
+            block={"restitution": 0.6}, start={"tilt": 1e-3, "tilt_rate": -0.1}, bearings=None, motion=None
+        )
+        couples = ran(monkeypatch, engine, variant, slower)[0].couples
+    mean = [-(velocity(a + b / 2) - velocity(max(a - c / 2, 0.0))) for a, b, c in zip(t, step, before, strict=True)]
+    level = -9.81 * step, -MOTION.acceleration(t) * step
+    return {
+        "a plane, by joints": planar(seen.bodies),
+        "steps by gaps and closing speeds, which meet jumps of the ground's acceleration": (
+            step.max() > 10 * step[:-1].min() and np.abs(moments - BEGIN).min() < 1e-9
+        ),
+        "loads times (step + step before)/(2 step), the ground's as its mean": (
+            np.allclose(up, -9.81 * (step + before) / 2) and np.allclose(across, mean, atol=1e-12)
+        ),
+        "loads as where a step begins": np.allclose(up, level[0]) and np.allclose(across, level[1]),
+        "dampers and stiff bearings as mass added to the base": (
+            min(seen.added[:-1], default=0) > 0 and seen.moved < 1e-6
+        ),
+        "velocities read half a step early": not np.allclose(trace.tilt_rate, rows[:, 3], rtol=1e-9),
+        "restitution given: a couple before each landing": any(couples),
+    }
+
+
+@pytest.mark.parametrize("engine, variant", [case for case in CASES if case[0] != "exudyn"])
+def test_a_leapfrog_engines_record_says_what_its_adapter_imposes(monkeypatch, engine, variant):
+    engine = get_engine(engine)
+    found = imposed(monkeypatch, engine, variant)
+    assert set(engine.variants[variant].imposes.split("; ")) == {clause for clause, holds in found.items() if holds}
