@@ -7,6 +7,7 @@ from engine_cases import ACCURATE
 
 from comparisons.measuring import agreement
 from comparisons.measuring.tolerances import TABLE
+from engines import ENGINES
 
 RUNS, KEPT = {}, {}  # what rows of one variant share; these rows stay on one worker
 
@@ -25,10 +26,15 @@ def shared(monkeypatch):
     monkeypatch.setattr(agreement, "traced", once)
 
 
+DEAR = ("overturning boundary", "synthetic motion", "60 s of shaking")  # of other engines by hand, or `rocking verify`
+
+
 def marks(row):
-    """Main variants first; the others, and other engines by the hook, in the second command."""
-    group = pytest.mark.xdist_group(f"{row.engine} {row.variant}")
-    return [group] if ACCURATE.get(row.engine) == row.variant else [group, pytest.mark.slow]
+    """Main variants of exudyn and PyBullet first; other variants, and other engines' quick rows, in the second command."""
+    long = not ENGINES[row.engine].subject and any(words in row.name for words in DEAR)
+    slow = ACCURATE.get(row.engine) != row.variant
+    sets = [pytest.mark.long] * long or [pytest.mark.slow] * slow
+    return [pytest.mark.xdist_group(f"{row.engine} {row.variant}"), *sets]
 
 
 @pytest.mark.parametrize("row", [pytest.param(row, id=row.name, marks=marks(row)) for row in TABLE])
