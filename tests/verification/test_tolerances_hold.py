@@ -30,7 +30,7 @@ DEAR = ("overturning boundary", "synthetic motion", "60 s of shaking")  # of oth
 
 
 def marks(row):
-    """Main variants of exudyn and PyBullet first; other variants, and other engines' quick rows, in the second command."""
+    """Main variants of exudyn and PyBullet first; other variants and engines in the second command."""
     long = not ENGINES[row.engine].subject and any(words in row.name for words in DEAR)
     slow = ACCURATE.get(row.engine) != row.variant
     sets = [pytest.mark.long] * long or [pytest.mark.slow] * slow
