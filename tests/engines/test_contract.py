@@ -36,7 +36,10 @@ def test_record_holds_what_the_contract_names(engine, variant):
     assert record is ENGINES[engine] and record.installed and engines.available_engines([engine]) == ((engine,), {})
     # those that tests are drawn from
     assert set(VARIANTS[engine]) == set(record.variants) and variant == record.default_variant
-    assert (engine in ACCURATE) == (record.variants[variant].kind == "tuned") and tuple(VARIANTS) == engines.BUILT_IN
+    assert tuple(VARIANTS) == engines.BUILT_IN
+    for name, own in record.variants.items():
+        assert own.kind == ("defaults" if name in ("first-script", "native-contact") else "tuned")
+    assert (engine in ACCURATE) == (record.variants[variant].kind == "tuned")
     for one in record.variants.values():
         assert is_dataclass(one.settings) and one.settings.__dataclass_params__.frozen
         assert fields(one.settings) and all(0 < value < math.inf for value in asdict(one.settings).values())
