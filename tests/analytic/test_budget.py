@@ -1,6 +1,7 @@
 """A run that does not get on ends with an error that names the part of the scene to blame."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -61,6 +62,15 @@ def test_what_does_not_get_on_is_named(small, scene, words):
     with pytest.raises(SceneError) as caught:
         margins(scene)
     assert str(caught.value).startswith(words.partition(":")[0])
+
+
+def test_the_frequency_named_is_that_of_the_base_under_a_block_that_follows_it(small):
+    """Of its mass what does not rock with it: M - (m R cos(gamma))^2/J."""
+    scene = isolated(law="linear", count=4, ka=1e19)
+    block = scene.block
+    free = scene.total_mass - (block.mass * block.radius * math.cos(block.slenderness)) ** 2 / block.inertia
+    with pytest.raises(SceneError, match=re.escape(f"vibrates at {math.sqrt(4e19 / free):.3g} rad/s")):
+        simulate(scene)
 
 
 @pytest.mark.parametrize("duration", [None, 1.0])

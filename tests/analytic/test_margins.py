@@ -110,6 +110,13 @@ def test_a_wide_span_finds_the_uplift_at_several_times_the_motion():
     assert (margin.bands[0].low, margin.bands[-1].high) == (pytest.approx(-43 * step, abs=1e-9), 9.0)
 
 
+@pytest.mark.parametrize("amplitude, change", [(9.5, G / 9.5 - 1), (11.0, 0.0)])
+def test_a_block_leaves_the_model_where_the_ground_falls_away_as_fast_as_it(amplitude, change):
+    motion = PulseMotion("one-sine", 0.0, 6.0, vertical=PulseMotion("one-sine", amplitude, 6.0))
+    (found,) = margins(block_scene(motion=motion), only=("motion",))
+    assert found.leaves_model == pytest.approx(change, abs=1e-7)
+
+
 @pytest.mark.parametrize("span, step", [(1.0, 0.0025), (2.0, 1 / 49), (9.0, 0.1)])
 def test_no_quantity_comes_to_nothing(span, step):
     margin = by_name(block_scene(start=Start(tilt=0.05)), span=span, step=step)["start"]
