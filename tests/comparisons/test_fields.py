@@ -27,6 +27,7 @@ from lying_engine import Liar, liars, noise
 from made_up_records import knet_csv
 from pytest import approx
 from roads import BASE, BEARINGS, KINDS, LINEAR, G, pulse, scene, start
+from scipy.optimize import brentq
 
 from analytic import Caution, load_scene, margins, read_record, simulate
 from analytic.design import design_bearings
@@ -343,7 +344,7 @@ def compared(ask):
 
 
 def changed(ask):
-    """What Python returns; and a block that just slides: the friction needed is a/g."""
+    """What Python returns; and blocks that just slide, at a/g, just lift, and just leave their ground."""
     labels = {
         "creeps": "one-sine pulse, 1.6 m/s2, 30 rad/s",
         "flies": "one-sine pulse, 0.5 m/s2, 9 rad/s, vertical 8.829 m/s2",
@@ -389,6 +390,10 @@ def changed(ask):
             "headline": f"{ODD} The block lifts {NEVER}, and overturns {NEVER}. {COUNTED}",
         },
     )
+    light, lifts = model("flies")[0].motion, G * TAN / (0.5 + 0.9 * G * TAN) - 1
+    flies = brentq(lambda change: model("flies", motion=light.scaled(1 + change))[1].min_normal_ratio, 0.0, 0.2)
+    left = {"leaves_model": approx(flies, rel=1e-3), "down": approx(lifts, rel=1e-3)}
+    yield "Margins", documents["flies"], {"margins": {"of": 4, 0: left}}
     failed = {"outcome": "failed", "failure": re.compile(REFUSED).fullmatch, "reached": [], "changes": {}}
     yield "Margins", ask("margin", "refused.toml", *MANY), {"motions": {"of": 3, 2: failed}}
 
