@@ -6,11 +6,19 @@ import numpy as np
 import pytest
 from own_scenes import BUST
 
-from analytic import PulseMotion, load_scene, simulate
+from analytic import PulseMotion, bearing_scan, load_scene, simulate
 from analytic.bearing_scan import BearingScan
 from analytic.design import design_bearings, properties
 from comparisons.showing.margins import nothing_holds
 from comparisons.showing.parts import percent
+
+
+@pytest.fixture(autouse=True)
+def coarse(monkeypatch):
+    """What a design says holds on any grid; that of a user is fine (`test_roads`)."""
+    monkeypatch.setattr(bearing_scan, "PERIOD_STEP", 0.2)
+    monkeypatch.setattr(bearing_scan, "DAMPING_STEP", 0.05)
+
 
 BEARINGS = '[bearings]\nlaw = "linear"\nka = 2e5\n'
 

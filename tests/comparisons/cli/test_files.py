@@ -65,6 +65,7 @@ def test_a_disk_that_is_full_after_the_run_costs_no_result(rocking, tmp_path, mo
     assert json.loads(kept[0].read_text())["outcome"] == "rocks"
 
 
+@pytest.mark.slow
 def test_standard_output_that_is_full_closed_or_not_read(tmp_path):
     environment = {**os.environ, "TMPDIR": str(tmp_path)}
     with open("/dev/full", "w") as full:

@@ -12,12 +12,11 @@ import sys
 import pytest
 
 from comparisons.running.provenance import RESULTS, read_result
-from engines import installed_engines
 
 COMMANDS = {
     "sheet": "sheet",
     "check": "study restitution --check 1 --seed 3 --write --workers 1",
-    "study": f"study fragility --quick --engine {installed_engines()[-1]} --workers 1",
+    "study": "study fragility --quick --engine pybullet --workers 1",
     "report": "report free-rocking-rigid --engine analytic --studies studies",
     "lessons": "lessons export",
 }
@@ -43,8 +42,8 @@ cli.main(sys.argv[2:])
 
 def each(*commands):
     """Parameters of tests, each with a command first; but for one command they take long."""
-    slow = [pytest.mark.long, pytest.mark.timeout(1400)]
-    return [pytest.param(*words, marks=() if words[0] == "sheet" else slow) for words in commands]
+    long = [pytest.mark.long, pytest.mark.timeout(1400)]
+    return [pytest.param(*words, marks=pytest.mark.slow if words[0] == "sheet" else long) for words in commands]
 
 
 @pytest.fixture(scope="module")

@@ -15,7 +15,6 @@ from comparisons.cli.interrupts import stoppable
 from comparisons.report.study import UNFINISHED
 from comparisons.running import study
 from comparisons.running.provenance import RESULTS
-from engines import installed_engines
 from engines.guard import run_apart
 
 ENDLESS = """
@@ -60,6 +59,7 @@ def started(*arguments, **how):
     return subprocess.Popen([sys.executable, *map(str, arguments)], start_new_session=True, **pipes, **how)
 
 
+@pytest.mark.slow
 def test_the_time_limit_costs_the_run_alone(rocking, tmp_path):
     scene = endless(tmp_path)
     status, out, err = rocking("run", scene, "--time-limit", "1", "--json", "-")
@@ -76,6 +76,7 @@ def hears(process, number=signal.SIGINT):
     return time.monotonic() - began, psutil.wait_procs(family, timeout=5)[1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["run", "compare"])
 def test_ctrl_c_in_the_kernel(tmp_path, command):
     scene = endless(tmp_path)
@@ -107,6 +108,7 @@ cli.main(["engines"])
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "number, status, words",
     [
@@ -152,15 +154,17 @@ def kept(store, count):
     return f"Interrupted. {runs}; the same command goes on from there.\n"
 
 
+@pytest.mark.slow
 def test_an_interrupted_study_says_what_is_kept(tmp_path):
     store = tmp_path / "runs.jsonl"
     err, count = broken_off(store, "study", "restitution", "--quick", "--output", tmp_path)
     assert "Traceback" not in err and err.endswith(kept(store, count))
 
 
+@pytest.mark.slow
 def test_an_interrupted_report_says_what_is_kept_and_goes_on_from_there(tmp_path):
     shutil.copytree(RESULTS / "sensitivity", tmp_path / "studies" / "sensitivity")
-    store, one = tmp_path / "page" / UNFINISHED / "runs.jsonl", ("--engine", installed_engines()[0])
+    store, one = tmp_path / "page" / UNFINISHED / "runs.jsonl", ("--engine", "exudyn")
     (tmp_path / "stands.toml").write_text(STANDS)  # no run but those of the scene itself
     words = ("report", tmp_path / "stands.toml", *one, "--output", tmp_path / "page", "--studies", tmp_path / "studies")
     err, count = broken_off(store, *words)

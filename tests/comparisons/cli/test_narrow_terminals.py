@@ -29,6 +29,7 @@ COMMANDS = {
     "verify": ("verify", "--engine", "exudyn"),
     "new": ("new", "new.toml", "--height", "1.9", "--width", "0.55", "--mass", "1000"),
 }
+DEAR = ("compare", "compare, sliding", "margin", "design", "choose", "verify")
 SLIDES = """friction = 0.4
 [block]
 mass = 3172.05
@@ -66,7 +67,9 @@ def printed(table, width):
     return text.splitlines(), found and (int(found[1]), found[2].split(", "))
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize(
+    "command", [pytest.param(one, marks=pytest.mark.slow if one in DEAR else ()) for one in COMMANDS]
+)
 def test_numbers_are_whole_and_what_is_left_out_is_named(rocking, place, monkeypatch, command):
     shown = []
 

@@ -57,12 +57,19 @@ def test_what_was_done_and_what_is_odd_are_said(rocking, tmp_path):
     assert "Mean removed." in out and "is below 1e-4 g: check the unit" in out.replace("\n", " ")
 
 
-@pytest.mark.parametrize("unit, said", [("g", True), ("mg", True), ("%g", True), ("gal", False), ("m/s2", False)])
-def test_the_value_of_g_is_said_where_a_record_is_in_g(rocking, tmp_path, unit, said):
+IN_UNITS = {"g": G, "mg": G / 1000, "%g": G / 100, "gal": 0.01, "cm/sec2": 0.01, "in/s2": 0.0254, "m/s2": 1.0}
+
+
+@pytest.mark.parametrize("unit", IN_UNITS)
+def test_a_record_is_read_in_its_unit_and_the_value_of_g_is_said(rocking, tmp_path, unit):
     path = tmp_path / "own.csv"
     path.write_text(f"t [s],a [{unit}]\n" + "".join(f"{0.01 * i:.2f},{a}\n" for i, a in enumerate(VALUES)))
-    status, out, _ = rocking("record", path)
-    assert status == 0 and ("with g = 9.81 m/s2; other programs take 9.80665" in " ".join(out.split())) == said
+    status, out, _ = rocking("record", path, "--json", tmp_path / "found.json")
+    (found,) = json.loads((tmp_path / "found.json").read_text())["channels"]
+    assert status == 0 and ("with g = 9.81 m/s2; other programs take 9.80665" in " ".join(out.split())) == (
+        unit in ("g", "mg", "%g")
+    )
+    assert found["peak"] == pytest.approx(IN_UNITS[unit] * np.abs(VALUES).max())
 
 
 def test_what_the_file_does_not_say_is_asked_for_and_taken(rocking, tmp_path):

@@ -7,6 +7,8 @@ user's are not is a test of its own. The slow form has the real engines, and `ch
 import json
 import re
 import shutil
+from dataclasses import replace
+from functools import partial
 from importlib import import_module
 
 import jsonschema
@@ -16,10 +18,11 @@ from roads import KINDS, REFUSED, write_records
 
 from analytic import Base, Bearings, bearing_scan, load_scene, margins, simulate
 from analytic.design import properties
-from analytic.response import DIFFERENCES, JUDGED, Difference
+from analytic.response import DIFFERENCES, JUDGED, Difference, Failure
 from analytic.rocking import restitution
 from comparisons.commands import margin
 from comparisons.report import next_step, statue
+from comparisons.running import solving
 from comparisons.running.executors import Done, Executor, lines_of
 from comparisons.running.options import OWN
 from comparisons.running.provenance import RESULTS
@@ -38,6 +41,7 @@ RECORDS = 3  # of the folder that are earthquakes
 LEFT_OUT = ["gal.txt", "notes.txt", "spectrum.txt", "same.csv", "strong.csv, column 3 (Up)"]
 LEFT = len(LEFT_OUT)
 APART = guard.run_apart
+SOON = [*LIES, *(name for name in FAULTS if name not in ("raises", "hangs"))]
 SOUND = ("honest", "close", "nan")  # of the faults, the engines that claim an outcome
 
 
@@ -216,6 +220,30 @@ def test_compare_with_engines_that_fail(road, monkeypatch, kind):
     assert "Newton did not converge" in err and "--time-limit allows more" in err and "not in this engine" in err
 
 
+@pytest.mark.parametrize("engine", ["honest", "fails", "refuses"])
+@pytest.mark.parametrize("fails", [False, True])
+def test_the_status_of_compare_is_that_of_the_model(road, monkeypatch, fails, engine):
+    if fails:
+        failed = partial(
+            replace, outcome="failed", decided=False, failure=Failure("it gave up", "at 1 s"), history=None
+        )
+        monkeypatch.setattr(solving, "_analytic", lambda scene, *_: failed(simulate(scene, history=False)))
+    status, answer, _, err = road("compare", "rocks", *asked([engine]))
+    assert status == int(fails) and [bool(one["failure"]) for one in answer["responses"]] == [fails, engine != "honest"]
+    assert ("analytic failed: it gave up" in err) == fails
+
+
+@pytest.mark.parametrize("words, compared", [(["close", "analytic", "tilt", "close"], ["close", "tilt"]), ([], SOON)])
+def test_compare_runs_the_model_first_and_each_engine_once_or_all_that_are_installed(
+    road, monkeypatch, words, compared
+):
+    del ENGINES["hangs"]
+    absent = replace(ENGINES["raises"], package="no_such_package", adapter="no_such_package")
+    monkeypatch.setitem(ENGINES, "raises", absent)
+    status, answer, _, _ = road("compare", "stands", *asked(words))
+    assert status == 0 and [one["engine"] for one in answer["responses"]] == ["analytic", *compared]
+
+
 def test_every_kind_of_difference_occurs(road):
     found = set()
     for kind in ("slender", "slides", "overturns after an impact"):
@@ -349,7 +377,7 @@ def test_choose_refuses_what_it_cannot_choose_by(road, words, said):
     assert status == 2 and answer is None and said in err
 
 
-@pytest.mark.parametrize("part", range(2))
+@pytest.mark.parametrize("part", [0, pytest.param(1, marks=pytest.mark.slow)])
 def test_report(road, rocking, tmp_path, part):
     """All kinds, in two reports: of the model, an engine that lies, one that fails, and one that gives no numbers."""
     road("run", "stands")

@@ -17,12 +17,11 @@ import pytest
 
 from comparisons.running.by_solver import read
 from comparisons.running.sweep import Store
-from engines import installed_engines
 
 pytestmark = [pytest.mark.long, pytest.mark.timeout(1400), pytest.mark.xdist_group("kills")]
 
 # study: what it is given so that it stays short, and how often it is killed; 20 times in all
-ENGINE = ("--engine", installed_engines()[-1])
+ENGINE = ("--engine", "pybullet")
 STUDIES = {"fragility": (ENGINE, 7), "restitution": (ENGINE, 7), "stability": (ENGINE, 6)}
 COSTS = ("cpu", "seconds", "steps_per_second")  # names of what differs from run to run
 

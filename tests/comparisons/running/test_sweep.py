@@ -165,6 +165,7 @@ sweep(slow(sys.argv[1], 40), sys.argv[2], workers=2)
 """
 
 
+@pytest.mark.slow
 def test_kill_9_then_resume_equals_an_uninterrupted_sweep(tmp_path):
     log, store = tmp_path / "log", tmp_path / "s.jsonl"
     process = subprocess.Popen([sys.executable, "-c", KILLED_SWEEP, log, store], env=fake_solvers.ENVIRONMENT)
