@@ -1,4 +1,4 @@
-"""``rocking new`` as a user calls it."""
+"""Commands that write what a user goes on with: ``rocking new``, ``rocking script`` and ``rocking sheet``."""
 
 import io
 import json
@@ -8,6 +8,7 @@ from made_up_records import VALUES, cosmos
 
 from analytic import load_scene
 from analytic.records import read_record
+from comparisons.sheet.problems import PROBLEMS
 
 BUST = ("--height", "1.9", "--width", "0.55", "--material", "marble")
 
@@ -151,3 +152,54 @@ def test_what_was_asked_for_is_in_the_json_in_the_sense_of_its_row(rocking, tmp_
     assert set(asked) == {"secant period at x_max", "equivalent damping at x_max"}
     assert asked["equivalent damping at x_max"][0] == 0.15
     assert [value for _, value in asked.values()] == pytest.approx([wanted for wanted, _ in asked.values()], rel=1e-3)
+
+
+def test_the_script_and_its_record_are_written(rocking, tmp_path):
+    status, out, err = rocking("script", "pybullet", "caryatid-isolated", "--output", tmp_path / "own.py")
+    assert status == 0, err
+    assert out.split() == [str(tmp_path / "own.py"), "written", str(tmp_path / "own-motion.txt"), "written"]
+    assert "own-motion.txt" in (tmp_path / "own.py").read_text()
+    assert (tmp_path / "own-motion.txt").read_text().startswith("# time [s], ground acceleration [m/s2]\n0 ")
+
+
+def test_without_a_name_it_is_the_scenes_and_the_engines(rocking, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    status, out, err = rocking("script", "pybullet", "free-rocking-rigid")
+    (file,) = tmp_path.iterdir()
+    assert status == 0 and file.name.endswith("-pybullet.py") and out == f"{file.name} written\n"
+
+
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        (("mujoco", "caryatid-rigid"), "mujoco: no engine with a script; choose one of"),
+        (("bullet", "caryatid-rigid"), "bullet: no engine with a script; choose one of"),
+        (("pybullet", "caryatid-rigid", "--output", "own.txt"), "--output own.txt: end the name in .py"),
+        (("pybullet", "nowhere"), "nowhere"),
+    ],
+)
+def test_mistakes_are_named(rocking, arguments, message):
+    status, _, err = rocking("script", *arguments)
+    assert status == 2 and message in err
+
+
+def test_a_friction_that_the_script_does_not_keep_is_named(rocking, tmp_path):
+    scene = tmp_path / "scene.toml"
+    scene.write_text(
+        "friction = 0.6\n[block]\nmass = 300.0\nradius = 1.0\nslenderness = 0.2\nrestitution = 0.8\n"
+        "[start]\ntilt = 0.12\n"
+    )
+    status, out, err = rocking("script", "pybullet", scene, "--output", tmp_path / "own.py")
+    assert status == 0, err
+    assert "The scene's friction, 0.6, is not kept, and the block does not slide: below 4.93 it slips" in out
+
+
+def test_the_sheet_and_its_answers_are_written(rocking, tmp_path):
+    status, out, _ = rocking("sheet", "--output", tmp_path, "--json", tmp_path / "sheet.json")
+    assert status == 0 and out.splitlines()[0] == str(tmp_path / "index.md")
+    content = json.loads((tmp_path / "sheet.json").read_text())
+    assert content["schema"] == "rocking sheet 2" and content["files"] == out.splitlines()
+    assert [one["scene"] for one in content["problems"]] == [problem.name for problem in PROBLEMS]
+    for written, problem in zip(content["problems"], PROBLEMS, strict=True):
+        asked = [(one["quantity"], one["answer"], one["tolerance"]) for one in written["quantities"]]
+        assert asked == [(one.name, problem.answers[one.name], problem.tolerance(one)) for one in problem.quantities]

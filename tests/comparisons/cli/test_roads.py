@@ -119,6 +119,13 @@ def checked(file):
     return answer
 
 
+def half(first):
+    """All kinds; every other one is of the second command, so that each is run by two commands in the first."""
+    return [
+        pytest.param(kind, marks=pytest.mark.slow if number % 2 != first else ()) for number, kind in enumerate(KINDS)
+    ]
+
+
 def shown(words, out):
     """Whether a sentence is printed, however its lines are broken."""
     return " ".join(words.split()) in out
@@ -167,7 +174,7 @@ def counted(kind):
     return RECORDS + ("[motion]" in KINDS[kind][0] and kind != "record")
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", half(0))
 def test_run(road, kind):
     status, answer, out, _ = road("run", kind, "--records", "records", "--units", "m/s2")
     assert status == some_failed(answer["motions"]) and answer["outcome"] == KINDS[kind][1]
@@ -252,7 +259,7 @@ def test_every_kind_of_difference_occurs(road):
     assert found == set(DIFFERENCES)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", half(1))
 def test_margin(road, kind):
     status, answer, out, _ = road("margin", kind, "--records", "records", "--units", "m/s2")
     assert status == some_failed(answer["motions"])
@@ -295,7 +302,7 @@ def test_design_for_one_motion(road, kind):
     assert bool(answer["chosen"]) == (kind not in ("loud", "overturns"))
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", half(0))
 def test_design(road, kind):
     answer, out = design(road, kind, "--records", "records", "--units", "m/s2")
     assert len(answer["motions"]) == counted(kind) and len(answer["left_out"]) == LEFT
@@ -304,6 +311,7 @@ def test_design(road, kind):
         assert proposal["stroke"] == max(row["stroke"] for row in proposal["motions"])
 
 
+AGAIN = ("on linear bearings", "given restitution", "slides")  # of a criterion that another shows
 # {kind: (the criterion chosen by default, the engine that lies about it)}
 CHOSEN = {
     "rocks": ("restitution", "restitution"),
@@ -318,7 +326,9 @@ CHOSEN = {
 }
 
 
-@pytest.mark.parametrize("kind", CHOSEN)
+@pytest.mark.parametrize(
+    "kind", [pytest.param(kind, marks=pytest.mark.slow if kind in AGAIN else ()) for kind in CHOSEN]
+)
 def test_choose(road, kind):
     """The honest engine has no error and is chosen; the error of the other is that of its lie."""
     criterion, liar = CHOSEN[kind]
@@ -377,12 +387,14 @@ def test_choose_refuses_what_it_cannot_choose_by(road, words, said):
     assert status == 2 and answer is None and said in err
 
 
-@pytest.mark.parametrize("part", [0, pytest.param(1, marks=pytest.mark.slow)])
-def test_report(road, rocking, tmp_path, part):
-    """All kinds, in two reports: of the model, an engine that lies, one that fails, and one that gives no numbers."""
+@pytest.mark.parametrize(
+    "first, step", [(0, 4), pytest.param(2, 4, marks=pytest.mark.slow), pytest.param(1, 2, marks=pytest.mark.slow)]
+)
+def test_report(road, rocking, tmp_path, first, step):
+    """All kinds, in three reports: of the model, an engine that lies, one that fails, and one that gives no numbers."""
     road("run", "stands")
     shutil.copytree(RESULTS / "tolerances", tmp_path / "studies" / "tolerances")
-    kinds, files = [*KINDS][part::2], []
+    kinds, files = [*KINDS][first::step], []
     for kind in kinds:
         files.append(tmp_path / f"{kind.replace(' ', '-')}.toml")
         files[-1].write_text(KINDS[kind][0])
@@ -419,7 +431,7 @@ def plain(words):
     return re.sub(r"[\s_]|&#39;|'|’", "", words)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", half(1))
 def test_run_in_an_engine(road, kind):
     engine = ("lying", "nan", "fails")[[*KINDS].index(kind) % 3]
     status, answer, out, err = road("run", kind, "--engine", engine, "--records", "records", "--units", "m/s2")

@@ -1,5 +1,7 @@
 """``rocking study``: all of them side by side, and a stored result checked (running/test_check.py: how)."""
 
+import dataclasses
+import json
 import shutil
 from operator import itemgetter
 from pathlib import Path
@@ -8,6 +10,8 @@ from unittest.mock import Mock
 import pytest
 
 from comparisons.commands import study as command
+from comparisons.measuring import agreement, tolerances
+from comparisons.report.answer import stored_studies
 from comparisons.running import check as module
 from comparisons.running.by_solver import read
 from comparisons.running.check import Check
@@ -15,7 +19,8 @@ from comparisons.running.plan import Computed, Study
 from comparisons.running.provenance import RESULTS, read_result
 from comparisons.running.study import compute
 from comparisons.showing.parts import Page
-from engines import installed_engines
+from comparisons.studies.rows import read_study
+from engines import get_engine
 
 
 def _plan(ask):
@@ -37,12 +42,11 @@ def test_results_lie_side_by_side_and_a_second_call_keeps_them(rocking, monkeypa
     monkeypatch.setattr(command, "BUILT_IN", ("first", "second"))
     monkeypatch.setattr(command, "get_study", lambda name: Study(name, "Asks for no run?", _plan))
     for _ in range(2):
-        status, out, _ = rocking("study", "all", "--quick", "--output", tmp_path)
+        status, out, _ = rocking("study", "all", "--quick", "--engine", "exudyn", "--output", tmp_path)
         assert status == 0
         assert [Path(line).name for line in out.split()] == ["first", "second"]
     found = {file.relative_to(tmp_path).as_posix() for file in tmp_path.rglob("*.json")}
-    solvers = ("analytic", *installed_engines())
-    assert found == {f"{name}/{solver}.json" for name in ("first", "second") for solver in solvers}
+    assert found == {f"{name}/{solver}.json" for name in ("first", "second") for solver in ("analytic", "exudyn")}
 
 
 @pytest.mark.parametrize("differences, status", [((), 0), (("exudyn: peak: stored 1, now 2",), 1)])
@@ -133,3 +137,49 @@ def test_a_damaged_result_is_one_message_of_replot(rocking, tmp_path):
         "Error: restitution: a result of restitution; give one that rocking study stability wrote\n"
     )
     assert not (tmp_path / "page").exists()
+
+
+ROW = next(
+    row
+    for row in tolerances.TABLE
+    if (row.engine, row.quantity) == ("exudyn", "peak tilt") and row.variant == get_engine("exudyn").default_variant
+)
+WRONG = dataclasses.replace(ROW, quantity="peak tilt, held to nothing", bound=1e-12)
+
+
+def test_verify_measures_each_row_and_names_the_one_that_fails(rocking, monkeypatch, tmp_path):
+    monkeypatch.setattr(tolerances, "TABLE", (ROW, WRONG))
+    file = tmp_path / "verify.json"
+    words = ("verify", "--engine", "exudyn", "--json", file, "--output", tmp_path / "studies")
+    status, out, _ = rocking(*words)
+    assert status == 1 and "1 of 2 tolerances hold" in out
+    (line,) = [line for line in out.splitlines() if "FAILS" in line]
+    assert "held to nothing" in line
+    content = json.loads(file.read_text())
+    assert content["schema"] == "rocking verify 3" and "exudyn" in content["versions"]["exudyn"]
+    assert [row["holds"] for row in content["rows"]] == [True, False]
+    assert content["rows"][0]["found"] == content["rows"][1]["found"] > 0
+    assert read_study(tmp_path / "studies" / "tolerances").rows == [
+        {"part": "tolerance", **row} for row in content["rows"]
+    ]
+    (shown,) = stored_studies(tmp_path / "studies")
+    assert shown.section.title == "Agreement tolerances: 1 of 2 do not hold" and shown.section.age is None
+
+
+def test_without_a_bound_nothing_holds_or_fails_and_what_was_found_is_said(rocking, monkeypatch, tmp_path):
+    free = dataclasses.replace(ROW, bound=None, measured=None)
+    lost = dataclasses.replace(free, measure=lambda *_: raised(agreement.Unmeasurable("no impact")))
+    words = ("verify", "--engine", "exudyn", "--variant", ROW.variant)
+    for rows, status in (((free,), 0), ((free, lost), 1)):
+        monkeypatch.setattr(tolerances, "rows", lambda engine, variant, rows=rows: rows)
+        ended, out, _ = rocking(*words, "--json", tmp_path / "verify.json", "--output", tmp_path)
+        assert ended == status and " hold." not in out and "FAILS" not in out
+        assert f"no bound stated, so nothing holds or fails; 1 of {len(rows)} quantities measured." in out
+        told = json.loads((tmp_path / "verify.json").read_text())["rows"]
+        assert [row["holds"] for row in told] == [None] * len(rows) and told[0]["found"] > 0
+        assert [row["holds"] for row in read_study(tmp_path / "tolerances").rows] == [None] * len(rows)
+    assert free.check({}) == told[0]["found"]
+
+
+def raised(error):
+    raise error

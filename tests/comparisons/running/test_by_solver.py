@@ -79,6 +79,7 @@ def test_the_files_of_others_stay_byte_for_byte(copy, both):
     )
 
 
+@pytest.mark.slow
 @MADE_ONCE
 def test_without_engines_all_is_computed_and_files_of_others_go(both):
     compute(MADE, both.parent, engines=None, workers=1, progress=False)  # of 1 kg, of all that are installed
@@ -252,6 +253,7 @@ SMALL: dict[str, dict[str, Any]] = {
     "sensitivity": {"scenes": {"free-standing": ("caryatid-rigid", (0.2,))}, "motions": (8, 2, 1)},
     "mistakes": {},
 }
+DEAR = ("restitution", "statues", "sensitivity", "mistakes")
 # an engine's row is made of its own runs alone; of the second by test_shake_table.py, with tests made up
 OF_MOTIONS = ("recorded", "shake-table")
 
@@ -260,7 +262,7 @@ def test_every_study_takes_one_engine_or_says_why_not():
     assert {name for name in BUILT_IN if not get_study(name).whole} == {*SMALL, *OF_MOTIONS}
 
 
-@pytest.mark.parametrize("name", SMALL)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.slow if name in DEAR else ()) for name in SMALL])
 def test_no_row_of_a_study_that_takes_one_engine_hangs_on_another(name, monkeypatch):
     """The plan, answered by the model in each engine's place: two engines at once, and one after the other."""
     monkeypatch.setattr("comparisons.studies.mistakes.study.QUICK", ())  # scripts are run: those as they are suffice

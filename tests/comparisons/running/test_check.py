@@ -7,19 +7,21 @@ import pytest
 from answered import edit
 from fake_solvers import cases, scene
 
-from analytic import PulseMotion, SampledMotion, synthetic_motion
+from analytic import PulseMotion, SampledMotion, load_scene, synthetic_motion
 from analytic.errors import EngineNotInstalled
 from analytic.motion import paired
+from comparisons.measuring import agreement
 from comparisons.report.answer import origin_of
 from comparisons.running import by_solver, run_sample
 from comparisons.running import check as module
 from comparisons.running.age import age, last_check
+from comparisons.running.cases import Case
 from comparisons.running.check import check, check_all
 from comparisons.running.plan import Batch, Computed, Study
 from comparisons.running.provenance import ResultError, read_result, write_result
 from comparisons.running.run_sample import case_of, sample_of
 from comparisons.running.study import compute
-from comparisons.running.sweep import Case, Row
+from comparisons.running.sweep import Row
 
 
 def _plan(ask):
@@ -178,3 +180,20 @@ def test_runs_of_an_engine_that_is_not_installed_are_left_out_and_named(result, 
     found = check(result, 30, 1, workers=1, progress=False)
     assert absent and (found.runs, found.held, found.missing) == (len(runs) - absent, len(runs) - absent, ("mujoco",))
     assert "not installed: mujoco" in found.words()
+
+
+GIVEN = load_scene("free-rocking-rigid").with_(block={"restitution": 0.8})
+
+
+@pytest.mark.parametrize("solver", ["exudyn", "engines.pybullet.free_block:simulate"])
+def test_no_engine_is_judged_by_a_restitution_that_it_was_given(solver):
+    cases = [Case(GIVEN, name) for name in ("analytic", "twin", "time-stepping", solver)]
+    Batch(cases[:3], print, "ours")
+    assert len(Batch(cases, print, "shown, not judged", rates=False).cases) == 4
+    with pytest.raises(ValueError, match=f"outcomes: {solver} is given block.restitution = 0.8, and not judged by it"):
+        Batch(cases, print, "outcomes")
+
+
+def test_no_tolerance_is_measured_where_the_restitution_is_given():
+    with pytest.raises(agreement.Unmeasurable, match="restitution is given"):
+        agreement.traced("exudyn", "compliant-corners", GIVEN)

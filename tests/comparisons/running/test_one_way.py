@@ -3,8 +3,6 @@
 import ast
 from pathlib import Path
 
-import pytest
-
 PROJECT = Path(__file__).parents[3]
 WAY = "comparisons/running/files.py"
 # (file, function, call): why what it writes need not be there whole or not at all
@@ -86,30 +84,6 @@ def _mode(call, place):
     """Whether a file is opened to be written, or by a mode that is not known here."""
     given = [key.value for key in call.keywords if key.arg == "mode"] + call.args[place : place + 1]
     return any(not isinstance(mode, ast.Constant) or set(str(mode.value)) & set("wax+") for mode in given)
-
-
-@pytest.mark.parametrize(
-    "line",
-    [
-        *("open(p, 'w')", "open(p, mode='a')", "open(p, how)", "p.open('wb')", "p.write_text(s)", "p.replace(q)"),
-        *("import os; os.replace(p, q)", "from shutil import copy2 as c; c(p, q)", "import shutil; shutil.move(p, q)"),
-        *("import numpy as np; np.savez(p, a=a)", "import json; json.dump(s, f)", "figure.savefig(p)", "h.to_csv(p)"),
-        *("from zipfile import ZipFile; ZipFile(p, 'w')", "import tempfile; tempfile.mkstemp()"),
-    ],
-)
-def test_a_call_that_writes_is_seen(line):
-    assert len(writing(ast.parse(line))) == 1
-
-
-@pytest.mark.parametrize(
-    "line",
-    [
-        *("open(p)", "open(p, 'rb')", "p.open()", "s.replace('a', 'b')", "p.read_text()", "a.copy()", "d.save"),
-        *("import dataclasses; dataclasses.replace(r, x=1)", "import zipfile; zipfile.ZipFile(p)", "json.dumps(s)"),
-    ],
-)
-def test_a_call_that_reads_is_none(line):
-    assert not writing(ast.parse(line))
 
 
 def test_the_code_has_one_way_to_write_a_file():

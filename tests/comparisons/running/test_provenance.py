@@ -12,7 +12,7 @@ import pytest
 from analytic.scene_file import SHIPPED
 from comparisons.running import provenance as module
 from comparisons.running import sources
-from comparisons.running.age import age, origins_of
+from comparisons.running.age import age, briefly, origins_of
 from comparisons.running.by_solver import read, results_in
 from comparisons.running.provenance import (
     RESULTS,
@@ -199,3 +199,16 @@ def test_version_by_the_name_that_is_imported(monkeypatch):
     monkeypatch.setattr("comparisons.running.sources.packages_distributions", lambda: {"imported": ["numpy"]})
     assert version_of("imported") == np.__version__ == version_of("numpy")
     assert version_of("not_there") is None
+
+
+@pytest.mark.parametrize(
+    "words, brief",
+    [
+        ("older than the code: computed on 2026-01-01 at commit abc; since then changed: a", "older than the code"),
+        ("apart from the rows of b older than the code: computed on 2026-01-01", "in part older than the code"),
+        ("in the rows of b older than the code: computed on 2026-01-01", "in part older than the code"),
+        ("computed with other versions than those here: b 1 (here 2)", "computed with other versions"),
+    ],
+)
+def test_a_heading_says_that_it_is_old_and_not_why(words, brief):
+    assert briefly(words) == brief

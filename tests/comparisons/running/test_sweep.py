@@ -2,6 +2,7 @@
 
 import json
 import os
+import resource
 import signal
 import subprocess
 import sys
@@ -17,7 +18,7 @@ from fake_solvers import cases, results, scene, sweep
 from analytic import EngineNotInstalled
 from comparisons.running.cases import Case
 from comparisons.running.executors import Processes
-from comparisons.running.sweep import Store
+from comparisons.running.sweep import Store, StoreError
 
 OURS = (str(Path(__file__).parents[2]), f"{Path.home()}/", sys.prefix)  # folders that no stored failure names
 
@@ -182,3 +183,60 @@ def test_kill_9_then_resume_equals_an_uninterrupted_sweep(tmp_path):
     rows = sweep(fake_solvers.slow(log, 40), store)
     assert sum(row.reused for row in rows) == saved and len(log.read_text().split()) - begun == 40 - saved
     assert [row.values["peak"] for row in rows] == [(1e-3 * i) ** 2 for i in range(40)]
+
+
+def line(key, value):
+    return json.dumps({"key": key, "values": value})
+
+
+def rows(path, *lines):
+    """{key: values} of the rows in a file after these lines were appended."""
+    with Store(path) as store:
+        store.append(lines)
+        return {key: row["values"] for key, row in store.rows.items()}
+
+
+def test_rows_come_back_and_the_last_of_a_key_counts(tmp_path):
+    path = tmp_path / "new" / "s.jsonl"
+    assert rows(path, line("a", 1), line("b", 2)) == {"a": 1, "b": 2}
+    assert rows(path, line("a", 3)) == rows(path) == {"a": 3, "b": 2}
+
+
+@pytest.mark.parametrize("cut", [1, 5, 20])
+def test_a_torn_last_line_is_dropped_and_the_file_goes_on(tmp_path, cut):
+    path = tmp_path / "s.jsonl"
+    rows(path, line("a", 1), line("b", 2), line("c", 3))
+    path.write_bytes(path.read_bytes()[:-cut])
+    assert rows(path) == {"a": 1, "b": 2} and path.read_bytes().endswith(b"\n")
+    assert rows(path, line("d", 4)) == rows(path) == {"a": 1, "b": 2, "d": 4}
+
+
+@pytest.mark.parametrize(
+    "damage", [b"not json", b'{"values": 1}', b'{"key": []}', b"[1]", b"\x00\x00", b"\xff\xfe", b"[" * 100_000]
+)
+def test_a_damaged_whole_line_is_an_error_that_names_it(tmp_path, damage):
+    path = tmp_path / "s.jsonl"
+    path.write_bytes(b"\n".join([line("a", 1).encode(), damage, line("b", 2).encode(), b""]))
+    with pytest.raises(StoreError, match="s.jsonl, line 2: not a row of results"):
+        Store(path)
+
+
+def test_a_second_writer_is_refused_while_the_first_writes(tmp_path):
+    pytest.importorskip("fcntl")
+    with Store(tmp_path / "s.jsonl"), pytest.raises(StoreError, match="another sweep is writing to it"):
+        Store(tmp_path / "s.jsonl")
+    assert rows(tmp_path / "s.jsonl") == {}
+
+
+def test_on_a_full_disk_the_rows_so_far_are_kept_and_it_goes_on_when_there_is_room(tmp_path):
+    path, before = tmp_path / "s.jsonl", resource.getrlimit(resource.RLIMIT_FSIZE)
+    with Store(path) as store:
+        store.append([line("a", 1)])
+        resource.setrlimit(resource.RLIMIT_FSIZE, (path.stat().st_size + 9, before[1]))
+        try:
+            with pytest.raises(StoreError, match="the rows so far are kept: make room and run again"):
+                store.append([line("b", 2), line("c", 3)])
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, before)
+        assert [*store.rows] == ["a"]
+    assert rows(path) == {"a": 1} and rows(path, line("b", 2)) == {"a": 1, "b": 2}
