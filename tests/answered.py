@@ -69,7 +69,7 @@ def stored(folder, name, found, **settings):
     """The `Result` of a study's `Computed`, with these `settings` besides, as it comes back from a file in `folder`."""
     settings = {"changed_while_running": [], **found.settings, **settings}
     return read_study(
-        write_result(folder / f"{name}.json", name, settings, found.rows, found.arrays, modules=["analytic"])
+        write_result(folder / f"{name}.json", name, settings, found.rows, found.arrays, modules=["analytic.errors"])
     )
 
 

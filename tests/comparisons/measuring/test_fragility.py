@@ -4,9 +4,19 @@ import math
 
 import numpy as np
 import pytest
-from scipy.stats import norm
+from scipy.stats import chi2, norm
 
-from comparisons.measuring.statistics import draws, fit_fragility, goodness, interval, points, resampled, wilson
+from comparisons.measuring.statistics import (
+    Fragility,
+    draws,
+    fit_fragility,
+    goodness,
+    interval,
+    points,
+    resampled,
+    wilson,
+)
+from comparisons.studies.fragility.fits import State, effects
 
 # Bliss (1935), beetles killed by carbon disulphide; probit by maximum likelihood:
 # intercept -34.935 (s.e. 2.648), slope 19.728 (s.e. 1.487) per log10 dose (Dobson; Agresti)
@@ -85,6 +95,32 @@ def test_the_test_of_fit_rejects_a_true_curve_as_often_as_it_says_and_a_wrong_on
     saved = (intensity > 0.9) & (np.arange(2000) % 4 == 0)  # scaling up saves every fourth
     assert goodness(intensity, exceeded & ~saved, fit_fragility(intensity, exceeded & ~saved)) < 1e-6
     assert goodness(intensity[:8], exceeded[:8], fit_fragility(intensity, exceeded)) is None
+
+
+def test_goodness_by_hand():
+    """Three bins of 14, 15 and 15 runs, each of probability 1/2: of variance 1/4."""
+    exceeded = np.concatenate([np.arange(size) < count for size, count in ((14, 11), (15, 4), (15, 9))])
+    flat = Fragility(1.0, 1e20)  # 1/2 everywhere
+    pearson = (11 - 7) ** 2 / (14 / 4) + (4 - 7.5) ** 2 / (15 / 4) + (9 - 7.5) ** 2 / (15 / 4)
+    assert goodness(np.arange(1.0, 45.0), exceeded, flat) == pytest.approx(chi2.sf(pearson, 3 - 2), rel=1e-9)
+
+
+def test_shifts_of_an_engine_are_its_numbers_over_the_models_by_hand():
+    """Two intensities, 1000 runs each: the curves go through the shares."""
+    x = np.repeat([math.exp(-1), math.e], 1000)
+    model, engine = (
+        np.concatenate([np.arange(1000) < 10 * share for share in shares]).astype(float)
+        for shares in ((16, 84), (31, 84))
+    )
+    states = {"overturning": State("tilt", 0.5, "x")}
+    (row,) = effects({"x": x}, np.arange(2000), states, ({"tilt": model}, {"tilt": engine}), ("e", "v"))
+    low, high = norm.ppf([0.31, 0.84])
+    spread = norm.ppf(0.84) / ((high - low) / 2)
+    assert row["median_shift"] == pytest.approx(math.exp(-(high + low) / (high - low)), rel=1e-6)
+    assert row["dispersion_shift"] == pytest.approx(spread, rel=1e-6) and spread == pytest.approx(1.33, abs=0.01)
+    for name, least, most in (("median", 0.6, 0.8), ("dispersion", 1.2, 1.5)):
+        below, above = row[f"{name}_interval"]
+        assert least < below < row[f"{name}_shift"] < above < most
 
 
 def test_separated_samples_determine_no_curve():

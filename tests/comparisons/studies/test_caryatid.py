@@ -144,6 +144,7 @@ def test_benefit_map_against_single_runs(short):
     assert len(np.unique(category)) >= 3
 
 
+@pytest.mark.slow
 def test_end_to_end(short, tmp_path):
     engines = [name for name in installed_engines() if ENGINES[name].subject]
     files = compute(STUDY, tmp_path, engines=engines, quick=True, progress=False, motion=short)

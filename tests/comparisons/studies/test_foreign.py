@@ -66,6 +66,7 @@ print(one.title, one.age, len(one.tables[0].rows))
 """
 
 
+@pytest.mark.slow
 def test_a_study_of_another_package_gets_command_resumption_and_section(tmp_path):
     assert len(SOURCE.strip().splitlines()) <= 60
     install_study(tmp_path, SOURCE)
@@ -79,6 +80,7 @@ def test_a_study_of_another_package_gets_command_resumption_and_section(tmp_path
     assert "swings" in study(tmp_path, "--help")[1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "source, words",
     [

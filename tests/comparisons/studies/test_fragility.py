@@ -10,7 +10,6 @@ from answered import answered, by_model, stored
 
 from analytic import simulate
 from analytic.linear_oscillator import displacement_spectrum
-from analytic.response import EDGE
 from comparisons.measuring.statistics import fit_fragility
 from comparisons.running.plan import Request
 from comparisons.showing.parts import NAME, where
@@ -22,7 +21,7 @@ from comparisons.studies.fragility.study import NEAR, PERIOD, SCENES, cloud, pla
 STUDY = get_study("fragility")
 
 FREE = {"free-standing": SCENES["free-standing"]}
-RUNS = (300, 110, 10)
+RUNS = (150, 50, 10)
 ENGINES = Request(("exudyn", "pybullet"))
 
 pytestmark = pytest.mark.xdist_group("fragility")  # its runs are made once
@@ -55,7 +54,7 @@ def few_draws():
 
 @pytest.fixture(scope="module")
 def weaker(tmp_path_factory):
-    return study(tmp_path_factory.mktemp("weaker"), scaled(0.8))
+    return study(tmp_path_factory.mktemp("weaker"), scaled(0.7))
 
 
 @pytest.fixture(scope="module")
@@ -85,7 +84,7 @@ def test_measures_are_those_of_the_motions_and_blocks():
 
 
 def test_an_engine_that_sees_weaker_motions_is_found_out(weaker):
-    """Its medians are those of the model over .8, and its dispersions the model's."""
+    """Its medians are those of the model over .7, and its dispersions the model's."""
     rows = where(weaker.rows, part="effect", engine="pybullet", variant="impact-aware")
     assert [row["state"] for row in rows] == ["|φ|/γ > 0.1", "|φ|/γ > 0.5", "|φ|/γ > 1", "overturning"]
     assert all(row["only_a"] > row["only_b"] and row["p_holm"] >= row["p_value"] for row in rows)
@@ -93,7 +92,7 @@ def test_an_engine_that_sees_weaker_motions_is_found_out(weaker):
     assert len(known) >= 2 and min(row["p_holm"] for row in rows) < 0.05
     for row in known:
         low, high = row["median_interval"]
-        assert low < 1 / 0.8 < high and row["median_shift"] > 1
+        assert low < 1 / 0.7 < high and row["median_shift"] > 1
     assert STUDY.judgements(weaker)[0].marks["pybullet", "impact-aware"].level == "bad"
 
 
@@ -107,13 +106,10 @@ def test_an_engine_that_is_the_model_does_not_differ_and_the_page_says_what_woul
     assert np.isnan(equal.arrays["free-standing/exudyn, compliant-corners/tilt"]).nonzero()[0].tolist() == [3, 7]
     mark = STUDY.judgements(equal)[0].marks["exudyn", "compliant-corners"]
     runs = where(equal.rows, part="run", engine="exudyn", variant="compliant-corners")
-    runs = [row for row in runs if row["class"] != "left out"]  # three scenes on an edge, or where N falls to 0
-    assert len(runs) == 107 and mark.words.startswith("2 of 107 (at most 6.6 %)")  # Wilson; a failed run differs
-    near = sum(row["comparable"] == EDGE for row in where(equal.rows, part="run", engine="exudyn"))
-    assert near < 6 and mark.level == "fair"
-    assert re.fullmatch(
-        r"not shown to be below 5 %; 2 failed; left out: \d near an outcome boundary(, \d otherwise)?", mark.note
-    )
+    runs = [row for row in runs if row["class"] != "left out"]  # one scene on an edge, or where N falls to 0
+    assert len(runs) == 49 and mark.words.startswith("2 of 49 (at most 14 %)")  # Wilson; a failed run differs
+    assert mark.level == "part"
+    assert mark.note.startswith("too few motions to show less than 5 %; 2 failed; left out: 1 near an outcome")
     # two of ten fail in the tier "defaults": few as they are, they differ by more than 5 %
     assert STUDY.judgements(equal)[0].marks["pybullet", "first-script"].level == "bad"
 

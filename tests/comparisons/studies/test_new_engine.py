@@ -42,13 +42,18 @@ SHORT = {
     "restitution": {"grid": Grid((0.2,), (None, CARYATID_BASE), (0.6,), ((0.2, None),), 4, ((0.25,), (1.0,), (2.0,)))},
     "fragility": {"scenes": {"free-standing": ("caryatid-rigid", (0.2, 0.3))}, "runs": (40, 6, 2)},
     "sensitivity": {"scenes": {"free-standing": ("caryatid-rigid", (0.2,))}, "motions": (3, 1, 1)},
-    "statues": {"seed": 1, "sliders": 80},
+    "statues": {"boundaries": 1, "seed": 1, "scenes": 12, "sliders": 80},
     "stability": {"names": ("uplift 0.99", "critical pulse +0.01")},
     "speed-error": {"keep": lambda entry: entry.engine in ("crude", "analytic"), "repeats": 1},
 }
 
 
-@pytest.fixture(params=[FAKE_ENGINE, DECIDING], ids=["applies the impact", "decides the impact"])
+STUDIES = [each if each != "statues" else pytest.param(each, marks=pytest.mark.slow) for each in SHORT]
+APPLIES = pytest.param(FAKE_ENGINE, id="applies the impact")
+DECIDES = pytest.param(DECIDING, id="decides the impact", marks=pytest.mark.slow)
+
+
+@pytest.fixture(params=[APPLIES, DECIDES])
 def crude(request, monkeypatch, tmp_path):
     """A fake, installed for the time of a test; its variant."""
     packages = tmp_path / "packages"
@@ -82,7 +87,7 @@ def rows_with(section):
     return [row for table in section.tables for row in table.rows if any("crude" in str(cell) for cell in row)]
 
 
-@pytest.mark.parametrize("name", SHORT)
+@pytest.mark.parametrize("name", STUDIES)
 def test_a_study_runs_and_shows_it(crude, tmp_path, name):
     study = get_study(name)
     more = {"scenes": [near_overturning("one-sine")]} if name == "speed-error" else {}
@@ -109,8 +114,8 @@ def failing(**options):
     return by_model(failure=lambda case: next(kinds) if case.solver == "crude" else None, **options)
 
 
-@pytest.mark.parametrize("crude", [FAKE_ENGINE], indirect=True, ids=[""])
-@pytest.mark.parametrize("name", sorted(SHORT.keys() - {"stability"}))  # which needs runs: test_stability
+@pytest.mark.parametrize("crude", [APPLIES], indirect=True)
+@pytest.mark.parametrize("name", [each for each in STUDIES if each != "stability"])  # which needs runs
 def test_runs_of_it_that_fail_make_rows_that_are_declared_and_shown(crude, tmp_path, name):
     study = get_study(name)
     more = {"scenes": [near_overturning("one-sine")]} if name == "speed-error" else {}
@@ -118,7 +123,7 @@ def test_runs_of_it_that_fail_make_rows_that_are_declared_and_shown(crude, tmp_p
     study.page(stored(tmp_path, name, found)).whole()
 
 
-@pytest.mark.parametrize("crude", [FAKE_ENGINE], indirect=True, ids=[""])
+@pytest.mark.parametrize("crude", [APPLIES], indirect=True)
 def test_so_they_do_in_the_longer_studies(crude, monkeypatch, tmp_path):
     grid = dataclasses.replace(overturning.QUICK, grounds=("rigid ground",), size=(60, 8))
     monkeypatch.setitem(overturning.STEPPING, "levels", (1e-2,))
@@ -145,7 +150,7 @@ def test_the_overturning_study_runs_and_shows_it(crude, monkeypatch, tmp_path):
     assert crude.applies_impact != bool(where(found.rows, part="refinement", engine="crude"))
 
 
-@pytest.mark.parametrize("crude", [FAKE_ENGINE], indirect=True)
+@pytest.mark.parametrize("crude", [APPLIES], indirect=True)
 def test_the_study_of_the_paper_runs_and_shows_it(crude, tmp_path):
     """Its simulations; what the analytic model alone finds is taken from the stored result."""
     stored, plan = (read(RESULTS / "caryatid-under-synthetic"), simulations(synthetic_motion(), ASK.engines, True))
@@ -169,7 +174,7 @@ def test_every_study_of_this_project_is_covered():
     assert set(BUILT_IN) == SHORT.keys() | own_tests
 
 
-@pytest.mark.parametrize("crude", [FAKE_ENGINE], indirect=True)
+@pytest.mark.parametrize("crude", [APPLIES], indirect=True)
 def test_the_study_of_recorded_motions_runs_it_where_it_is_tuned(crude, monkeypatch, tmp_path):
     kind = dataclasses.replace(crude, kind="tuned")
     monkeypatch.setitem(engines.ENGINES["crude"].variants, "euler", kind)
@@ -178,7 +183,7 @@ def test_the_study_of_recorded_motions_runs_it_where_it_is_tuned(crude, monkeypa
     assert rows_with(shown(study, found, tmp_path))
 
 
-@pytest.mark.parametrize("crude", [FAKE_ENGINE], indirect=True)
+@pytest.mark.parametrize("crude", [APPLIES], indirect=True)
 def test_the_study_of_a_shake_table_runs_it_on_some_of_the_tests(crude, monkeypatch, tmp_path):
     monkeypatch.setattr(campaign, "GRID", 9)
     monkeypatch.setattr(shake_table, "KINDS", ({},))

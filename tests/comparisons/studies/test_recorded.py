@@ -83,6 +83,7 @@ def test_a_scene_is_drawn_by_its_name_alone_within_the_ranges(folder):
 
 
 @needs_package
+@pytest.mark.slow
 def test_outcomes_of_the_model_are_mixed_in_both_configurations():
     from analytic.records.folder import folder_motions
 

@@ -91,7 +91,10 @@ def test_proportions_are_those_of_the_titles():
     assert simulate(CASES["beyond 1.33 m"].scene).peak_base_displacement > 1.34
 
 
-@pytest.mark.parametrize("name", QUICK)
+# every third; the others are of the second command
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow if k % 3 else ()) for k, name in enumerate(QUICK)]
+)
 def test_the_kernel_is_right(name):
     row = result_of(name, simulate(CASES[name].scene), KERNEL)
     assert row["result"] == RIGHT, row

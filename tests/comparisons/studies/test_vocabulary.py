@@ -12,6 +12,7 @@ from comparisons.running.plan import Request
 from comparisons.running.provenance import RESULTS
 from comparisons.studies import BUILT_IN, TOLERANCES, get_study
 from comparisons.studies.explained import SHARED
+from comparisons.studies.shake_table import campaign
 from comparisons.studies.vocabulary import OWN, columns_of
 from engines import installed_engines
 
@@ -22,12 +23,19 @@ UNSEEN_OF_ANY = {"exit_code", "time_limit"}  # of failures that no stored run ha
 
 
 @pytest.fixture(scope="module")
-def columns(tmp_path_factory):
+def patch():
+    with pytest.MonkeyPatch.context() as patch:
+        yield patch
+
+
+@pytest.fixture(scope="module")
+def columns(tmp_path_factory, patch):
     """{study: columns of its rows}; those of recorded motions and of a shake table are made up here, too."""
     folder = str(pairs(tmp_path_factory.mktemp("records"), 2))
     ask = Request(installed_engines()[:1], quick=True)
     recorded = answered(get_study("recorded").plan(ask, records=folder), by_model(history=True))[-1].rows
     tests = str(published(tmp_path_factory.mktemp("table")))
+    patch.setattr(campaign, "GRID", 5)
     last = get_study("shake-table").plan(Request(ask.engines), data=tests)
     shaken = answered(last, by_model(failure=lambda case: FAILED if case.solver != "analytic" else None))[-1].rows
     found = {"recorded": set().union(*recorded), "shake-table": set().union(*shaken)}
