@@ -75,6 +75,7 @@ def test_the_variant_that_tables_name_may_be_given(rocking):
     assert (status, given["variant"], given["peak_tilt"]) == (0, "kernel", own["peak_tilt"])
 
 
+@pytest.mark.slow
 def test_module_and_status_in_a_new_process(tmp_path):
     path = write_scene(tmp_path, SCENE.replace("3172.05", "-1"))
     done = in_a_new_process(path)
@@ -122,20 +123,6 @@ def test_engines_lists_what_is_there_and_what_is_not(rocking, monkeypatch):
     assert max(map(len, told)) <= 80 and "slenderness 0.1 to 0.5 rad" in " ".join(out.split())
     for name in installed_engines():
         assert name in out and all(f" {variant} " in out for variant in get_engine(name).variants)
-
-
-@pytest.mark.parametrize("name", ENGINES)
-def test_engines_with_a_name_tells_all_of_it(rocking, name):
-    engine, (status, out, _) = get_engine(name), rocking("engines", name)
-    assert status == 0 and f"{name} (" in out and f"--variant {engine.default_variant} (main, " in out
-    for variant, one in engine.variants.items():
-        assert f"--variant {variant} (" in out and one.kind in out
-        assert f"the engine computes: {one.computes}" in out and f"the adapter imposes: {one.imposes}" in out
-        assert f"known faults: {one.faults}" in out or not one.faults
-        assert all(f"{setting}=" in out for setting in vars(one.settings))
-        assert all(out.count(f"        {call}") == 1 for call in one.calls) and "engines." not in out
-        assert f"{one.accuracy_parameter}={one.default:g} (accuracy parameter)" in out
-        assert f"fine: {', '.join(f'{value:.4g}' for value in one.levels)}\n" in out
 
 
 @pytest.mark.slow
