@@ -58,7 +58,10 @@ def test_run_writes_json_csv_and_plot(rocking, tmp_path):
 
 @pytest.mark.parametrize(
     "engine",
-    [pytest.param(name, marks=pytest.mark.slow if one.subject else pytest.mark.long) for name, one in ENGINES.items()],
+    [
+        pytest.param(name, marks=pytest.mark.slow if name == "exudyn" else pytest.mark.long)
+        for name, one in ENGINES.items()
+    ],
 )
 def test_json_of_an_engine_is_alone_too(engine):
     """In a new process: an engine may greet when it is loaded, or when C flushes its buffers at exit."""
@@ -125,7 +128,7 @@ def test_engines_lists_what_is_there_and_what_is_not(rocking, monkeypatch):
         assert name in out and all(f" {variant} " in out for variant in get_engine(name).variants)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_compare(rocking, tmp_path):
     picture, result = tmp_path / "c.png", tmp_path / "c.json"
     status, out, _ = rocking("compare", "free-rocking-rigid", "--plot", picture, "--json", result)
@@ -234,7 +237,7 @@ def test_names_are_printed_and_drawn_as_they_are(rocking, tmp_path, name):
     assert files[1].stat().st_size > 1000
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_names_the_terminal_cannot_show(tmp_path):
     done = in_a_new_process(named(tmp_path, "石"), PYTHONIOENCODING="ascii")
     assert done.returncode == 0 and "\\u77f3" in done.stdout

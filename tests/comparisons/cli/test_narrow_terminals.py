@@ -31,7 +31,7 @@ COMMANDS = {
 }
 DEAR = {
     "compare": "slow",
-    "margin": "slow",
+    "margin": "long",
     **dict.fromkeys(("compare, sliding", "design", "choose", "verify"), "long"),
 }
 SLIDES = """friction = 0.4
