@@ -76,8 +76,9 @@ def hears(process, number=signal.SIGINT):
     return time.monotonic() - began, psutil.wait_procs(family, timeout=5)[1]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("command", ["run", "compare"])
+@pytest.mark.parametrize(
+    "command", [pytest.param("run", marks=pytest.mark.slow), pytest.param("compare", marks=pytest.mark.long)]
+)
 def test_ctrl_c_in_the_kernel(tmp_path, command):
     scene = endless(tmp_path)
     process = started("-m", "comparisons", command, scene, "--json", tmp_path / "r.json")
@@ -108,13 +109,12 @@ cli.main(["engines"])
 """
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "number, status, words",
     [
-        (signal.SIGINT, 130, "Interrupted.\n"),
-        (signal.SIGTERM, 143, "Ended by SIGTERM.\n"),
-        (signal.SIGHUP, 129, "Ended by SIGHUP.\n"),
+        pytest.param(signal.SIGINT, 130, "Interrupted.\n", marks=pytest.mark.long),
+        pytest.param(signal.SIGTERM, 143, "Ended by SIGTERM.\n", marks=pytest.mark.slow),
+        pytest.param(signal.SIGHUP, 129, "Ended by SIGHUP.\n", marks=pytest.mark.long),
     ],
 )
 def test_signals_while_this_process_itself_is_in_the_kernel(tmp_path, number, status, words):
@@ -161,7 +161,7 @@ def test_an_interrupted_study_says_what_is_kept(tmp_path):
     assert "Traceback" not in err and err.endswith(kept(store, count))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_an_interrupted_report_says_what_is_kept_and_goes_on_from_there(tmp_path):
     shutil.copytree(RESULTS / "sensitivity", tmp_path / "studies" / "sensitivity")
     store, one = tmp_path / "page" / UNFINISHED / "runs.jsonl", ("--engine", "exudyn")

@@ -12,7 +12,7 @@ from made_up_records import csmip
 from comparisons.cli.application import app
 from engines import ENGINES, get_engine
 
-VALUES = ("-1", "0", "nan", "inf", "1e308", "1e-320", "1e20", "100000000000000000000", "")
+VALUES = ("-1", "0", "nan", "1e308", "1e-320", "100000000000000000000", "")
 BUST = ("new", "NEW", "--anyway", "--height", "1.9", "--width", "0.55", "--mass", "500")
 ISOLATED = (*BUST, "--base-mass", "400")
 BASES = {

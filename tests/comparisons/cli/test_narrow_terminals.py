@@ -29,7 +29,11 @@ COMMANDS = {
     "verify": ("verify", "--engine", "exudyn"),
     "new": ("new", "new.toml", "--height", "1.9", "--width", "0.55", "--mass", "1000"),
 }
-DEAR = ("compare", "compare, sliding", "margin", "design", "choose", "verify")
+DEAR = {
+    "compare": "slow",
+    "margin": "long",
+    **dict.fromkeys(("compare, sliding", "design", "choose", "verify"), "long"),
+}
 SLIDES = """friction = 0.4
 [block]
 mass = 3172.05
@@ -68,7 +72,7 @@ def printed(table, width):
 
 
 @pytest.mark.parametrize(
-    "command", [pytest.param(one, marks=pytest.mark.slow if one in DEAR else ()) for one in COMMANDS]
+    "command", [pytest.param(one, marks=getattr(pytest.mark, DEAR[one]) if one in DEAR else ()) for one in COMMANDS]
 )
 def test_numbers_are_whole_and_what_is_left_out_is_named(rocking, place, monkeypatch, command):
     shown = []

@@ -454,13 +454,10 @@ def test_script(rocking, tmp_path, monkeypatch, kind):
     compile((tmp_path / "own.py").read_text(), "own.py", "exec")
 
 
-@pytest.mark.parametrize("command", ["run", "compare", "margin", "design", "report"])
+@pytest.mark.parametrize("command", ["run", "compare", "margin", "report"])  # a design is of the block, not the scene
 @pytest.mark.parametrize("kind", REFUSED)
 def test_a_scene_that_the_model_refuses_is_named_with_its_remedy(road, kind, command):
-    more = {"design": ("--stroke", 0.2, "--base-mass", 100)}.get(command, ())
-    if command == "design":
-        pytest.skip("it runs the block on bearings, not the scene")
-    status, answer, _, err = road(command, kind, *more)
+    status, answer, _, err = road(command, kind)
     assert status == 2 and answer is None
     said = ERROR.match(err.strip().splitlines()[-1])
     assert said and said["file"] == "scene.toml" and said["field"] == REFUSED[kind][1], err

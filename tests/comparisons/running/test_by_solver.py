@@ -253,7 +253,7 @@ SMALL: dict[str, dict[str, Any]] = {
     "sensitivity": {"scenes": {"free-standing": ("caryatid-rigid", (0.2,))}, "motions": (8, 2, 1)},
     "mistakes": {},
 }
-DEAR = ("restitution", "statues", "sensitivity", "mistakes")
+DEAR = {"restitution": "long", "statues": "long", "sensitivity": "slow", "mistakes": "long"}
 # an engine's row is made of its own runs alone; of the second by test_shake_table.py, with tests made up
 OF_MOTIONS = ("recorded", "shake-table")
 
@@ -262,7 +262,9 @@ def test_every_study_takes_one_engine_or_says_why_not():
     assert {name for name in BUILT_IN if not get_study(name).whole} == {*SMALL, *OF_MOTIONS}
 
 
-@pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.slow if name in DEAR else ()) for name in SMALL])
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=getattr(pytest.mark, DEAR[name]) if name in DEAR else ()) for name in SMALL]
+)
 def test_no_row_of_a_study_that_takes_one_engine_hangs_on_another(name, monkeypatch):
     """The plan, answered by the model in each engine's place: two engines at once, and one after the other."""
     monkeypatch.setattr("comparisons.studies.mistakes.study.QUICK", ())  # scripts are run: those as they are suffice
