@@ -114,19 +114,6 @@ def test_an_engine_that_is_the_model_does_not_differ_and_the_page_says_what_woul
     assert STUDY.judgements(equal)[0].marks["pybullet", "first-script"].level == "bad"
 
 
-def test_the_page_shows_every_row_and_the_messages_of_failed_runs(equal):
-    whole = STUDY.page(equal).whole()
-    found, overturning, others, curves, _ = (len(table.rows) for table in whole.tables)
-    effects, failed = (where(equal.rows, part=part) for part in ("effect", "failure"))
-    assert (
-        found == len(equal.settings["variants"])
-        and len(whole.figures) == 3
-        and overturning == len(where(effects, state="overturning"))
-    )
-    assert overturning + others == len(effects) and curves == len(where(equal.rows, part="fit"))
-    assert len(whole.evidence) == len(failed) >= 4 and "raw evidence" in whole.evidence[0][1]
-
-
 def test_counts_and_points_are_those_of_single_simulations(weaker):
     drawn = cloud(*FREE["free-standing"], RUNS[0])
     fallen = np.array([simulate(scene, history=False).outcome == "overturns" for scene in drawn.scenes])
