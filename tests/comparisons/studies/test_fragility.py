@@ -83,6 +83,7 @@ def test_measures_are_those_of_the_motions_and_blocks():
     assert [scene.digest() for scene in again.scenes] == [scene.digest() for scene in drawn.scenes]
 
 
+@pytest.mark.slow
 def test_an_engine_that_sees_weaker_motions_is_found_out(weaker):
     """Its medians are those of the model over .7, and its dispersions the model's."""
     rows = where(weaker.rows, part="effect", engine="pybullet", variant="impact-aware")
@@ -114,6 +115,7 @@ def test_an_engine_that_is_the_model_does_not_differ_and_the_page_says_what_woul
     assert STUDY.judgements(equal)[0].marks["pybullet", "first-script"].level == "bad"
 
 
+@pytest.mark.slow
 def test_counts_and_points_are_those_of_single_simulations(weaker):
     drawn = cloud(*FREE["free-standing"], RUNS[0])
     fallen = np.array([simulate(scene, history=False).outcome == "overturns" for scene in drawn.scenes])
@@ -128,6 +130,7 @@ def test_counts_and_points_are_those_of_single_simulations(weaker):
     assert check["undecided"] == check["failed"] == 0
 
 
+@pytest.mark.slow
 def test_uplift_hangs_on_the_peak_over_the_uplift_acceleration(weaker):
     """A free-standing block lifts at PGA = g tan γ, whatever the motion."""
     uplift, *others = where(weaker.rows, part="fit")
@@ -156,6 +159,7 @@ def tilts(result, near, state):
     return np.isinf(tilt) if state == "overturning" else tilt > float(state.rpartition(" ")[2])
 
 
+@pytest.mark.slow
 def test_a_curve_is_drawn_only_where_it_fits(weaker):
     rows = [
         {**row, "p_value": 0.5 if row["state"] == "overturning" else 0.01} if row["part"] == "fit" else row
