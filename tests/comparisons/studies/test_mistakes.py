@@ -78,6 +78,7 @@ def test_a_run_that_is_none_is_a_row_with_its_reason(monkeypatch):
     assert found(ABLE[0], None) == {**study.NOTHING, "outcome": "failed", "reason": "it fell apart"}
 
 
+@pytest.mark.slow
 def test_a_quick_study_has_a_row_for_each_mistake_and_a_page(tmp_path):
     answer = answered(STUDY.plan(Request((ABLE[0], "mujoco"), quick=True)), by_runs(tmp_path))[-1]
     known = ENGINES[ABLE[0]].known_mistakes()

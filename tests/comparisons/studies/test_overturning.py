@@ -3,7 +3,6 @@
 import dataclasses
 from collections import Counter
 
-import numpy as np
 import pytest
 from answered import answered, by_model, stored
 from page_numbers import number_in
@@ -87,24 +86,6 @@ def test_the_scan_counts_who_errs_which_way(tmp_path):
         assert row["only_a"] == 0 < row["only_b"] and row["failed"] and row["interval"][0] > 0
         counts = ("failed", "both_stand", "both_overturn", "only_a", "only_b")
         assert row["runs"] == sum(row[key] for key in counts)
-
-
-def test_the_page_shows_every_boundary_and_every_level(tmp_path):
-    result, page = study(tmp_path, shifted(0.0))
-    edges = where(result.rows, part="edge")
-    strip, *others = page.figures
-    assert strip.svg.count(b'class="dot') == len(where(result.rows, part="shift")) + len(edges) == 4 * 6 + 6
-    for figure in others[:2]:  # maps, and shifts over frequency
-        assert figure.svg.count(b'class="dot') == 2 * len(edges) == 12  # two engines
-    (boundaries,) = (table for table in page.tables if "pybullet, impact-aware [%]" in table.columns)
-    shown = np.array([[number_in(row[column]) for column in (3, -4, -3, -2, -1)] for row in boundaries.rows])
-    assert shown[:, 0] == pytest.approx([edge["amplitude"] for edge in edges], rel=1e-5)
-    shifts = [100 * row["shift"] for row in where(result.rows, part="shift")]
-    assert shown[:, 1:].T.ravel() == pytest.approx(shifts, rel=0.06)
-    levels = {(row["engine"], row["variant"], row["level"]) for row in where(result.rows, part="refinement")}
-    at_default = {(*pair, None) for pair in result.settings["default_variants"].items()}
-    assert len(page.tables[-1].rows) == len(levels | at_default) > len(levels)
-    assert "time-stepping" in {row[0] for row in page.tables[-1].rows} & set(page.figures[-1].solvers)
 
 
 def slides(case):

@@ -8,7 +8,6 @@ from collections import Counter
 
 import pytest
 from answered import answered, by_model, stored
-from page_numbers import number_in
 from record_files import pairs
 
 from analytic import SceneError, SettingError, simulate
@@ -20,7 +19,7 @@ from comparisons.running.plan import Request
 from comparisons.running.provenance import read_result, write_result
 from comparisons.running.sweep import Row
 from comparisons.showing.parts import where
-from comparisons.showing.wording import ENDS, TURNED
+from comparisons.showing.wording import ENDS
 from comparisons.studies import get_study
 from comparisons.studies.recorded.page import summary
 from comparisons.studies.recorded.study import LAWS, RANGES, _errors, _run_row, drawn_scene, of_engine, plan
@@ -194,33 +193,6 @@ def test_a_summary_counts_by_record():
         assert row["tilt_error"] == [pytest.approx(0.1), pytest.approx(0.1), 99, pytest.approx(0.1)]
         assert row["own_tilt_error"] is None
     assert list(summary([])) == []
-
-
-def test_the_page_counts_the_rows_and_names_every_run_that_differs(found, tmp_path):
-    study, result = get_study("recorded"), stored(tmp_path, "recorded", found)
-    page, opening = study.page(result).whole(), study.page(result).opening()
-    assert len(opening.figures) == 1 and 20 < len(opening.title) < 200
-    runs, counts = where(result.rows, part="run"), opening.tables[0]
-    for row in counts.rows:
-        (name, _, judged, differ), share = row[:4], row[-1]
-        ways = {head: int(cell) for head, cell in zip(counts.columns, row, strict=True) if head in ENDS.values()}
-        mine = Counter(row["class"] for row in runs if name == f"{row['engine']}, {row['variant']}")
-        assert int(judged) == mine.total() - mine["left out"]
-        assert (
-            sum(ways[head] for way, head in ENDS.items() if way in ("edge", "out") and head in ways) == mine["left out"]
-        )
-        assert int(differ) == mine["differs"] + mine["failed"] and ways[ENDS["failed"]] == mine["failed"] == 1
-        assert ways[ENDS[TURNED]] == mine["differs"] == 1  # the toppled one
-        assert number_in(share) == pytest.approx(100 * int(differ) / int(judged), rel=0.06)
-        mark = study.judgements(result)[0].marks[tuple(name.split(", "))]
-        assert mark.words.startswith(f"{differ} of {judged} (at most ")
-        assert mark.level in ("bad", "fair") and f"; left out: {ways[ENDS['edge']]} near an" in mark.note
-    wrong = [row for row in runs if row["class"] in ("differs", "failed")]
-    assert len(page.tables[-1].rows) == len(wrong) and len(page.evidence) == sum(
-        row["class"] == "failed" for row in wrong
-    )
-    assert page.tables[-1].rows[0][1] == f"{wrong[0]['record']}/{wrong[0]['component']}"
-    assert [row[-1] for row in page.tables[-1].rows] == ["; ".join(row.get("differences", ())) or "–" for row in wrong]
 
 
 def test_nothing_of_a_record_is_kept_but_peaks(found, folder, tmp_path):

@@ -364,19 +364,6 @@ def test_rows_of_the_study_are_what_was_counted(found, folder):
     assert len(where(result.rows, part="failure")) == len(result.settings["variants"]) > 1
 
 
-def test_the_page_says_what_was_counted_and_not_what_is_not_told(found):
-    _, result = found
-    page = get_study("shake-table").page(result).whole()
-    (table,) = [one for one in page.tables if "beside what was measured" in one.caption]
-    places = [place for place, head in enumerate(table.columns) if head.endswith(": right")]
-    assert {row[place] for row in table.rows for place in places} == {"–"} and len(places) == 2
-    assert "slenderness, fitted to all tests" in page.figures[0].caption and campaign.DOI in " ".join(page.measured)
-    assert f"{ENGINE}, " not in page.figures[0].svg.decode()
-    assert "Tuned engines differ from the model in" in " ".join(page.text)
-    said = " ".join(part for part in page.parts if isinstance(part, str))
-    assert f"the same outcome in {result.settings['agree']}." in said
-
-
 def test_an_engine_may_be_computed_alone_though_the_cpu_time_of_the_model_is_another(found):
     _, result = found
     later = dataclasses.replace(result, settings=result.settings | {"cpu_seconds": 1.0})

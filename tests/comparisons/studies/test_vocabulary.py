@@ -44,12 +44,14 @@ def columns(tmp_path_factory, patch):
     return found
 
 
+@pytest.mark.slow
 def test_every_column_is_explained(columns):
     for kind, own in columns.items():
         known = columns_of(kind)
         assert own and own <= known.keys() and all(one.what and one.unit for one in known.values()), kind
 
 
+@pytest.mark.slow
 def test_every_explained_column_is_one(columns):
     assert {*BUILT_IN, TOLERANCES} == set(OWN)
     for kind, own in OWN.items():
