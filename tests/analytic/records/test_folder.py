@@ -134,12 +134,6 @@ THREE = "t [s],E [m/s2],N [m/s2],Up [m/s2]\n" + "".join(
 )
 
 
-def test_a_vertical_channel_beside_horizontal_ones_is_named_with_what_to_do(tmp_path):
-    (tmp_path / "a.csv").write_text(THREE)
-    found, left = folder_motions(tmp_path)
-    assert len(found["a.csv"]) == 2 and left == [f"a.csv, column 4 (Up): {VERTICAL}"]
-
-
 @pytest.mark.parametrize("vertical", ["a.csv", "b.csv", "longer.csv", "finer.csv"])
 def test_a_scenes_motion_with_its_vertical_one_is_the_records_of_the_folder_whose_place_it_takes(tmp_path, vertical):
     """The vertical one is left out only where it is not that of the scene."""
@@ -174,13 +168,11 @@ def test_a_copy_counts_once_and_a_pair_stays_whole(tmp_path):
     assert left == ["0.csv: left out, same as A_N.csv", "other.csv: left out, same as A_E.csv"]
 
 
-def test_other_warnings_stay_on_the_motion(tmp_path):
-    write(tmp_path, "a.csv")
-    text = (tmp_path / "a.csv").read_text()
-    (tmp_path / "a.csv").write_text("# number of samples: 9\n" + text)
+def test_a_vertical_channel_is_named_with_what_to_do_and_other_warnings_stay_on_the_motion(tmp_path):
+    (tmp_path / "a.csv").write_text("# number of samples: 9\n" + THREE)
     found, left = folder_motions(tmp_path)
-    ((motion,),) = found.values()
-    assert left == [] and "states 9 samples, the data have 4" in motion.warnings[0]
+    assert left == [f"a.csv, column 4 (Up): {VERTICAL}"]
+    assert ["states 9 samples, the data have 4" in one.warnings[0] for one in found["a.csv"]] == [True, True]
 
 
 def test_an_odd_channel_is_left_out_and_the_others_stay(tmp_path):

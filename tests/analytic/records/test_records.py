@@ -34,13 +34,6 @@ AT2_FILES = {
 }
 
 
-@pytest.mark.parametrize("text", AT2_FILES.values(), ids=AT2_FILES)
-def test_at2(tmp_path, text):
-    motion = read_record(write(tmp_path, text, "x.AT2"))
-    np.testing.assert_allclose(motion.samples, np.array(SAMPLES) * G, rtol=1e-15)
-    assert motion.dt == 0.02 and motion.label == "x.AT2"
-
-
 def dyna(values, **changes):
     """A DYNA 1.2 file: lines of header, one value a line; a key set to None is left out."""
     keys = {
@@ -58,10 +51,15 @@ def dyna(values, **changes):
     return header + "".join(f"{value:.6f}\n" for value in values)
 
 
-def test_dyna(tmp_path):
-    motion = read_record(write(tmp_path, dyna(SAMPLES)))
-    assert motion.dt == 0.01
-    np.testing.assert_allclose(motion.samples, np.array(SAMPLES) * 0.01, rtol=1e-15)
+@pytest.mark.parametrize(
+    "text, factor, dt",
+    [*((text, G, 0.02) for text in AT2_FILES.values()), (dyna(SAMPLES), 0.01, 0.01)],
+    ids=[*AT2_FILES, "DYNA"],
+)
+def test_at2_and_dyna(tmp_path, text, factor, dt):
+    motion = read_record(write(tmp_path, text, "x.AT2"))
+    np.testing.assert_allclose(motion.samples, np.array(SAMPLES) * factor, rtol=1e-15)
+    assert motion.dt == dt and motion.label == "x.AT2"
 
 
 ROWS = "".join(f"\n{i / 200} {a}" for i, a in enumerate(SAMPLES))
