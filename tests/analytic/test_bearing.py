@@ -7,8 +7,21 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
+from analytic import (
+    PulseMotion,
+    SceneError,
+    SettingError,
+    bearing_scan,
+    load_scene,
+    simulate,
+    simulate_many,
+    synthetic_motion,
+)
 from analytic.bearing import BearingLaw
+from analytic.bearing_scan import DAMPING_STEP, PERIOD_STEP, first_stroke, scan_bearings
+from analytic.design import design_bearings, properties
 from analytic.scene import Bearings
+from comparisons.running.provenance import commit_seed
 
 KA, KB, ALPHA = 6.22e4, 6.22e3, 44.69
 PAPER = BearingLaw.of(Bearings(ka=KA, kb=KB, alpha=ALPHA))
@@ -98,3 +111,157 @@ def test_force_is_continuous_at_reversals(law, share, s, travel):
     z = share * law.f0
     assert abs(law.hysteretic(z, s * travel) - z) <= law.dk * travel * (1 + 1e-6) + 1e-9 * law.f0
     assert law.hysteretic(z, 0.0) == z
+
+
+# The bearings that hold, against single runs at random points.
+PULSE = PulseMotion("one-sine", 2.5, 4.8)
+SCENE = load_scene("caryatid-isolated")
+POINTS = 400
+
+
+def held(scene, motions, points, stroke, tilt=0.0):
+    """Whether bearings designed anew for each (period, damping) hold under all motions."""
+    holds = np.ones(len(points), dtype=bool)
+    designs = [design_bearings(scene.total_mass, period, damping, stroke) for period, damping in points]
+    for motion in motions:
+        found = simulate_many([scene.with_(bearings=one, motion=motion, duration=None) for one in designs])
+        calm = ~found.lifted if tilt == 0 else found.peak_tilt <= tilt * scene.block.slenderness
+        holds &= calm & ~found.failed & (found.peak_base_displacement <= stroke)
+    return holds
+
+
+@pytest.mark.parametrize(
+    ("stroke", "tilt", "scale"),
+    [pytest.param(0.25, 0.0, 1.0, marks=pytest.mark.slow), pytest.param(0.3, 0.2, 1.5, marks=pytest.mark.long)],
+)
+def test_the_region_is_that_of_single_runs_but_within_one_per_cent_of_its_edge(stroke, tilt, scale):
+    motions = [synthetic_motion().scaled(scale), synthetic_motion(seed=7).scaled(scale)]
+    scan = scan_bearings(SCENE, motions, stroke, tilt=tilt)
+    random = np.random.default_rng(commit_seed())
+    ends = np.log(scan.periods[[0, -1]])
+    points = np.column_stack(
+        [np.exp(random.uniform(*ends, POINTS)), random.uniform(scan.dampings[0], scan.dampings[-1], POINTS)]
+    )
+    truth = held(SCENE, motions, points, stroke, tilt)
+    assert 0.02 * POINTS < truth.sum() < 0.98 * POINTS
+    for (period, damping), holds in zip(points, truth, strict=True):
+        if scan.holds(period, damping) != holds:
+            about = [
+                scan.holds(period * (1 + PERIOD_STEP * i), damping + DAMPING_STEP * k)
+                for i in (-1, 0, 1)
+                for k in (-1, 0, 1)
+            ]
+            assert holds in about
+
+
+@pytest.fixture(scope="module")
+def scanned():
+    """(scan, [(runs done, runs known)] as told)."""
+    told = []
+    scan = scan_bearings(SCENE, [SCENE.motion], 0.25, progress=lambda done, known: told.append((done, known)))
+    return scan, told
+
+
+@pytest.mark.parametrize("name", ["least_stroke", "softest"])
+def test_the_bearings_named_hold_in_a_run_of_their_own(scanned, name):
+    scan, _ = scanned
+    point = getattr(scan, name)
+    bearings = scan.bearings(*point)
+    got = properties(bearings, SCENE.total_mass, 0.25)
+    assert (got.period, got.damping_equivalent) == pytest.approx(point, rel=1e-3)
+    response = simulate(SCENE.with_(bearings=bearings, duration=None), history=False)
+    assert response.outcome == "stands"
+    assert response.peak_base_displacement <= 0.25
+
+
+def test_least_stroke_is_the_least_and_softest_the_longest_and_progress_ends_at_the_number_of_runs(scanned):
+    scan, told = scanned
+    run = ~np.isnan(scan.stroke) & (scan.demand <= 1)
+    row, column = np.unravel_index(np.where(run, scan.stroke, np.inf).argmin(), run.shape)
+    assert scan.least_stroke == (scan.periods[column], scan.dampings[row])
+    assert scan.softest[0] == scan.periods[run.any(axis=0)].max()
+    assert told[-1][0] == told[-1][1] and all(done <= known for done, known in told)
+
+
+def test_the_mass_of_the_base_does_not_matter_where_the_block_does_not_lift():
+    """Block and base then move as one: period and damping that hold are the same, the constants go with the mass."""
+    light, heavy = (
+        scan_bearings(SCENE.with_(base={"mass": share * SCENE.block.mass}), [PULSE], 0.25) for share in (0.1, 3.0)
+    )
+    assert ((light.demand <= 1) == (heavy.demand <= 1)).mean() > 0.999  # in rounding
+    assert light.least_stroke == heavy.least_stroke and light.softest == heavy.softest
+    ratio = heavy.bearings(*heavy.softest).ka / light.bearings(*light.softest).ka
+    assert ratio == pytest.approx(4.0 / 1.1, rel=1e-6)
+
+
+def test_where_nothing_holds_the_nearest_is_named():
+    scan = scan_bearings(SCENE, [PULSE.scaled(2.0)], 0.02)
+    assert scan.least_stroke is scan.softest is None
+    assert np.nanmin(scan.demand) > 1
+    assert not scan.holds(*scan.nearest) and not scan.holds(99.0, 0.1)
+
+
+def test_at_the_first_stroke_there_are_bearings_and_at_a_third_of_it_there_are_none():
+    scene, motions = SCENE.with_(block={"slenderness": 0.2}), [PulseMotion("one-sine", 2.0, 4.8)]
+    stroke = first_stroke(scene, motions)
+    assert (scan_bearings(scene, motions, stroke).demand <= 1).any()
+    assert not (scan_bearings(scene, motions, stroke / 3).demand <= 1).any()
+
+
+def test_there_is_no_first_stroke_where_there_are_no_bearings_at_any():
+    pulse = PulseMotion("one-sine", 10.0, 2.3)
+    assert first_stroke(SCENE, [SCENE.motion, pulse]) is None
+    for stroke in (0.3, 1.0):
+        assert not (scan_bearings(SCENE, [pulse], stroke).demand <= 1).any()
+
+
+@pytest.mark.parametrize(
+    ("scene", "motions", "options", "words"),
+    [
+        (load_scene("caryatid-rigid"), 1, {}, "base"),
+        (SCENE, 0, {}, "no motion"),
+        (SCENE, 1, {"stroke": -1.0}, "stroke"),
+        (SCENE, 1, {"stroke": math.nan}, "stroke"),
+        (SCENE, 1, {"tilt": 2.0}, "tilt"),
+        (SCENE, 1, {"periods": (2.0, 1.0)}, "periods"),
+        (SCENE, 1, {"count": 0}, "count"),
+    ],
+)
+def test_what_is_out_of_range_is_refused(scene, motions, options, words):
+    with pytest.raises((SceneError, SettingError), match=words):
+        scan_bearings(scene, [SCENE.motion] * motions, **{"stroke": 0.25, **options})
+
+
+@pytest.mark.parametrize("friction, tilt", [(0.1, 0.5), (0.6, 0.0)])
+def test_with_a_friction_bearings_hold_only_where_the_block_does_not_slide_either(friction, tilt):
+    scene, motions = SCENE.with_(friction=friction), [PULSE.scaled(0.7)]
+    scan = scan_bearings(scene, motions, 0.3, tilt=tilt)
+    plain = scan_bearings(SCENE, motions, 0.3, tilt=tilt)
+    assert ((scan.demand <= 1) <= (plain.demand <= 1)).all()
+    assert ((scan.demand <= 1).sum() < (plain.demand <= 1).sum()) == (friction == 0.1)
+    for row, column in np.argwhere(~np.isnan(scan.stroke))[::97]:
+        bearings = scan.bearings(scan.periods[column], scan.dampings[row])
+        found = simulate(scene.with_(bearings=bearings, motion=motions[0], duration=None), history=False)
+        slides = found.sliding is not None and found.sliding.path > 0
+        assert not (slides and scan.demand[row, column] <= 1 - 1e-3)
+        assert (
+            slides or found.outcome != "stands" or found.peak_base_displacement > 0.3 or scan.demand[row, column] <= 1
+        )
+
+
+def test_the_first_stroke_is_that_of_bearings_on_which_it_does_not_slide():
+    motions = [PulseMotion("one-sine", 6.0, 6.0)]
+    held, rubs = (first_stroke(SCENE.with_(friction=friction), motions) for friction in (None, 0.22))
+    assert held < rubs == first_stroke(SCENE.with_(block={"slenderness": math.atan(0.22)}), motions)
+
+
+@pytest.mark.parametrize("amplitude, holds", [(0.1, True), (80.0, False)])
+def test_where_all_hold_or_none_the_second_scan_has_no_runs(monkeypatch, amplitude, holds):
+    monkeypatch.setattr(bearing_scan, "PERIOD_STEP", 0.2)
+    monkeypatch.setattr(bearing_scan, "DAMPING_STEP", 0.02)
+    motion = PulseMotion("one-sine", amplitude, 2.0)
+    scan = scan_bearings(SCENE, [motion], 0.2)
+    assert ((scan.demand <= 1) == holds).all() and (scan.least_stroke is not None) == holds
+    period, damping = scan.nearest
+    found = simulate(SCENE.with_(bearings=scan.bearings(period, damping), motion=motion, duration=None), history=False)
+    assert (found.outcome == "stands") == holds

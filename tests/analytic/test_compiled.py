@@ -9,6 +9,7 @@ from numba import njit
 from numba.core.registry import cpu_target
 
 from analytic import kernel
+from analytic._cache import digest
 from analytic.compiled import compiling, entry, inner
 from analytic.layout import ROWS, TOTALS
 
@@ -88,3 +89,46 @@ def test_an_inner_function_is_no_machine_code_but_in_its_entry():
 def test_the_kernel_keeps_to_the_arrays_it_is_given():
     arrays = kernel.arrays(np.empty((1, TOTALS)), capacity=2, outputs=3)
     assert arrays.P.shape[0] == ROWS and [len(rows) for rows in arrays[2:6]] == [2, 2, 2, 3]
+
+
+# The key of a compiled function is what it does: what it reads counts, and nothing else.
+PLAIN = """
+LIMIT = 2.0
+def inner(x):
+    return x * LIMIT
+def make(step):
+    def outer(x, least=0.5):
+        '''What it does.'''
+        return max(inner(x), least) + step + sum([k for k in (1, 2)])
+    return outer
+outer = make(3)
+"""
+
+
+def key(text):
+    scope = {"__name__": "analytic.made"}  # followed as the model's own
+    exec(text, scope)
+    return digest(scope["outer"])
+
+
+@pytest.mark.parametrize(
+    "before, after",
+    [("LIMIT = 2.0", "\nLIMIT = 2.0  # so far"), ("What it does.", "Another sentence."), ("\ndef", "\nOTHER = 1\ndef")],
+)
+def test_words_lines_and_what_is_not_read_do_not_count(before, after):
+    assert key(PLAIN.replace(before, after, 1)) == key(PLAIN)
+
+
+@pytest.mark.parametrize(
+    "before, after",
+    [
+        ("2.0", "2.5"),
+        ("x * LIMIT", "x / LIMIT"),
+        ("0.5", "0.6"),
+        ("max", "min"),
+        ("make(3)", "make(4)"),
+        ("1, 2", "1, 3"),
+    ],
+)
+def test_constants_operations_defaults_closures_and_what_is_called_count(before, after):
+    assert key(PLAIN.replace(before, after)) != key(PLAIN)

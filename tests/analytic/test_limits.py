@@ -1,26 +1,163 @@
-"""What bearings are built for, and how a run beyond it is said."""
+"""A run that does not get on ends with an error that names the part of the scene to blame."""
 
+import math
+import re
+
+import numpy as np
 import pytest
 
-from analytic import Base, Bearings, Block, PulseMotion, Scene, Start, load_scene, shipped_scenes, simulate
+from analytic import (
+    Base,
+    Bearings,
+    Block,
+    PulseMotion,
+    SampledMotion,
+    Scene,
+    SceneError,
+    SettingError,
+    Start,
+    budget,
+    load_scene,
+    shipped_scenes,
+    simulate,
+    simulate_many,
+    synthetic_motion,
+)
+from analytic.caryatid import BASE, BEARINGS, caryatid_block
 from analytic.limits import scene_warnings
+from analytic.margins import margins
+from analytic.time_stepping import simulate_time_stepping
 from analytic.twin import simulate_twin
 from engines import get_engine
 
-BEARINGS = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69, x_max=0.05)
+TABLE_1 = {"count": 4, "ka": 6.22e4, "kb": 6.22e3, "alpha": 44.69}
+PULSE = PulseMotion("one-sine", 3.0, 3.0)
+
+
+def isolated(motion=PULSE, **bearings):
+    return Scene(block=caryatid_block(0.28), base=BASE, bearings=Bearings(**bearings), motion=motion)
+
+
+STIFF = {
+    "stiffness": (isolated(**{**TABLE_1, "ka": 1e18}), "bearings.ka = 1e+18: the base vibrates at"),
+    "linear stiffness": (isolated(law="linear", ka=1e19), "bearings.ka = 1e+19"),
+    "exponent": (isolated(law="bouc-wen", **{**TABLE_1, "alpha": 1e10}), "bearings.alpha = 10000000000.0: the law"),
+    "damper": (isolated(**TABLE_1, damping=1e14), "bearings.damping = 100000000000000.0: such dampers stop the base"),
+    "slow pulse": (isolated(PulseMotion("one-sine", 2.0, 1e-7), **TABLE_1), "motion.frequency = 1e-07: the motion"),
+    "late pulse": (
+        Scene(block=caryatid_block(0.28), base=BASE, bearings=BEARINGS, start=Start(base_displacement=0.2),
+              motion=PulseMotion("one-sine", 3.0, 3.0, start=1e7)),
+        "motion.start = 10000000.0: the motion lasts",
+    ),
+}  # fmt: skip
+
+
+@pytest.fixture
+def small(monkeypatch):
+    """A hundredth of the steps: what is refused is not less stiff for that."""
+    monkeypatch.setattr(budget, "STEPS", budget.STEPS // 100)
+    monkeypatch.setattr(budget, "MOST_STEPS", budget.MOST_STEPS // 100)
+
+
+@pytest.mark.parametrize("scene, words", STIFF.values(), ids=STIFF)
+def test_what_does_not_get_on_is_named(small, scene, words):
+    with pytest.raises(SceneError) as caught:
+        simulate(scene)
+    assert str(caught.value).startswith(words)
+    assert "steps of the analytic model reach only" in str(caught.value)
+    with pytest.raises(SceneError) as caught:
+        margins(scene)
+    assert str(caught.value).startswith(words.partition(":")[0])
+
+
+def test_the_frequency_named_is_that_of_the_base_under_a_block_that_follows_it(small):
+    """Of its mass what does not rock with it: M - (m R cos(gamma))^2/J."""
+    scene = isolated(law="linear", count=4, ka=1e19)
+    block = scene.block
+    free = scene.total_mass - (block.mass * block.radius * math.cos(block.slenderness)) ** 2 / block.inertia
+    with pytest.raises(SceneError, match=re.escape(f"vibrates at {math.sqrt(4e19 / free):.3g} rad/s")):
+        simulate(scene)
+
+
+@pytest.mark.parametrize("duration", [None, 1.0])
+def test_the_second_implementation_refuses_at_once_what_the_model_gives_up(duration):
+    scene = isolated(law="linear", ka=1e20)
+    with pytest.raises(SceneError, match=r"bearings.ka = 1e\+20: the base vibrates at .* steps of the second"):
+        simulate_twin(scene.with_(duration=duration))
+
+
+def test_steps_too_short_for_the_run_are_refused_by_the_shortest_that_are_not():
+    scene = Scene(block=caryatid_block(0.28), start=Start(tilt=0.2), duration=10.0)
+    with pytest.raises(SettingError, match="max_step = 1e-09: 1e\\+10 steps; give at least 2e-06 s"):
+        simulate_twin(scene, max_step=1e-9)
+    with pytest.raises(SettingError, match="step = 1e-09: 1e\\+10 steps; give at least 1e-06 s"):
+        simulate_time_stepping(scene, step=1e-9)
+    with pytest.raises(SettingError, match="give at least 1e-07 s"):
+        simulate_time_stepping(scene, step=1e-9, history=False)
+
+
+def test_a_stiff_scene_that_runs_is_still_too_much_as_often_as_margins_run_it():
+    scene = isolated(**{**TABLE_1, "ka": 1e11})
+    with pytest.raises(SceneError, match="bearings.ka.* runs of .* steps are too many"):
+        margins(scene)
+
+
+def test_among_many_the_run_that_does_not_get_on_has_failed(small):
+    outcomes = simulate_many([isolated(**TABLE_1), STIFF["stiffness"][0]])
+    assert outcomes.failed.tolist() == [False, True]
+    assert outcomes.names.tolist() == ["overturns", "failed"]
+
+
+def test_a_longer_duration_may_take_more_steps_and_a_record_some_for_each_sample():
+    scene = isolated(**TABLE_1)
+    assert budget.most_steps(scene) == budget.most_steps(scene.with_(duration=20.0)) == budget.STEPS
+    assert budget.most_steps(scene.with_(duration=1e9)) == budget.MOST_STEPS
+    long = scene.with_(motion=SampledMotion(0.01, np.zeros(1_000_000)))
+    assert budget.most_steps(long) == budget.STEPS + budget.STEPS_PER_SAMPLE * 1_000_000
+
+
+def test_usual_scenes_take_a_thousandth_of_it():
+    scene = isolated(synthetic_motion(), **TABLE_1)
+    assert simulate(scene, history=False).steps < budget.STEPS / 500
+
+
+def test_more_impacts_than_are_kept_are_an_error(monkeypatch):
+    monkeypatch.setattr("analytic.solver.EVENTS", 50)
+    scene = Scene(block=caryatid_block(0.28), start=Start(tilt=0.2), duration=50.0)
+    with pytest.raises(SceneError, match="of which no more than 50 are kept"):
+        simulate(scene)
+
+
+def test_a_history_is_thinned_unless_its_interval_is_given():
+    scene = Scene(block=caryatid_block(0.28), motion=SampledMotion(0.005, [0.0, 0.1, 0.0]), duration=1e5)
+    history = simulate(scene).history
+    assert len(history.time) <= budget.ROWS + 2
+    assert history.time[1] == pytest.approx(0.005 * math.ceil(1e5 / 0.005 / budget.ROWS))
+    assert simulate(scene.with_(duration=10.0)).history.time[1] == 0.005
+    with pytest.raises(SettingError, match="1e\\+08 rows of history; give at least 0.01 s, or history=False"):
+        simulate(scene, output_step=1e-3)
+    assert simulate(scene, output_step=1e-3, history=False).history is None
+
+
+# What bearings are built for, and how a run beyond it is said.
+LIMITED = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69, x_max=0.05)
 SCENE = Scene(
     block=Block(mass=3172.05, radius=1.0884, slenderness=0.28),
     base=Base(mass=212.0),
-    bearings=BEARINGS,
+    bearings=LIMITED,
     motion=PulseMotion("one-sine", 2.0, 8.0),
     duration=1.0,
 )
-SOLVERS = {"kernel": simulate, "twin": simulate_twin, "mujoco": lambda scene: get_engine("mujoco").simulate(scene)}
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
+def answer(solver, scene):
+    models = {"kernel": simulate, "twin": simulate_twin}
+    return models[solver](scene) if solver in models else get_engine(solver).simulate(scene)
+
+
+@pytest.mark.parametrize("solver", ["kernel", "twin", "mujoco"])
 def test_a_base_beyond_its_bearings_limit_is_said(solver):
-    response = SOLVERS[solver](SCENE)
+    response = answer(solver, SCENE)
     assert response.peak_base_displacement > 0.05
     words = f"the base moves by {response.peak_base_displacement:.3g} m, beyond the x_max = 0.05 m of its bearings"
     assert any(warning.text.startswith(words) for warning in response.warnings)
@@ -29,20 +166,19 @@ def test_a_base_beyond_its_bearings_limit_is_said(solver):
 SLIDER = Scene(
     block=Block(mass=100.0, radius=0.5, slenderness=0.3), motion=PulseMotion("one-sine", 5.0, 2.5), friction=0.1
 )
-SLIDING = {name: lambda scene, name=name: get_engine(name).simulate(scene) for name in ("exudyn", "pybullet", "mujoco")}
 
 
-@pytest.mark.parametrize("solver", ["kernel", *SLIDING])
+@pytest.mark.parametrize("solver", ["kernel", "exudyn", "pybullet", "mujoco"])
 def test_a_block_that_slips_beyond_its_half_width_is_said_by_every_solver(solver):
     """A slip of 2.9 m of a block .3 m wide; not one of .06 m under a short pulse."""
-    run = {"kernel": simulate, **SLIDING}[solver]
-    response = run(SLIDER)
+    response = answer(solver, SLIDER)
     half = SLIDER.block.half_width
     (told,) = [one for one in response.warnings if one.quantity == "peak_slip"]
     assert told.kind == "limit"
     assert (told.value, told.limit) == (response.sliding.peak, half) and told.value > 10 * half
     short = SLIDER.with_(motion=PulseMotion("rectangular", 1.5, 8.0))
-    assert 0 < run(short).sliding.peak < half and "peak_slip" not in [one.quantity for one in run(short).warnings]
+    less = answer(solver, short)
+    assert 0 < less.sliding.peak < half and "peak_slip" not in [one.quantity for one in less.warnings]
 
 
 def test_a_block_that_falls_slips_as_it_falls_and_that_is_no_warning():

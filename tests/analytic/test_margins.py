@@ -172,13 +172,6 @@ def test_only_bearings_with_a_limit_have_a_stroke_and_only_a_friction_slides():
     assert {"base mass", "ka", "kb", "alpha"} < set(found) and "yield force" not in found
 
 
-def test_changes_that_are_no_scene_end_the_range():
-    scene = block_scene(start=Start(tilt=0.1), restitution=0.95)
-    margin = by_name(scene)["restitution"]
-    assert margin.bands[-1].high == pytest.approx(0.0525, abs=1e-9), "the last whole step below e = 1"
-    assert margin.bands[0].low == -0.2
-
-
 @pytest.mark.parametrize(
     "keywords",
     [{"span": 0.0}, {"span": 9.01}, {"step": 0.0}, {"span": 0.01, "step": 0.1}, {"tilt": 0.0}, {"tilt": 1.01}],
@@ -253,8 +246,7 @@ def scanned(scene, name, count, span=0.2):
 
 def test_a_range_ends_where_the_model_refuses_the_changed_scene_and_says_why():
     """Released beyond its balance the block falls; from 6.7 % less it lands, where its friction is below (8)'s."""
-    block = Block(mass=3172.05, radius=1.0884, slenderness=0.28)
-    found = by_name(Scene(block=block, start=Start(tilt=0.3), friction=0.2), step=1e-3)
+    found = by_name(block_scene(start=Start(tilt=0.3), friction=0.2), step=1e-3)
     start, slenderness = found["start"], found["slenderness"]
     assert start.outcome == "overturns" and "friction = 0.2: below 0.2113" in start.ends_down and not start.ends_up
     assert -1 + 0.28 / 0.3 <= start.bands[0].low < -1 + 0.28 / 0.3 + 1e-3
@@ -262,17 +254,18 @@ def test_a_range_ends_where_the_model_refuses_the_changed_scene_and_says_why():
     assert found["friction"].ends_down == found["friction"].ends_up == "" and found["friction"].bands[0].low == -0.2
 
 
-def test_a_range_ends_where_no_scene_is_and_says_why():
-    """e of (7) is at most 1; ka is at least kb."""
-    found = by_name(block_scene(restitution=0.9, start=Start(tilt=0.1)))
-    assert found["restitution"].ends_up.startswith("block.restitution = 1.") and not found["restitution"].ends_down
-    assert 0.9 * (1 + found["restitution"].bands[-1].high) <= 1 < 0.9 * (1 + found["restitution"].bands[-1].high + STEP)
+@pytest.mark.parametrize("restitution, last", [(0.9, 0.111), (0.95, 0.0525)])
+def test_a_range_ends_at_the_last_whole_step_that_is_a_scene_and_says_why(restitution, last):
+    """e of (7) is at most 1."""
+    found = by_name(block_scene(restitution=restitution, start=Start(tilt=0.1)))["restitution"]
+    assert found.ends_up.startswith("block.restitution = 1.") and not found.ends_down
+    assert (found.bands[0].low, found.bands[-1].high) == (-0.2, pytest.approx(last, abs=1e-9))
+    assert restitution * (1 + found.bands[-1].high) <= 1 < restitution * (1 + found.bands[-1].high + STEP)
 
 
 def test_a_scene_that_the_model_refuses_has_no_margins():
-    block = Block(mass=3172.05, radius=1.0884, slenderness=0.28)
     with pytest.raises(SceneError, match="friction = 0.2: below 0.2113"):
-        margins(Scene(block=block, start=Start(tilt=0.2), friction=0.2))
+        margins(block_scene(start=Start(tilt=0.2), friction=0.2))
 
 
 def assert_scan_agrees(margin, changes, outcomes):

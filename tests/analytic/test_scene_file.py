@@ -74,55 +74,54 @@ def refusal(folder, text):
     return caught.value
 
 
-def test_record_is_looked_up_beside_the_scene_file(tmp_path, monkeypatch):
-    (tmp_path / "records").mkdir()
-    (tmp_path / "records" / "r.txt").write_text("0 1\n0.5 2\n")
+FILES = {
+    "h.txt": "0 1\n0.5 2\n",
+    "v.txt": "0 3\n0.5 4\n1.0 5\n",
+    "g.txt": "time (s), acceleration (g)\n0, 1\n0.5, 2\n",
+    "r.v2": csmip(VALUES),
+    "v.v2": csmip(VALUES),
+    "r.csv": "x;y;z\n" + "".join(f"{a};{-a};{0.5 * a}\n" for a in VALUES),
+}
+H, HALF = [0.01, 0.02], [0.5 * a for a in VALUES]
+TWICE, IN_G = [2 * a for a in VALUES], [-9.81 * a for a in VALUES]
+BOTH = "r.v2, channel 1 (90 Deg) x 0.5, vertical {}.v2, channel 2 (Up) x 0.5"
+UP = 'vertical_channel = "Up"\nscale = 0.5'
+# lines of [motion], label, samples, those of the vertical motion
+RECORDS = [
+    ('record = "records/h.txt"\nunits = "cm/s2"\nscale = 3', "h.txt x 3", [0.03, 0.06], None),
+    *((f'record = "r.v2"\nchannel = {one}', "r.v2, channel 2 (Up)", TWICE, None) for one in ("2", '"2"', '"Up"')),
+    (
+        'record = "h.txt"\nvertical = "v.txt"\nunits = "cm/s2"\nscale = 3',
+        "h.txt x 3, vertical v.txt x 3",
+        [0.03, 0.06, 0],
+        [0.09, 0.12, 0.15],
+    ),
+    # units are for the file that does not say its own
+    ('record = "h.txt"\nvertical = "g.txt"\nunits = "cm/s2"', "h.txt, vertical g.txt", H, [9.81, 19.62]),
+    (f'record = "r.v2"\nchannel = 1\n{UP}', BOTH.format("r"), HALF, VALUES),
+    (f'record = "r.v2"\nchannel = 1\nvertical = "v.v2"\n{UP}', BOTH.format("v"), HALF, VALUES),
+    (
+        'record = "r.csv"\nunits = "g"\ndt = 0.5\ncolumn = 2\nvertical_column = 3',
+        "r.csv, column 2 (y), vertical r.csv, column 3 (z)",
+        IN_G,
+        [-0.5 * a for a in IN_G],
+    ),
+]
+
+
+@pytest.mark.parametrize("lines, label, samples, vertical", RECORDS)
+def test_records_beside_the_scene_file(tmp_path, monkeypatch, lines, label, samples, vertical):
+    for folder in (tmp_path, tmp_path / "records"):
+        folder.mkdir(exist_ok=True)
+        for name, text in FILES.items():
+            (folder / name).write_text(text)
     monkeypatch.chdir("/")
-    motion = with_motion(tmp_path, 'record = "records/r.txt"\nunits = "cm/s2"\nscale = 3')
-    assert motion.samples.tolist() == pytest.approx([0.03, 0.06])
-
-
-@pytest.mark.parametrize("channel", ["2", '"2"', '"Up"'])
-def test_a_channel_of_a_record_by_number_or_direction(tmp_path, channel):
-    (tmp_path / "r.v2").write_text(csmip(VALUES))
-    motion = with_motion(tmp_path, f'record = "r.v2"\nchannel = {channel}')
-    assert motion.label == "r.v2, channel 2 (Up)" and motion.samples[0] == pytest.approx(2 * VALUES[0])
-
-
-def test_vertical_file_beside_the_record(tmp_path):
-    (tmp_path / "h.txt").write_text("0 1\n0.5 2\n")
-    (tmp_path / "v.txt").write_text("0 3\n0.5 4\n1.0 5\n")
-    motion = with_motion(tmp_path, 'record = "h.txt"\nvertical = "v.txt"\nunits = "cm/s2"\nscale = 3')
-    assert motion.samples.tolist() == pytest.approx([0.03, 0.06, 0])
-    assert motion.vertical.samples.tolist() == pytest.approx([0.09, 0.12, 0.15])
-    assert motion.label == "h.txt x 3, vertical v.txt x 3"
-    assert motion.warnings[-1] == "h.txt x 3: 0.5 s of zeros put at its end, as the other component is longer"
-
-
-def test_units_are_for_the_file_that_does_not_say_its_own(tmp_path):
-    (tmp_path / "h.txt").write_text("0 1\n0.5 2\n")
-    (tmp_path / "v.txt").write_text("time (s), acceleration (g)\n0, 1\n0.5, 2\n")
-    motion = with_motion(tmp_path, 'record = "h.txt"\nvertical = "v.txt"\nunits = "cm/s2"')
-    assert motion.vertical.samples.tolist() == pytest.approx([9.81, 19.62])
-    assert motion.samples.tolist() == pytest.approx([0.01, 0.02])
-
-
-@pytest.mark.parametrize("file", ["", 'vertical = "v.v2"\n'])
-def test_vertical_channel_of_the_same_file_or_another(tmp_path, file):
-    for name in ("r.v2", "v.v2"):
-        (tmp_path / name).write_text(csmip(VALUES))
-    motion = with_motion(tmp_path, f'record = "r.v2"\nchannel = 1\n{file}vertical_channel = "Up"\nscale = 0.5')
-    assert motion.samples[0] == pytest.approx(0.5 * VALUES[0])
-    assert motion.vertical.samples[0] == pytest.approx(VALUES[0])
-    assert motion.vertical.label == f"{'v' if file else 'r'}.v2, channel 2 (Up) x 0.5"
-
-
-def test_columns_of_a_logger_at_a_step_that_is_given(tmp_path):
-    (tmp_path / "r.csv").write_text("x;y;z\n" + "".join(f"{a};{-a};{0.5 * a}\n" for a in VALUES))
-    motion = with_motion(tmp_path, 'record = "r.csv"\nunits = "g"\ndt = 0.02\ncolumn = 2\nvertical_column = 3')
-    assert (motion.dt, motion.label) == (0.02, "r.csv, column 2 (y), vertical r.csv, column 3 (z)")
-    assert motion.samples[1] == pytest.approx(-9.81 * VALUES[1])
-    assert motion.vertical.samples[1] == pytest.approx(0.5 * 9.81 * VALUES[1])
+    motion = with_motion(tmp_path, lines)
+    assert (motion.label, motion.dt) == (label, 0.005 if ".v2" in label else 0.5)
+    assert motion.samples.tolist() == pytest.approx(samples)
+    assert (motion.vertical and motion.vertical.samples.tolist()) == (vertical and pytest.approx(vertical))
+    longer = "h.txt x 3: 0.5 s of zeros put at its end, as the other component is longer"
+    assert [longer in motion.warnings] == ["v.txt" in label]
 
 
 def test_vertical_ratio_of_a_pulse_with_a_phase(tmp_path):

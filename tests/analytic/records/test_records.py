@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+from made_up_records import SMOOTH, VALUES
 from record_files import FORMATS, RECORDS, assert_refused, needs_records, write
 
 from analytic.records import G, read_record
 
-VALUES = [0.001, -0.123, -0.456, 0.25, -1.5, 0.0, 0.75]
+SAMPLES = [0.001, -0.123, -0.456, 0.25, -1.5, 0.0, 0.75]
 
 AT2_TOP = "PEER STRONG MOTION DATABASE\nMADE UP, 01/01/00, NOWHERE, 000\nACCELERATION TIME HISTORY IN UNITS OF G\n"
 COUNTS = {
@@ -33,13 +34,6 @@ AT2_FILES = {
 }
 
 
-@pytest.mark.parametrize("text", AT2_FILES.values(), ids=AT2_FILES)
-def test_at2(tmp_path, text):
-    motion = read_record(write(tmp_path, text, "x.AT2"))
-    np.testing.assert_allclose(motion.samples, np.array(VALUES) * G, rtol=1e-15)
-    assert motion.dt == 0.02 and motion.label == "x.AT2"
-
-
 def dyna(values, **changes):
     """A DYNA 1.2 file: lines of header, one value a line; a key set to None is left out."""
     keys = {
@@ -57,13 +51,18 @@ def dyna(values, **changes):
     return header + "".join(f"{value:.6f}\n" for value in values)
 
 
-def test_dyna(tmp_path):
-    motion = read_record(write(tmp_path, dyna(VALUES)))
-    assert motion.dt == 0.01
-    np.testing.assert_allclose(motion.samples, np.array(VALUES) * 0.01, rtol=1e-15)
+@pytest.mark.parametrize(
+    "text, factor, dt",
+    [*((text, G, 0.02) for text in AT2_FILES.values()), (dyna(SAMPLES), 0.01, 0.01)],
+    ids=[*AT2_FILES, "DYNA"],
+)
+def test_at2_and_dyna(tmp_path, text, factor, dt):
+    motion = read_record(write(tmp_path, text, "x.AT2"))
+    np.testing.assert_allclose(motion.samples, np.array(SAMPLES) * factor, rtol=1e-15)
+    assert motion.dt == dt and motion.label == "x.AT2"
 
 
-ROWS = "".join(f"\n{i / 200} {a}" for i, a in enumerate(VALUES))
+ROWS = "".join(f"\n{i / 200} {a}" for i, a in enumerate(SAMPLES))
 LETTERS = [*"\u00ddç¿$~%&+*\\?@^`}.x_-!#", "\u0411", "\u00b5"]
 DAMAGED = [f"# time [s] acceleration [{letter}m/s2]" for letter in [*LETTERS, "0", "."]]
 DAMAGED += [f"# time, acc ({letter}m/s^2)" for letter in [*LETTERS, "0", "."]] + [
@@ -71,53 +70,21 @@ DAMAGED += [f"# time, acc ({letter}m/s^2)" for letter in [*LETTERS, "0", "."]] +
 ]
 
 
-@pytest.mark.parametrize("header", DAMAGED)
-def test_a_damaged_letter_leaves_a_word_that_is_asked_about(tmp_path, header):
-    """One damaged byte of "cm/s2" must not make metres of centimetres, and units given do not overrule it."""
-    path = write(tmp_path, header + ROWS)
-    for units in (None, "cm/s2", "g"):
-        assert_refused(path, "line 1, ", units=units)
-        assert_refused(path, "not an acceleration" if "time" not in header else "", units=units)
-
-
 @pytest.mark.parametrize("header", ["# 0m/s/s", "# Vs30 = 360 m/s", "# g = 9.81m/s2", "# peak 1.2 m/s/s"])
 def test_what_stands_behind_a_number_is_no_unit_of_the_record(tmp_path, header):
     path = write(tmp_path, header + ROWS)
     assert_refused(path, "missing; the header names no unit")
-    np.testing.assert_allclose(read_record(path, "cm/s2").samples, np.array(VALUES) * 0.01, rtol=1e-15)
-
-
-@pytest.mark.parametrize("word", ["[cm/s2^]", "(cm/s(^2)", "[cm/s^]"])
-def test_a_power_without_its_number_and_an_open_bracket_are_no_unit(tmp_path, word):
-    assert_refused(write(tmp_path, f"# time [s] acceleration {word}{ROWS}"), "not an acceleration")
+    np.testing.assert_allclose(read_record(path, "cm/s2").samples, np.array(SAMPLES) * 0.01, rtol=1e-15)
 
 
 def test_a_letter_beyond_ascii_behind_ms_leaves_milliseconds(tmp_path):
-    path = write(tmp_path, "time [ms\u0663],acc [g]\n" + "".join(f"{5 * i},{a}\n" for i, a in enumerate(VALUES)))
+    path = write(tmp_path, "time [ms\u0663],acc [g]\n" + "".join(f"{5 * i},{a}\n" for i, a in enumerate(SAMPLES)))
     assert read_record(path).dt == pytest.approx(0.005, rel=1e-12)
 
 
 def test_a_damaged_sign_before_the_word_velocity_makes_no_acceleration_of_it(tmp_path):
-    path = write(tmp_path, "# dt = 5 ms\u00ecVELOCITY\n" + "\n".join(map(str, VALUES)))
+    path = write(tmp_path, "# dt = 5 ms\u00ecVELOCITY\n" + "\n".join(map(str, SAMPLES)))
     assert_refused(path, "line 1, step = '5 msivelocity': not a time", units="g")
-
-
-@pytest.mark.parametrize(
-    "header",
-    [
-        *(f"# time acceleration {sign}cm/s2" for sign in ("", "\t", *",;:=([{<'\"|")),
-        *("#cm/s2", "! cm/s2", "time,acc_cm/s2", "time,acc-cm/s2", "# time [s] acceleration (cm/s^{2})"),
-    ],
-)
-def test_a_unit_stands_by_itself_behind_what_parts_words(tmp_path, header):
-    motion = read_record(write(tmp_path, header + ROWS))
-    np.testing.assert_allclose(motion.samples, np.array(VALUES) * 0.01, rtol=1e-15)
-
-
-@pytest.mark.parametrize("unit", ["inch/s2", "in/s^2", "inches/sec/sec", "in/sec2"])
-def test_inches(tmp_path, unit):
-    motion = read_record(write(tmp_path, f"# time [s] acceleration [{unit}]{ROWS}"))
-    np.testing.assert_allclose(motion.samples, np.array(VALUES) * 0.0254, rtol=1e-15)
 
 
 IN_CENTIMETRES = (
@@ -127,41 +94,49 @@ IN_CENTIMETRES = (
 )
 
 
-@pytest.mark.parametrize("header", IN_CENTIMETRES.split("|"))
-def test_a_plain_unit_in_another_script_is_read_and_not_overruled(tmp_path, header):
+UNITS = {header: 0.01 for header in IN_CENTIMETRES.split("|")}
+UNITS |= {f"# time acceleration {sign}cm/s2": 0.01 for sign in ("", "\t", *",;:=([{<'\"|")}
+UNITS |= {f"time,acc{sign}cm/s2": 0.01 for sign in "_-"}
+UNITS |= {header: 0.01 for header in ("#cm/s2", "! cm/s2", "# time [s] acceleration (cm/s^{2})")}
+UNITS |= {f"# time [s] acceleration [{inch}]": 0.0254 for inch in ("inch/s2", "in/s^2", "inches/sec/sec", "in/sec2")}
+
+
+@pytest.mark.parametrize("header, factor", UNITS.items())
+def test_a_unit_that_stands_by_itself_is_read_in_any_script_and_not_overruled(tmp_path, header, factor):
     path = write(tmp_path, header + ROWS)
-    np.testing.assert_allclose(read_record(path).samples, np.array(VALUES) * 0.01, rtol=1e-15)
+    np.testing.assert_allclose(read_record(path).samples, np.array(SAMPLES) * factor, rtol=1e-15)
     assert_refused(path, "but the record carries its own unit", units="g")
 
 
-@pytest.mark.parametrize(
-    "header, word",
-    [
-        ("χρόνος επιτάχυνση(εκ/δ²)", "εκ/δ²"),
-        ("# επιτάχυνση, εκ/δ/δ", "εκ/δ/δ"),
-        ("# μονάδες: εκ", "εκ"),
-        ("# Unit: 重力加速度", "重力加速度"),
-        ("時間(s) 加速度(重力)", "重力"),
-        ("# تسارع (سم/ث²)", "سم/ث²"),
-        ("# ความเร่ง (ซม/วินาที²)", "ซม/วินาที²"),
-        ("время ускорение(ж)", "ж"),
-    ],
-)
-def test_an_unknown_word_for_a_unit_in_another_script_is_asked_about(tmp_path, header, word):
+REMEDY = "; write one of m/s2, cm/s2, g, gal, mm/s2, %g in its place"
+ASKED = [
+    ("χρόνος επιτάχυνση(εκ/δ²)", "εκ/δ²", REMEDY),
+    ("# επιτάχυνση, εκ/δ/δ", "εκ/δ/δ", REMEDY),
+    ("# μονάδες: εκ", "εκ", REMEDY),
+    ("# Unit: 重力加速度", "重力加速度", REMEDY),
+    ("時間(s) 加速度(重力)", "重力", REMEDY),
+    ("# تسارع (سم/ث²)", "سم/ث²", REMEDY),
+    ("# ความเร่ง (ซม/วินาที²)", "ซม/วินาที²", REMEDY),
+    ("время ускорение(ж)", "ж", REMEDY),
+    ("время(с) скорость(см/с)", "unit = 'cm/s': not an acceleration", ""),
+    *((f"# time [s] acceleration {word}", "not an acceleration", "") for word in ("[cm/s2^]", "(cm/s(^2)", "[cm/s^]")),
+    *((header, "line 1, ", "" if "time" in header else "not an acceleration") for header in DAMAGED),
+]
+
+
+@pytest.mark.parametrize("header, word, more", ASKED)
+def test_a_damaged_or_unknown_unit_is_asked_about_whatever_the_user_gives(tmp_path, header, word, more):
+    """One damaged byte of "cm/s2" must not make metres of centimetres."""
     path = write(tmp_path, header + ROWS)
-    for units in (None, "g"):
+    for units in (None, "cm/s2", "g"):
         assert_refused(path, word, units=units)
-        assert_refused(path, "; write one of m/s2, cm/s2, g, gal, mm/s2, %g in its place", units=units)
+        assert_refused(path, more, units=units)
 
 
 def test_a_column_is_named_as_the_file_writes_it(tmp_path):
     path = write(tmp_path, "時間(s) 加速度（ガル） 東西（伽）" + ROWS.replace("\n", " 1\n")[2:] + " 1")
     for column, number in (("加速度（ガル）", "2"), ("加速度", "2"), ("東西(伽)", "3")):
         assert read_record(path, column=column).label.startswith(f"record, column {number}")
-
-
-def test_velocities_in_another_script_are_refused(tmp_path):
-    assert_refused(write(tmp_path, "время(с) скорость(см/с)" + ROWS), "unit = 'cm/s': not an acceleration")
 
 
 @pytest.mark.parametrize("header", ["時間(s) 加速度(東西)", "t a(С-Ю)", "t a(90º)"])
@@ -172,10 +147,10 @@ def test_a_direction_in_another_script_is_no_unit(tmp_path, header):
 @pytest.mark.parametrize("units, factor", [("m/s2", 1.0), ("cm/s2", 0.01), ("g", G)])
 @pytest.mark.parametrize("row", ["{t:8.4f} {a:14.6E}", "{t},{a}", "{t}\t{a}  # remark"])
 def test_two_columns(tmp_path, units, factor, row):
-    text = "# time acceleration\n" + "\n".join(row.format(t=i / 200, a=a) for i, a in enumerate(VALUES))
+    text = "# time acceleration\n" + "\n".join(row.format(t=i / 200, a=a) for i, a in enumerate(SAMPLES))
     motion = read_record(write(tmp_path, text), units)
     assert motion.dt == pytest.approx(0.005, rel=1e-12)
-    np.testing.assert_allclose(motion.samples, np.array(VALUES) * factor, rtol=1e-15)
+    np.testing.assert_allclose(motion.samples, np.array(SAMPLES) * factor, rtol=1e-15)
 
 
 def test_scale_and_label(tmp_path):
@@ -210,17 +185,17 @@ BAD = {
         "cm/s2",
         "motion.units = 'cm/s2': but the record carries its own unit, G (line 3); remove units, or correct the record",
     ),
-    "DYNA with other units": (dyna(VALUES), "g", "motion.units = 'g': but the record carries its own unit, cm/s^2"),
-    "DYNA without interval": (dyna(VALUES, SAMPLING_INTERVAL_S=None), None, "SAMPLING_INTERVAL_S: missing"),
-    "DYNA without units": (dyna(VALUES, UNITS=""), None, "UNITS: missing from the header"),
-    "DYNA velocity": (dyna(VALUES, UNITS="cm/s"), None, "UNITS = 'cm/s': not an acceleration"),
+    "DYNA with other units": (dyna(SAMPLES), "g", "motion.units = 'g': but the record carries its own unit, cm/s^2"),
+    "DYNA without interval": (dyna(SAMPLES, SAMPLING_INTERVAL_S=None), None, "SAMPLING_INTERVAL_S: missing"),
+    "DYNA without units": (dyna(SAMPLES, UNITS=""), None, "UNITS: missing from the header"),
+    "DYNA velocity": (dyna(SAMPLES, UNITS="cm/s"), None, "UNITS = 'cm/s': not an acceleration"),
     "DYNA spectrum": (
-        dyna(VALUES, DATA_TYPE="ACCELERATION RESPONSE SPECTRUM"),
+        dyna(SAMPLES, DATA_TYPE="ACCELERATION RESPONSE SPECTRUM"),
         None,
         "DATA_TYPE = 'ACCELERATION RESPONSE SPECTRUM': not an acceleration",
     ),
-    "DYNA short": (dyna(VALUES, NDATA=9), None, "NDATA = 9: but 7 samples follow"),
-    "DYNA NaN": (dyna([*VALUES, float("nan")]), None, "line 73 = 'nan': not finite"),
+    "DYNA short": (dyna(SAMPLES, NDATA=9), None, "NDATA = 9: but 7 samples follow"),
+    "DYNA NaN": (dyna([*SAMPLES, float("nan")]), None, "line 73 = 'nan': not finite"),
     "no units": ("0 1\n0.01 2\n", None, "motion.units: missing; columns of numbers carry no unit; add units, one of"),
     "bad units": ("0 1\n0.01 2\n", "inch/s2", "motion.units = 'inch/s2': not a known unit; choose one of m/s2, cm/s2"),
     "NaN in columns": ("0 1\n.01 nan\n", "g", "line 2 = 'nan': not finite"),
@@ -284,3 +259,108 @@ def test_real_near_fault_record():
 @needs_records
 def test_a_real_file_that_is_no_record():
     assert_refused(FORMATS / "README.md", "not a known record format", units="g")
+
+
+# Columns of numbers: several of them, accelerations alone at a step, values one after the other.
+TIMES = [0.005 * i for i in range(12)]
+TITLES = "Time (s){0}x (g){0}y (cm/s2){0}v (cm/s)\n"
+
+
+def table(by, decimal=".", digits=4):
+    rows = zip(TIMES, VALUES, VALUES, TIMES, strict=True)
+    text = "".join(f"{t:.3f};{a:.{digits}f};{-b:.{digits}f};{v:.3f}\n" for t, a, b, v in rows)
+    return text.replace(".", decimal).replace(";", by)
+
+
+@pytest.mark.parametrize("by, decimal", [(";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", "."), ("  ", ".")])
+@pytest.mark.parametrize("column, factor", [(2, 9.81), (3, -0.01)])
+def test_one_of_several_columns_in_the_unit_of_its_own_title(tmp_path, by, decimal, column, factor):
+    motion = read_record(write(tmp_path, TITLES.format(by) + table(by, decimal)), column=column)
+    np.testing.assert_allclose(motion.samples, np.array(VALUES) * factor, rtol=1e-14)
+    assert motion.dt == 0.005 and motion.label.startswith(f"record, column {column}")
+
+
+@pytest.mark.parametrize("row", ["{a:.4f}", " {a:.4f} ", "{a:.4f}  # remark"])
+@pytest.mark.parametrize(
+    "header, given",
+    [("", 0.02), ("# made up\n", 0.02), ("Acceleration [m/s2]\n", 0.02), ("# n = 12, DT: 20 MSEC\n", None)],
+)
+def test_one_column_at_the_step_given_or_stated(tmp_path, header, given, row):
+    motion = read_record(write(tmp_path, header + "".join(row.format(a=a) + "\n" for a in VALUES)), "m/s2", dt=given)
+    assert motion.samples.tolist() == VALUES and motion.dt == 0.02
+
+
+@pytest.mark.parametrize("per_line", [1, 2, 5, 8, 46, 50])
+@pytest.mark.parametrize("by", [" ", "\t", ", "])
+def test_values_one_after_the_other(tmp_path, per_line, by):
+    """As OpenSees reads them; the last line may be shorter."""
+    words = [f"{value:.6f}" for value in SMOOTH]
+    text = "".join(by.join(words[i : i + per_line]) + "\n" for i in range(0, len(words), per_line))
+    motion = read_record(write(tmp_path, text), "m/s2", dt=0.01)
+    assert motion.samples.tolist() == [float(word) for word in words] and motion.dt == 0.01
+
+
+def test_a_step_of_the_header_goes_before_what_the_times_round(tmp_path):
+    text = "# dt = 0.00833333333333333 s\n" + "".join(f"{i / 120:.4f} {a}\n" for i, a in enumerate(VALUES))
+    assert read_record(write(tmp_path, text), "g").dt == 0.00833333333333333
+
+
+STEEP = "".join(f"{a} {-2 * a} {0.5 - a}\n" for a in SMOOTH)  # three channels side by side
+COPIES = "".join(f"{a} {a}\n" for a in SMOOTH)
+BAD_COLUMNS = {
+    "several columns": (table(";"), {}, "motion.column: missing; the file holds columns 2 or 3 or 4; add column"),
+    "the time": (table(";"), {"column": 1}, "motion.column = 1: is the time; give column, 2 or 3 or 4"),
+    "beyond": (table(";"), {"column": 5}, "motion.column = 5: but the file has 4 columns; give column, 2 or 3 or 4"),
+    "a velocity": (
+        TITLES.format(";") + table(";"),
+        {"column": 4, "units": None},
+        "line 1, unit = 'cm/s': not an acceleration",
+    ),
+    "a column less": (table(";") + "0.1;2\n", {"column": 2}, "line 13 = '0.1;2': holds 2 columns, the first line 4"),
+    "one column, no step": ("1\n2\n", {}, "motion.dt: missing; the file holds one column of numbers, no times; add dt"),
+    "two of one column": (
+        "1\n2\n",
+        {"dt": 0.1, "column": 2},
+        "motion.column = 2: but the file has 1 columns; give column, 1",
+    ),
+    "channels": (STEEP, {"dt": 0.01}, "motion.column: missing; the 3 numbers a line may be columns of their own"),
+    "channels alike": (
+        COPIES,
+        {"dt": 0.01},
+        "motion.column: missing; the 2 numbers a line may be columns of their own",
+    ),
+    "a number lost": ("3 2 1\n4 5\n2 5 4\n", {"dt": 0.01}, "line 2 = '4 5': holds 2 numbers, the first line 3"),
+    "two steps": ("# dt = .02\n0 1\n.01 2\n.02 3\n", {}, "dt = 0.02: but the times have a step of 0.01 s; correct the"),
+    "two headers": ("# dt = .02\n# dt = 10 ms\n1\n2\n", {}, "line 2, step = 0.01: but line 1 states a step of 0.02 s"),
+    "step of the user": ("0 1\n.01 2\n", {"dt": 0.02}, "motion.dt = 0.02: but the step of the record itself is 0.01 s"),
+    "no number": (
+        "# dt = fine\n1\n2\n",
+        {},
+        "line 1, step = '# dt = fine': its sampling interval or rate is no number",
+    ),
+    "hours": ("# dt = 2 h\n1\n2\n", {}, "line 1, step = '2 h': not a time in s or ms"),
+    "negative step": ("1\n2\n", {"dt": -0.1}, "motion.dt = -0.1: not a sampling interval; give a step above 0 s"),
+}
+
+
+@pytest.mark.parametrize("text, said, message", BAD_COLUMNS.values(), ids=BAD_COLUMNS)
+def test_columns_refused(tmp_path, text, said, message):
+    assert_refused(write(tmp_path, text), message, **{"units": "m/s2"} | said)
+
+
+@pytest.mark.parametrize(
+    "text, column, values",
+    [
+        (STEEP, 2, [-2 * value for value in SMOOTH]),
+        ("0 2\n0 3\n1 2\n1 4\n", 1, [0, 0, 1, 1]),  # times would rise
+    ],
+)
+def test_channels_side_by_side_are_read_when_one_is_chosen(tmp_path, text, column, values):
+    assert read_record(write(tmp_path, text), "m/s2", dt=0.01, column=column).samples.tolist() == values
+
+
+@pytest.mark.parametrize("samples", [17_000, 22_856, 39_996])
+def test_times_of_six_digits_that_are_half_a_unit_off_are_those_of_a_whole_frequency(tmp_path, samples):
+    """As LabVIEW writes 800 Hz: 16.03125 s stands there as 16.0312, and one step alone fits them all."""
+    text = "Time [s]\tAmplitude\n" + "".join(f"{k / 800:.6g}\t{(-1) ** k * 0.1}\n" for k in range(samples))
+    assert read_record(write(tmp_path, text), "g").dt == 1 / 800
