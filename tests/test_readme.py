@@ -10,7 +10,13 @@ import pytest
 from analytic import load_scene, scene_file
 
 README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
-SLOW = {"report": pytest.mark.slow, "choose": pytest.mark.slow, "design": pytest.mark.slow, "lessons": pytest.mark.long}
+SLOW = {
+    "report": pytest.mark.slow,
+    "choose": pytest.mark.slow,
+    "design": pytest.mark.slow,
+    "margin": pytest.mark.slow,
+    "lessons": pytest.mark.long,
+}
 
 
 def blocks(language):

@@ -37,6 +37,7 @@ def studies():
         return stored_studies()
 
 
+@pytest.mark.slow
 def test_every_stored_result_can_be_shown_without_any_engine(studies):
     assert [one.name for one in studies if one.wrong] == []
     assert {one.name for one in studies} == {path.name for path in results_in(RESULTS)}

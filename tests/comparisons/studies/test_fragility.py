@@ -97,6 +97,7 @@ def test_an_engine_that_sees_weaker_motions_is_found_out(weaker):
     assert STUDY.judgements(weaker)[0].marks["pybullet", "impact-aware"].level == "bad"
 
 
+@pytest.mark.slow
 def test_an_engine_that_is_the_model_does_not_differ_and_the_page_says_what_would_have_been_found(equal):
     rows = where(equal.rows, part="effect", engine="exudyn", variant="compliant-corners")
     for row in rows:
@@ -139,6 +140,7 @@ def test_uplift_hangs_on_the_peak_over_the_uplift_acceleration(weaker):
     assert all(row["dispersion"] > 2 * uplift["dispersion"] for row in others)
 
 
+@pytest.mark.slow
 def test_a_detectable_shift_changes_the_share_by_the_detectable_difference(equal):
     """Of the runs compared: how their probabilities fall where the median grows, by the curve itself."""
     drawn = cloud(*FREE["free-standing"], RUNS[0])

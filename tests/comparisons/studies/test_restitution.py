@@ -89,6 +89,7 @@ def small(tmp_path_factory):
     return path
 
 
+@pytest.mark.slow
 def test_a_small_study_finds_what_is_known(small):
     result = read(small)
 
@@ -110,6 +111,7 @@ def test_a_small_study_finds_what_is_known(small):
     assert all(row["cpu_per_second"] > 0 for row in result.rows if row["part"] == "cell")
 
 
+@pytest.mark.slow
 def test_the_page_comes_from_the_result_alone(small):
     page = STUDY.page(read(small))
     opening, whole = page.opening(), page.whole()
@@ -124,6 +126,7 @@ def test_the_page_comes_from_the_result_alone(small):
     assert len(whole.figures) == 9 and all(figure.alt and figure.caption for figure in whole.figures)
 
 
+@pytest.mark.slow
 def test_no_worst_error_is_less_than_the_root_mean_square_beside_it(small):
     """Both are of one measure, on rigid ground and on bearings."""
     for judgement in STUDY.judgements(read(small)):
@@ -132,6 +135,7 @@ def test_no_worst_error_is_less_than_the_root_mean_square_beside_it(small):
         assert len(rms) >= 2 and all(most > 0.97 * mean for most, mean in zip(worst, rms, strict=True))
 
 
+@pytest.mark.slow
 def test_its_own_page_needs_no_other_file(small, tmp_path):
     file, _ = write_study(STUDY, small, tmp_path / "shown")
     text = file.read_text()

@@ -361,6 +361,7 @@ def studied(tmp_path_factory, near):
     return [read(file) for folder in folders for file in compute(STUDY, folder, engines=("pybullet",), **given)]
 
 
+@pytest.mark.slow
 def test_a_study_repeats_bit_for_bit_and_the_page_comes_from_its_result_alone(studied):
     result, again = studied
     assert result.rows and all(row["repeatable"] and row["timings"] == 2 for row in result.rows)
