@@ -10,7 +10,7 @@ import pytest
 from analytic import load_scene, scene_file
 
 README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
-SLOW = {
+SLOW = dict.fromkeys(("report", "choose", "design", "margin"), pytest.mark.slow) | {"lessons": pytest.mark.long}
     "report": pytest.mark.slow,
     "choose": pytest.mark.slow,
     "design": pytest.mark.slow,
