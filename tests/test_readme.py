@@ -11,12 +11,6 @@ from analytic import load_scene, scene_file
 
 README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
 SLOW = dict.fromkeys(("report", "choose", "design", "margin"), pytest.mark.slow) | {"lessons": pytest.mark.long}
-    "report": pytest.mark.slow,
-    "choose": pytest.mark.slow,
-    "design": pytest.mark.slow,
-    "margin": pytest.mark.slow,
-    "lessons": pytest.mark.long,
-}
 
 
 def blocks(language):

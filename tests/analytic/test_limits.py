@@ -96,6 +96,7 @@ def test_steps_too_short_for_the_run_are_refused_by_the_shortest_that_are_not():
         simulate_time_stepping(scene, step=1e-9, history=False)
 
 
+@pytest.mark.slow
 def test_a_stiff_scene_that_runs_is_still_too_much_as_often_as_margins_run_it():
     scene = isolated(**{**TABLE_1, "ka": 1e11})
     with pytest.raises(SceneError, match="bearings.ka.* runs of .* steps are too many"):
