@@ -133,7 +133,9 @@ def test_what_mujoco_warns_of_fails_in_its_words(monkeypatch, trouble, reason, w
     assert mujoco.get_mju_user_warning() is None  # the handler is given back
 
 
+@pytest.mark.slow
 def test_a_step_that_drake_does_not_solve_is_a_failure_in_its_words(monkeypatch):
+    get_engine("drake")  # which is an extra
     module = built("drake")
 
     class Stuck(module.Simulator):
