@@ -33,7 +33,7 @@ OLD = {"sensitivity": "older than the code: computed on another day"}
 MACHINE = {"processor": "one", "cores": 2, "logical_cores": 4, "memory_gib": 8.0, "system": "a system"}
 ORIGIN = {"time": "2030-01-02T03:04:05", "commit": 40 * "1", "dirty": False, "machine": MACHINE, "python": "3.11"}
 ORIGIN |= {"packages": {"numpy": "2.0"}, "sources": {}, "seed": 3}
-# What the report has of studies stands on their pages too; its formulas are tests/comparisons/showing/test_mathml.py's.
+# What the report has of studies stands on their pages too; its formulas are tests/comparisons/lessons/test_lesson.py's.
 ELSEWHERE = re.compile('<section id="(?!answer|decision|earthquake|method|part).*?</section>', re.DOTALL)
 DRAWN = ("svg", "math")
 MOST = 5000  # characters of a line; what is longer is what a script reads

@@ -12,7 +12,7 @@ from engines import get_engine
 PULSE = PulseMotion("one-sine", 6.0, 4.0)
 
 
-# The variants of every engine, the main one first: no engine is loaded to know them (test_engines holds it to them).
+# The variants of every engine, the main one first: no engine is loaded to know them (test_contract holds it to them).
 VARIANTS = {
     "exudyn": ("compliant-corners", "native-contact"),
     "pybullet": ("impact-aware", "fixed-step", "first-script"),

@@ -27,8 +27,9 @@ STEADY = 1e-4
 SIMILAR = ("linear", "bilinear")  # laws without a length of their own
 
 SOLVERS = ("kernel", "march", "twin", *ACCURATE)
-# DART slips where the model's demand is 0.83 of the friction: its comparison says so.
-HOLDS_BY_FRICTION = [name for name in SOLVERS if name != "dart"]
+# DART slips where the demand is 0.83 of the friction: its comparison says so. What does not slip is not marched:
+# sliding/test_run compares the march itself with the kernel.
+HOLDS_BY_FRICTION = [name for name in SOLVERS if name not in ("dart", "march")]
 
 
 def solve(solver, scene):
@@ -99,8 +100,8 @@ def each_scene(solvers=SOLVERS, **options):
             examples = settings(
                 max_examples=EXAMPLES.get(solver, 4),
                 deadline=None,
-                derandomize=solver in ACCURATE
-                or settings.default.derandomize,  # an engine's scene is listed, not drawn
+                # an engine's scene is listed, not drawn
+                derandomize=solver in ACCURATE or settings.default.derandomize,
                 phases=[Phase.explicit, Phase.reuse, Phase.generate],  # an engine would shrink for minutes
                 suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow],
             )
@@ -108,7 +109,7 @@ def each_scene(solvers=SOLVERS, **options):
             @examples
             @given(scenes(solver, **options))
             def checked(scene):
-                assume(solver == "kernel" or is_steady(scene))
+                assume(is_steady(scene))
                 test(solver, scene)
 
             checked()
@@ -150,8 +151,8 @@ def test_a_scene_twice_as_large_and_three_times_as_heavy_does_the_same_more_slow
     if scene.base:
         old = scene.bearings.model_dump(exclude_none=True)
         powers = {"ka": 3 / 2, "kb": 3 / 2, "damping": 3 / slower, "yield_force": 3.0}
-        bearings = {name: value * powers.get(name, 1.0) for name, value in old.items() if name in powers}
-        large = large.with_(base=Base(mass=3 * scene.base.mass), bearings={**old, **bearings})
+        bearings = old | {name: factor * old[name] for name, factor in powers.items() if name in old}
+        large = large.with_(base=Base(mass=3 * scene.base.mass), bearings=bearings)
     assert_same(solver, scene, solve(solver, scene), solve(solver, large), its_scene=large)
 
 
@@ -162,7 +163,6 @@ def test_the_answer_is_the_models_at_a_hundredth_of_its_tolerance(solver, scene)
 
 @each_scene(HOLDS_BY_FRICTION)
 def test_a_friction_above_the_demand_is_none(solver, scene):
-    scene = scene.with_(friction=None)
     demand = simulate(scene, history=False).friction_demand
-    assume(demand < 3.0 and is_steady(scene))
+    assume(demand < 3.0)
     assert_same(solver, scene, solve(solver, scene), solve(solver, scene.with_(friction=1.05 * demand)))
