@@ -10,7 +10,7 @@ from comparisons.lessons import export
 from comparisons.lessons.playground import PAGE, playground_page
 from comparisons.lessons.topics import lessons
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("lessons in a browser")]
 
 
 @pytest.fixture
