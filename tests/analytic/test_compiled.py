@@ -105,10 +105,18 @@ outer = make(3)
 """
 
 
-def key(text):
+def key(text, without=None):
     scope = {"__name__": "analytic.made"}  # followed as the model's own
     exec(text, scope)
+    scope.pop(without, None)
     return digest(scope["outer"])
+
+
+def test_an_entry_stands_below_what_it_calls():
+    """Its key is taken where it stands: what comes later would not count, and a stale kernel would run."""
+    with pytest.raises(NameError, match="inner, read by .*outer, stands below the entry: move the entry down"):
+        key(PLAIN, without="inner")
+    assert kernel._run_rows._cache._impl.locator.get_source_stamp() == digest(kernel._run_rows)
 
 
 @pytest.mark.parametrize(
