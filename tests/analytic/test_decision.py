@@ -21,7 +21,6 @@ from analytic import (
     load_scene,
     simulate,
     simulate_many,
-    synthetic_motion,
 )
 from analytic.bearing import BearingLaw
 from analytic.closed_form import quarter_period, swing_energy
@@ -29,7 +28,6 @@ from analytic.decision import (
     PEAK_TOLERANCE,
     longest_duration,
     model_warnings,
-    motion_end,
     recoverable_energy,
     remaining_energy,
     shortest_duration,
@@ -71,22 +69,6 @@ def test_a_bearing_never_gives_back_more_than_it_holds(law):
         work, after = law.work(z, move), law.hysteretic(z, move)
         assert stored(law, after) - stored(law, z) <= work + 1e-9 * (abs(work) + stored(law, after))
         z = after
-
-
-def test_the_energy_that_can_reach_the_block_never_rises_after_the_motion():
-    whole = synthetic_motion()
-    motion = SampledMotion(whole.dt, 0.8 * whole.samples[: round(6.0 / whole.dt)])
-    scene = load_scene("caryatid-isolated").with_(block={"slenderness": 0.15}, motion=motion)
-    response = simulate(scene)
-    assert response.outcome == "rocks" and any(impact.time > motion.end for impact in response.impacts)
-    par, history = parameters(scene), response.history
-    z = history.bearing_force / par.count - par.kb * history.base_displacement
-    after = history.time >= motion_end(scene)
-    rows = np.column_stack([history.tilt, history.tilt_rate, history.base_displacement, history.base_velocity, z])
-    states = [(Body(float(np.sign(row[0])), *row[:2]), State(*row[2:])) for row in rows[after]]
-    energy = np.array([left(par, *state) for state in states])
-    assert len(energy) > 500 and energy[0] > 1.0
-    assert (np.diff(energy) <= 1e-9 * energy[0]).all()
 
 
 def test_an_undamped_base_with_energy_for_eight_overturnings_is_decided_by_its_acceleration():

@@ -57,18 +57,6 @@ def test_random_scenes_are_sound():
         assert_sound(random_scene(0, index, NAMES))
 
 
-@pytest.mark.parametrize("index", range(40))
-def test_mirrored_scenes_are_mirrored_bit_for_bit(index):
-    scene = random_scene(2, index, NAMES)
-    start = Start(**{name: -value for name, value in scene.start.model_dump().items()})
-    motion = scene.motion.scaled(-1.0) if scene.motion else None
-    one, other = simulate(scene), simulate(scene.with_(start=start, motion=motion))
-    assert one.outcome != "failed", one.failure
-    for name in ("tilt", "tilt_rate", "base_displacement", "base_velocity", "bearing_force"):
-        assert np.array_equal(getattr(one.history, name), -getattr(other.history, name)), name
-    assert [impact.time for impact in one.impacts] == [impact.time for impact in other.impacts]
-
-
 @pytest.mark.long
 @pytest.mark.timeout(1400)
 @pytest.mark.parametrize("begin", (400, 20_000))
@@ -151,15 +139,6 @@ def test_every_crossing_within_a_step_is_found_and_not_the_trivial_root(lowest, 
         assert found == pytest.approx(left[0] if roots else -1.0, rel=accuracy)
 
 
-RAMP = np.linspace(0, THRESHOLD, 50)
-
-
-@pytest.mark.parametrize("samples", [[*RAMP, *RAMP[-2::-1]], np.full(300, THRESHOLD)], ids=["peak", "plateau"])
-def test_grazing_the_threshold_exactly(samples):
-    # the motion touches the threshold at a sample and turns back: nothing may loop
-    assert sound(simulate(Scene(block=BLOCK, motion=sampled(samples), duration=5.0))).outcome == "stands"
-
-
 @SOLVERS
 def test_flat_drop_lands_and_stays(solve):
     # stocky block on a light base: e_phi <= 0, the block lands flat and its momentum goes to the base
@@ -177,15 +156,6 @@ def test_flat_drop_lands_and_stays(solve):
     assert impact.base_velocity_jump == pytest.approx(momentum, rel=1e-14)
 
 
-@pytest.mark.parametrize("amplitude", [1e-3, 1e-6, 1e-9, 1e-13])
-def test_tiny_reversals(amplitude):
-    t = np.arange(2000) * 0.005
-    scene = ISOLATED.with_(motion=SampledMotion(0.005, amplitude * np.sin(2 * np.pi * 5 * t)), duration=12.0)
-    response = sound(simulate(scene))
-    assert response.outcome == "stands"
-    assert 0 < response.peak_base_displacement < amplitude
-
-
 @pytest.mark.parametrize("e", [0.0, 1.0, 0.999999])
 def test_given_restitution_from_plastic_to_elastic(e):
     scene = Scene(block=BLOCK.model_copy(update={"restitution": e}), start=Start(tilt=0.1), duration=20.0)
@@ -194,19 +164,19 @@ def test_given_restitution_from_plastic_to_elastic(e):
     assert (response.energy.impact_loss == 0) == (e == 1) and (response.impact_count == 1) == (e == 0)
 
 
-@pytest.mark.parametrize("dt", [1e-4, 0.05, 0.5])
-def test_sampling_from_fine_to_coarse(dt):
-    t = np.arange(0, 10, dt)
-    motion = SampledMotion(dt, 3.0 * np.sin(2 * np.pi * 0.5 * t))
-    one = sound(simulate(ISOLATED.with_(motion=motion, block={"slenderness": 0.2})))
-    fine = np.arange(0, t[-1], dt / 4)
-    finer = SampledMotion(dt / 4, motion.acceleration(fine))
-    other = simulate(ISOLATED.with_(motion=finer, block={"slenderness": 0.2}))
-    assert one.peak_base_displacement == pytest.approx(other.peak_base_displacement, rel=1e-4)
+RAMP, SECONDS = np.linspace(0, THRESHOLD, 50), np.arange(0, 600, 0.01)
+STANDING = {  # the first two touch the threshold at samples and turn back
+    "peak": (Scene(block=BLOCK), [*RAMP, *RAMP[-2::-1]]),
+    "plateau": (Scene(block=BLOCK), np.full(300, THRESHOLD)),
+    "tiny reversals": (ISOLATED, 1e-13 * np.sin(10 * np.pi * SECONDS[:1000])),
+    "small reversals": (ISOLATED, 1e-3 * np.sin(10 * np.pi * SECONDS[:1000])),
+    "ten minutes on the ground": (Scene(block=BLOCK), 0.3 * np.sin(2.6 * np.pi * SECONDS)),
+    "ten minutes on bearings": (ISOLATED, 0.3 * np.sin(2.6 * np.pi * SECONDS)),
+}
 
 
-@pytest.mark.parametrize("scene", [Scene(block=BLOCK), ISOLATED], ids=["rigid", "isolated"])
-def test_ten_minutes_at_rest_under_weak_shaking(scene):
-    motion = sampled(0.3 * np.sin(2 * np.pi * 1.3 * np.arange(60000) * 0.01))
-    response = sound(simulate(scene.with_(motion=motion, duration=600.0)))
+@pytest.mark.parametrize("scene, samples", STANDING.values(), ids=STANDING)
+def test_what_never_lifts_stands_to_the_end(scene, samples):
+    response = sound(simulate(scene.with_(motion=sampled(samples), duration=0.01 * len(samples) + 2.0)))
     assert (response.outcome, response.peak_tilt) == ("stands", 0.0)
+    assert (scene is ISOLATED) == (0 < response.peak_base_displacement < 1.1 * np.abs(samples).max())

@@ -2,7 +2,6 @@ import math
 
 import numpy as np
 import pytest
-from bearing_laws import NAMES, bearings_of
 from literature import A_REST, A_TILT, B_TILT
 from record_files import RECORDS, needs_records
 from scipy.integrate import solve_ivp
@@ -68,17 +67,6 @@ def test_error_falls_with_the_tolerance():
         errors.append(abs(abs(end.tilt) - A_TILT))
     assert errors[0] > errors[1] > errors[2] > errors[3]
     assert errors[3] < 1e-11
-
-
-@pytest.mark.parametrize("law", NAMES)
-def test_energy_of_isolated_rocking(law):
-    bearings = bearings_of(law, count=4, damping=200.0)
-    scene = Scene(block=SLENDER, base=BASE, bearings=bearings, motion=PulseMotion("one-sine", 1.2, 4.0), duration=6.0)
-    run = simulate_twin(scene, rtol=1e-11)
-    assert run.outcome == "rocks" and run.impact_count > 10
-    assert abs(run.energy.imbalance) < 1e-9 * run.energy.input
-    assert run.energy.impact_loss > 0 and run.energy.viscous > 0
-    assert (run.energy.hysteretic > 0) == (law != "linear")
 
 
 def test_start_flat_with_a_rate_rocks_to_the_side_of_the_rate():

@@ -120,17 +120,6 @@ def test_a_constant_vertical_acceleration_is_another_gravity(scene, change):
     assert held.uplifts == pytest.approx(other.uplifts, rel=1e-12)
 
 
-@pytest.mark.parametrize("name", ["rough, rigid ground", "rough, on bearings", "one-cosine", "released under a sine"])
-def test_mirrored_scenes_are_mirrored(name):
-    scene = SCENES[name]
-    mirrored = replace(scene.motion.scaled(-1), vertical=scene.motion.vertical)
-    other = simulate(scene.with_(motion=mirrored, start=Start(tilt=-scene.start.tilt)), history=False)
-    run = simulate(scene, history=False)
-    assert impact_times(run) == impact_times(other)
-    assert state(run) == [-value for value in state(other)]
-    assert (run.energy.input, run.min_normal_ratio) == (other.energy.input, other.min_normal_ratio)
-
-
 def test_uplift_is_where_the_acceleration_exceeds_the_weight():
     motion = pulse("one-sine", 3.0, 5.0, 2.0, 0.5)
     uplift = simulate(FREE.with_(motion=motion)).uplifts[0]
