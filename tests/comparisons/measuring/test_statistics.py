@@ -98,16 +98,6 @@ def test_wilson_takes_sizes_that_are_not_whole():
     assert wilson(0, 100) == pytest.approx((0.0, 1.959964**2 / (100 + 1.959964**2))) and wilson(7, 7)[1] == 1.0
 
 
-def test_equal_means_that_the_upper_limit_is_below_five_per_cent():
-    word, (low, high) = equality(np.zeros(100, dtype=bool))
-    assert word == "yes" and low == 0.0 and high == pytest.approx(0.037, abs=5e-4)  # 0 of 100: 3.7 %
-    two = np.zeros(200, dtype=bool)
-    two[[0, 10, 20, 30]] = True
-    assert equality(two)[0] == "no"  # 4 of 200: 5.03 %
-    two[30] = False
-    assert equality(two)[0] == "yes" and equality(np.zeros(73, dtype=bool))[0] == "yes"
-
-
 def test_runs_of_one_record_count_as_one():
     """However many they are: 0 of 187 runs under 50 records say no more than 0 of 50."""
     records = [k % 50 for k in range(187)]
@@ -121,9 +111,14 @@ def test_runs_of_one_record_count_as_one():
     assert equality([True] * 40 + [False] * 147, records)[0] == "no"
 
 
-def test_few_runs_acquit_nobody_and_can_convict():
-    assert equality(np.zeros(72, dtype=bool))[0] == "inconclusive (too few runs)"  # with none differing 5.07 % are left
-    assert (
-        equality([True] + [False] * 39)[0] == "inconclusive (too few runs)"
-        and equality([True] * 20 + [False] * 20)[0] == "no"
-    )
+FEW = "inconclusive (too few runs)"
+
+
+@pytest.mark.parametrize(
+    "differ, size, word",
+    # an upper limit below 5 % is equal: 0 of 72 leave 5.07 %, 4 of 200 5.03 %; few runs acquit nobody and can convict
+    [(0, 100, "yes"), (0, 73, "yes"), (0, 72, FEW), (3, 200, "yes"), (4, 200, "no"), (1, 40, FEW), (20, 40, "no")],
+)
+def test_equal_means_that_the_upper_limit_is_below_five_per_cent(differ, size, word):
+    found, limits = equality(np.arange(size) < differ)
+    assert found == word and limits == wilson(differ, size)
