@@ -73,6 +73,7 @@ READ = {
         "# samples: 36\n" + rows("{a:.7f}").replace("0.0", "0", 1),
         {"units": "g", "dt": DT},
     ),
+    "a unit behind five words": ("time,acc_top_of_pier_gal\n" + rows("{t:.2f},{a:.5f}", GAL), {}),
     "a step in a line": ("Time Step: 0.02\n" + rows("{a:.9f}"), {"units": "g"}),
     "OpenSees": (FIVE, {"units": "g", "dt": DT}),
     "Excel, all in quotes": ('"Time (s)","Acc (g)"\n' + rows('"{t:.2f}","{a:.7f}"'), {}),
@@ -287,6 +288,13 @@ REFUSED = {
         "time [s] acceleration [cm/s2]\n" + rows("{t:.2f} {a:.4f}", GAL),
         {},
     ),
+    "NPTS without its number": (
+        "NPTS = many\nDT = 0.02\n" + rows("{a:.7f}"),
+        {"units": "g"},
+        "line 1 = 'NPTS = many': names NPTS, but not as PEER AT2 does",
+        None,
+        {},
+    ),
     "only velocities": (
         "Time (s),Vel. (cm/s),Arias (%)\n" + rows("{t:.2f},{a:.7f},1"),
         {},
@@ -315,11 +323,6 @@ def test_columns_that_are_no_accelerations_are_not_offered(tmp_path):
     assert_refused(path, "motion.column = 1: is the time; give column, 2 (Acc)", column=1)
 
 
-def test_separators_behind_all_rows_part_no_columns(tmp_path):
-    (channel,) = read_channels(write(tmp_path, "Time (s),Acc (g),,\n" + rows("{t:.2f},{a:.7f},,")), column="acc")
-    assert (channel.number, channel.direction) == ("2", "Acc")
-
-
 @pytest.mark.parametrize("titles", ["Time_A A_g Time_B B_g", "T_A A_g T_B A_g", "T A_g T B_g"])
 def test_pairs_under_titles_that_differ_are_columns(tmp_path, titles):
     """Of two instruments that are sampled in turn."""
@@ -334,15 +337,6 @@ def test_rows_whose_times_rise_are_not_counted_by_the_first_one(tmp_path):
     assert len(read_record(write(tmp_path, "3 0.5\n4 -.1\n5 .2\n6 .3\n"), "m/s2").samples) == 4
     motion = read_record(write(tmp_path, "# number of data: 72\n" + rows("{t:.2f} {a:.7f}")), "g")
     assert len(motion.samples) == 36 and "states 72 samples, the data have 36" in motion.warnings[0]
-
-
-def test_a_zero_may_be_printed_otherwise(tmp_path):
-    assert len(read_record(write(tmp_path, "0\n" + rows("{a:.7f}")), "g", dt=DT).samples) == 37
-
-
-def test_npts_without_its_number_is_refused_by_its_name(tmp_path):
-    text = "NPTS = many\nDT = 0.02\n" + rows("{a:.7f}")
-    assert_refused(write(tmp_path, text), "line 1 = 'NPTS = many': names NPTS, but not as PEER AT2 does", units="g")
 
 
 def test_each_of_several_columns_has_the_times_before_it(tmp_path):
@@ -444,15 +438,6 @@ def test_numbers_above_a_list_are_never_taken_for_accelerations(tmp_path, above,
                 assert any(word in error.problem for word in words)
             else:
                 assert motion.samples.tolist() == [G * float(form.format(value)) for value in [0.0] * zeros + REST]
-
-
-@pytest.mark.parametrize("above, line", [("1\n0.01\n", 1), ("0.01\n", 1), ("5.123457e+00\n0.01\n", 2)])
-def test_a_number_above_a_list_is_named_and_the_remedy_works(tmp_path, above, line):
-    values = one_a_line("{:.6e}", REST)
-    text = above + "0\n0\n" + values
-    assert_refused(write(tmp_path, text), f"line {line} = ", units="g", dt=0.01)
-    text = "# dt = .01 s\n0\n0\n" + values
-    assert len(read_record(write(tmp_path, text), "g").samples) == len(REST) + 2
 
 
 def test_a_whole_number_above_integers_that_counts_them_is_refused(tmp_path):

@@ -235,6 +235,7 @@ def test_what_is_odd_is_said(tmp_path, text, old, new, words):
     "name, dt, count, peak, within, at",
     [
         ("AOM001.EW", 0.01, 10200, 4.078, 5e-4, None),
+        ("RSN1063_NORTHR_RRS228.AT2", 0.01, 1991, -0.8741 * 981, 0.05, 2.560),
         ("0111a.smc", 0.005, 6001, 104.4, 0.05, 10.17),
         ("cosmos.V2c", 0.005, 42000, -6.852, 5e-4, 76.215),
     ],

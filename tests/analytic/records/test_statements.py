@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from made_up_records import VALUES
+from made_up_records import VALUES, cwa, jma, turkey
 from record_files import assert_refused, write
 
 from analytic.errors import SceneError
@@ -210,56 +210,25 @@ def test_a_unit_that_is_not_known_is_refused_whatever_the_user_gives(tmp_path, l
     assert_refused(write(tmp_path, f"{line}\n{ONE_COLUMN}"), "not an acceleration", units=units, dt=0.01)
 
 
-JMA = "SITE CODE= 1\nLAT.= 35.0\nSAMPLING RATE= 100Hz\nUNIT  = gal(cm/s/s)\nINITIAL TIME = 2000\n NS,EW,UD\n"
-CWA = (
-    "#SampleRate(Hz): 200\n#AmplitudeUnit:  gal. DCoffset(corr)\n#DataSequence: Time U(+); N(+); E(+)\n#Data: 4F10.3\n"
-)
-AFAD = "PLACE : TEST\nSAMPLING INTERVAL (sec) : 0.005\nRAW PGA VALUES (gal) : (N-S) 1.5\n    N-S       E-W       U-D\n"
 NETWORKS = {
-    "Japan": (
-        JMA + "".join(",".join(line.split()) + "\n" for line in THREE.splitlines()),
-        ("NS", "EW", "UD"),
-        0.01,
-        "",
-    ),
-    "Taiwan": (
-        CWA + "".join(f"{0.005 * i:10.3f} {line}\n" for i, line in enumerate(THREE.splitlines())),
-        ("U", "N", "E"),
-        0.005,
-        "time",
-    ),
-    "Turkey": (AFAD + THREE, ("N-S", "E-W", "U-D"), 0.005, ""),
+    "Japan": (jma(VALUES), ("NS", "EW", "UD"), (1, -0.5, 0.01), 0.01),
+    "Taiwan": (cwa(VALUES), ("U", "N", "E"), (0.1, 1, -0.01), 0.005),
+    "Turkey": (turkey(VALUES), ("N-S", "E-W", "U-D"), (1, -0.5, 0.01), 0.02),
 }
 
 
-@pytest.mark.parametrize("text, names, step, first", NETWORKS.values(), ids=NETWORKS)
-def test_columns_of_networks(tmp_path, text, names, step, first):
+@pytest.mark.parametrize("text, names, factors, step", NETWORKS.values(), ids=NETWORKS)
+def test_columns_of_networks(tmp_path, text, names, factors, step):
     path = write(tmp_path, text)
-    channels = read_channels(path)
-    assert tuple(channel.direction for channel in channels) == names
-    assert {(channel.motion.dt, channel.unit.factor) for channel in channels} == {(step, 0.01)}
-    for place, (name, factor) in enumerate(zip(names, (1, -2, 0.5), strict=True), 2 if first else 1):
+    found = [(one.direction, one.motion.dt, one.unit.factor) for one in read_channels(path)]
+    assert found == [(name, step, 0.01) for name in names]
+    first = 2 if names[0] == "U" else 1
+    for place, (name, factor) in enumerate(zip(names, factors, strict=True), first):
         for column in (place, str(place), name, name.lower()):
-            found = read_record(path, column=column).samples
-            np.testing.assert_allclose(found, np.array(VALUES) * factor * 0.01, atol=0.5e-5 + 1e-12)
-    width = 4 if first else 3
+            np.testing.assert_allclose(read_record(path, column=column).samples, np.array(VALUES) * factor, atol=6e-6)
     assert_refused(path, "motion.column: missing; the file holds columns")
-    assert_refused(path, f"motion.column = 'Z': but the file has {width} columns; give column, ", column="Z")
+    assert_refused(path, f"motion.column = 'Z': but the file has {first + 2} columns; give column, ", column="Z")
     assert_refused(path, "motion.units = 'g': but the record carries its own unit, gal", units="g", column=3)
-
-
-def test_a_table_with_velocities_names_its_columns(tmp_path):
-    rows = "".join(f"{0.01 * i:.2f},{a:.3f},{a:.3f}\n" for i, a in enumerate(VALUES))
-    path = write(tmp_path, "Time (s),x (g),v (cm/s)\n" + rows)
-    assert_refused(path, "motion.column: missing; not all columns are accelerations (line 1, unit: not")
-    assert_refused(path, "; add column, 2 (x)")
-    assert read_record(path, column="x").dt == 0.01
-
-
-def test_a_number_that_the_end_of_the_file_cuts_is_refused(tmp_path):
-    cut = ONE_COLUMN.rstrip("\n")
-    assert len(read_record(write(tmp_path, cut), "g", dt=0.01).samples) == len(VALUES)
-    assert_refused(write(tmp_path, cut[:-2]), "the last number is cut", units="g", dt=0.01)
 
 
 AT2 = "PEER\nMADE UP\nACCELERATION TIME HISTORY IN UNITS OF G\nNPTS= 4, DT= .01 SEC\n .1250E+00 -.2500E-01  .1000E+00 "
@@ -273,6 +242,7 @@ KNET = (
 @pytest.mark.parametrize(
     "head, sound, broken",
     [
+        (f"# dt = .01 s, acceleration [m/s2]\n{ONE_COLUMN}", "0.1250\n", ["0.12", "0.12\n", "0.125e"]),
         (
             AT2,
             " .3750E+00\n",
@@ -281,7 +251,7 @@ KNET = (
         (DYNA, "3.750000\n", ["3.75", "3.7500000\n", "3.750000E1\n", "3\n"]),
         (KNET, "   12500     -300      120 ", ["   12500     -300      12", "   12500     -30      120 "]),
     ],
-    ids=["PEER", "DYNA", "K-NET"],
+    ids=["a column", "PEER", "DYNA", "K-NET"],
 )
 def test_a_damaged_number_is_told_by_the_form_of_the_others(tmp_path, head, sound, broken):
     read_record(write(tmp_path, head + sound))
@@ -394,14 +364,6 @@ def test_letters_stand_for_velocity_and_displacement_beside_an_acceleration_alon
     assert kinds_of(Titles(1, ("t", "n", "e", "v")), False) == ["the time", "", "", ""]
 
 
-def test_the_only_acceleration_is_named_where_others_stand_beside_it(tmp_path):
-    path = write(tmp_path, "Time,Vel.,Acc\n" + ROWS)
-    assert_refused(path, "motion.column: missing; not all columns are accelerations", units="g")
-    assert_refused(path, "; add column, 3 (Acc)", units="g")
-    assert_refused(path, "title = 'Vel.': is a velocity", units="g", column=2)
-    assert len(read_record(path, "g", column=3).samples) == 12
-
-
 @pytest.mark.parametrize(
     "title, unit",
     [
@@ -453,11 +415,3 @@ def test_a_word_that_may_be_a_unit_is_asked_about(title, word):
 
 def test_titles_that_differ_in_a_number_alone_are_numbered():
     assert with_unit(Titles(1, ("time", "acc_box1", "acc_box2")), 2) == "acc_box2"
-
-
-@pytest.mark.parametrize("sign", ["", "-"])
-def test_accelerations_of_one_sign_are_odd(tmp_path, sign):
-    """A spectrum without titles, or a constant offset."""
-    text = "".join(f"{0.05 * i:.2f} {sign}{1 + i % 3}\n" for i in range(9))
-    (warning,) = read_record(write(tmp_path, text), "m/s2").warnings
-    assert "all accelerations have one sign: check that they are no spectrum and have no offset" in warning
