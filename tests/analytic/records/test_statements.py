@@ -242,7 +242,7 @@ KNET = (
 @pytest.mark.parametrize(
     "head, sound, broken",
     [
-        (f"# dt = .01 s, acceleration [m/s2]\n{ONE_COLUMN}", "0.1250\n", ["0.12", "0.12\n", "0.125e"]),
+        (f"# dt = .01 s, acceleration [m/s2]\n{ONE_COLUMN}", "0.1250\n", ["0.12", "0.125e"]),
         (
             AT2,
             " .3750E+00\n",
