@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -15,6 +16,7 @@ from analytic import (
     SampledMotion,
     Scene,
     Start,
+    batch,
     overturning_map,
     rocking_spectrum,
     simulate,
@@ -52,11 +54,15 @@ def test_simulate_many_equals_one_at_a_time():
             assert many.peak_base_displacement[i] == pytest.approx(one.peak_base_displacement, rel=1e-9)
 
 
-def test_workers_do_not_change_a_bit():
-    scenes = mixed_scenes()
+def test_workers_are_as_many_as_are_asked_for_and_do_not_change_a_bit(monkeypatch):
+    scenes, pools = mixed_scenes(), []
+    monkeypatch.setattr(
+        batch, "ThreadPoolExecutor", lambda workers: pools.append(workers) or ThreadPoolExecutor(workers)
+    )
     one, two = simulate_many(scenes, workers=1), simulate_many(scenes, workers=2)
     for name in ("overturns", "peak_tilt", "peak_base_displacement", "impacts"):
         assert np.array_equal(getattr(one, name), getattr(two, name))
+    assert set(pools) == {2}  # one worker needs no thread
 
 
 def test_no_scenes():

@@ -141,11 +141,6 @@ def test_vertical_ratio_of_a_synthetic_motion_has_a_seed_of_its_own(tmp_path):
         assert motion.vertical.samples.tolist() == pytest.approx(wanted, rel=1e-12)
 
 
-def test_synthetic_motion_with_seed_and_scale(tmp_path):
-    motion = with_motion(tmp_path, 'synthetic = "duzce-like"\nseed = 5\nscale = 0.5')
-    assert motion.digest() == synthetic_motion(seed=5).scaled(0.5).digest()
-
-
 def test_shipped_scenes():
     scenes = {name: load_scene(name) for name in shipped_scenes()}
     assert set(scenes) == {"caryatid-rigid", "caryatid-isolated", "free-rocking-rigid", "free-rocking-isolated"}

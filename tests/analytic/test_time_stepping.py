@@ -96,33 +96,6 @@ BASES = [None, Base(mass=212.0), Base(mass=3000.0), Base(mass=1e9)]
 G = 9.81
 
 
-def block_on_ground(friction, motion, duration):
-    return Scene(block=BLOCK, friction=friction, motion=motion, duration=duration)
-
-
-@pytest.mark.parametrize("step", [1e-3, 3.1e-4, 1e-4])
-def test_newmark_under_a_rectangular_pulse(step):
-    """The block stops within one step, in which it could go mu g step^2."""
-    a, mu, T = 4.0, 0.2, 0.4
-    run = slid(block_on_ground(mu, PulseMotion("rectangular", a, math.pi / T), 2.0), step=step)
-    v = (a - mu * G) * T
-    assert run.outcome == "slides" and not run.impacts and run.peak_tilt == 0
-    assert run.sliding.end == pytest.approx(-(v * T / 2 + v**2 / (2 * mu * G)), abs=mu * G * step**2)
-    assert run.sliding.path == pytest.approx(run.sliding.peak) == pytest.approx(-run.sliding.end)
-
-
-@pytest.mark.parametrize("step", [1e-3, 3.1e-4, 1e-4])
-def test_newmark_under_a_half_sine_pulse(step):
-    """It also begins to slide within a step, in which the speed is off by up to a'_g step^2/8."""
-    a, w, mu = 5.0, 6.0, 0.15
-    run = slid(block_on_ground(mu, PulseMotion("half-sine", a, w), 2.0), step=step)
-    begin, end = math.asin(mu * G / a) / w, math.pi / w
-    v = a / w * (math.cos(w * begin) + 1) - mu * G * (end - begin)
-    way = a / w * (math.cos(w * begin) * (end - begin) + math.sin(w * begin) / w) - mu * G / 2 * (end - begin) ** 2
-    begun = a * w * math.cos(w * begin) / 8 * (end - begin + v / (mu * G))
-    assert run.sliding.end == pytest.approx(-(way + v**2 / (2 * mu * G)), abs=(begun + mu * G) * step**2)
-
-
 def test_a_block_that_hops_slips_when_it_lands():
     """Under a_v = -2 g it flies, and lands with -m eta' and at most mu of it to brake the slip."""
     a, mu, T = 4.0, 0.2, 0.1
@@ -130,7 +103,7 @@ def test_a_block_that_hops_slips_when_it_lands():
     v = a * T - mu * G * math.sqrt(2) * T
     exact = -(a * T**2 * (1.5 + math.sqrt(2)) + v**2 / (2 * mu * G))
     for step in (1e-4, 1e-5):
-        run = slid(block_on_ground(mu, pulse, 1.0), step=step)
+        run = slid(Scene(block=BLOCK, friction=mu, motion=pulse, duration=1.0), step=step)
         assert run.peak_tilt < a * step and run.sliding.end == pytest.approx(exact, abs=5 * a * T * step)
 
 
