@@ -49,16 +49,13 @@ def test_an_inner_function_makes_no_array_and_is_not_called_from_python():
         from_python(makes)()
 
 
-def test_the_collector_is_as_before_after_compiling():
-    assert gc.isenabled()
-    with compiling():
-        assert not gc.isenabled()
-    assert gc.isenabled()
-    gc.disable()
+@pytest.mark.parametrize("switch, enabled", [(gc.enable, True), (gc.disable, False)])
+def test_the_collector_is_as_before_after_compiling(switch, enabled):
+    switch()
     try:
         with compiling():
-            pass
-        assert not gc.isenabled()
+            assert not gc.isenabled()
+        assert gc.isenabled() == enabled
     finally:
         gc.enable()
 

@@ -53,6 +53,18 @@ def test_a_comes_to_rest_after_every_impact():
     assert (response.end.tilt, response.end.tilt_rate) == (0, 0)
 
 
+@pytest.mark.parametrize("number", [5, 20, 40, 60])
+def test_a_run_may_end_in_any_swing_however_short(number):
+    known = P, 0.25, 1 - 1.5 * math.sin(0.25) ** 2, 0.9 * 0.25
+    begin, end = closed_form.free_rocking(*known, number + 1).times[-2:]
+    duration = float(begin + 0.3 * (end - begin))
+    found = simulate(problem_a(duration)).end
+    assert (found.time, found.tilt) == (
+        duration,
+        pytest.approx(closed_form.free_rocking_tilt(*known, duration), rel=1e-5),
+    )
+
+
 def test_b():
     response = simulate(PROBLEM_B, tolerance=1e-16)
     assert response.uplifts == pytest.approx([math.asin(1 / 1.2) / 5.2], abs=1e-15)

@@ -52,16 +52,14 @@ def _energy_scale(scene, response):
     return scale
 
 
-def test_random_scenes_are_sound():
-    for index in range(400):
-        assert_sound(random_scene(0, index, NAMES))
+MANY = (pytest.mark.long, pytest.mark.timeout(1400))
 
 
-@pytest.mark.long
-@pytest.mark.timeout(1400)
-@pytest.mark.parametrize("begin", (400, 20_000))
-def test_many_more_random_scenes_are_sound(begin):
-    for index in range(begin, begin + 5000):
+@pytest.mark.parametrize(
+    "begin, count", [(0, 400), *(pytest.param(begin, 5000, marks=MANY) for begin in (400, 20_000))]
+)
+def test_random_scenes_are_sound(begin, count):
+    for index in range(begin, begin + count):
         assert_sound(random_scene(0, index, NAMES))
 
 

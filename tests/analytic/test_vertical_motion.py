@@ -120,14 +120,6 @@ def test_a_constant_vertical_acceleration_is_another_gravity(scene, change):
     assert held.uplifts == pytest.approx(other.uplifts, rel=1e-12)
 
 
-def test_uplift_is_where_the_acceleration_exceeds_the_weight():
-    motion = pulse("one-sine", 3.0, 5.0, 2.0, 0.5)
-    uplift = simulate(FREE.with_(motion=motion)).uplifts[0]
-    t = np.append(np.linspace(0.2, uplift - 1e-5, 1000), uplift)
-    share = np.abs(motion.acceleration(t)) / ((G + motion.vertical.acceleration(t)) * math.tan(0.28))
-    assert share[-1] == pytest.approx(1, rel=1e-13) and share[:-1].max() < 1
-
-
 @pytest.mark.parametrize("engine", [simulate, simulate_twin, lambda scene: simulate_time_stepping(scene, step=1e-3)])
 def test_forces_at_the_contact_of_a_standing_block(engine):
     # the base keeps the block's horizontal acceleration; it weighs m (g + a_v)
