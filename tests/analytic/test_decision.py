@@ -157,7 +157,7 @@ def test_a_duration_that_cuts_the_motion_leaves_the_outcome_undecided(toppling, 
     assert not simulate_many([cut]).decided[0]
 
 
-@pytest.mark.parametrize("index", range(60))
+@pytest.mark.parametrize("index", range(36))
 def test_nothing_changes_after_the_end_of_a_decided_run(index):
     scene = random_scene(5, index, NAMES).with_(duration=None)
     response = simulate(scene, history=False)
@@ -207,7 +207,7 @@ def test_a_base_that_could_still_make_its_block_slide_is_not_decided():
 
 
 # The reference does not hang on the duration that is asked for; times that doubles cannot resolve are refused.
-DURATIONS = (1e2, 1e3, 1e4, 1e5, 1e6, 1e7)  # s
+DURATIONS = (1e2, 1e3, 1e5, 1e7)  # s
 SLENDERNESS = 0.25
 UPLIFT = 9.81 * math.tan(SLENDERNESS)
 

@@ -127,7 +127,7 @@ def test_more_events_than_the_first_try_keeps(monkeypatch):
     assert simulate(PROBLEM_A).impact_count == 177
 
 
-# .
+# Closed forms, and the linear oscillator.
 
 
 # Problem A: released at rest from 0.9 gamma, Housner's restitution; times of a high-precision solution.

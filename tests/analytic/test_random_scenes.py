@@ -56,7 +56,7 @@ MANY = (pytest.mark.long, pytest.mark.timeout(1400))
 
 
 @pytest.mark.parametrize(
-    "begin, count", [(0, 400), *(pytest.param(begin, 5000, marks=MANY) for begin in (400, 20_000))]
+    "begin, count", [(0, 200), *(pytest.param(begin, 5000, marks=MANY) for begin in (200, 20_000))]
 )
 def test_random_scenes_are_sound(begin, count):
     for index in range(begin, begin + count):
@@ -97,10 +97,10 @@ def sound(response):
 
 @SOLVERS
 def test_rest_inside_a_motion_lifts_again(solve):
-    burst = [*1.3 * THRESHOLD * np.sin(2 * np.pi * 2 * np.arange(200) * 0.01), *np.zeros(1500)]
-    response = sound(solve(Scene(block=BLOCK, motion=sampled(burst + burst), duration=40.0)))
+    burst = [*1.3 * THRESHOLD * np.sin(2 * np.pi * 2 * np.arange(200) * 0.01), *np.zeros(900)]
+    response = sound(solve(Scene(block=BLOCK, motion=sampled(burst + burst), duration=23.0)))
     assert len(response.uplifts) >= 2 and len(response.rests) >= 2
-    assert response.uplifts[-1] > 17.0 > response.rests[0]
+    assert response.uplifts[-1] > 11.0 > response.rests[0]
 
 
 @SOLVERS

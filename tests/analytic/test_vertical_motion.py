@@ -60,7 +60,7 @@ SCENES = {
     "sine, on bearings": ISOLATED.with_(motion=pulse("one-sine", 5.0, 8.0, 2.5, 2.0)),
     "rough, bilinear bearings": ISOLATED.with_(bearings=BILINEAR, motion=shaken(5, peak=6.0)),
     "long record, rigid ground": FREE.with_(block={"slenderness": 0.4}, motion=both_synthetic(1.0), duration=10.0),
-    "long record, on bearings": ISOLATED.with_(block={"slenderness": 0.2}, motion=both_synthetic(1.2), duration=10.0),
+    "long record, on bearings": ISOLATED.with_(block={"slenderness": 0.2}, motion=both_synthetic(1.2), duration=8.0),
 }
 
 
