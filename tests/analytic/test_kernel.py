@@ -1,19 +1,43 @@
 """The compiled kernel against closed forms, conservation laws, symmetry and its own order."""
 
+import gc
+import itertools
 import math
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from bearing_laws import bearings_of
+from from_python import from_python
 from literature import A_IMPACTS, A_REST, A_TILT, B_TILT, ONE_SINE, ONE_SINE_SLENDER, under_a_pulse
+from numba import njit
+from numba.core.registry import cpu_target
 from rough_motions import rough
 from scipy.integrate import solve_ivp
 from scipy.special import ellipk, ellipkinc
 
-from analytic import PulseMotion, SampledMotion, Scene, SettingError, Start, closed_form, simulate
+from analytic import (
+    Block,
+    PulseMotion,
+    SampledMotion,
+    Scene,
+    SettingError,
+    Start,
+    batch,
+    closed_form,
+    kernel,
+    overturning_map,
+    rocking_spectrum,
+    simulate,
+    simulate_many,
+)
+from analytic._cache import digest
 from analytic.caryatid import BASE, caryatid_block
 from analytic.caryatid import BEARINGS as LRB
+from analytic.compiled import compiling, entry, inner
 from analytic.kernel import run
-from analytic.layout import END_TILT, END_Z
+from analytic.layout import END_TILT, END_Z, ROWS, TOTALS
 from analytic.linear_oscillator import displacement_spectrum
 from analytic.problems import problem_a, problem_b
 from analytic.solver import ground, options, parameters
@@ -259,3 +283,220 @@ def test_shape_scale_and_mirror():
 def test_out_of_range_is_refused(periods, ratios):
     with pytest.raises(SettingError):
         displacement_spectrum(PulseMotion("one-sine", 1.0, 1.0), periods, ratios)
+
+
+# Batches: the same outcomes as one run at a time, whatever the number of workers.
+
+
+GRAVITY = 9.81
+BLOCK = Block(mass=1.0, radius=3 * GRAVITY / (4 * 2.14**2), slenderness=0.25, restitution=0.9)
+SLENDER = caryatid_block(0.18)
+
+
+def mixed_scenes():
+    """Rigid and isolated, pulses, two records and free motion, with and without vertical motion, in no order."""
+    pulses = PulseMotion("ricker", 4.0, 5.0), PulseMotion("one-cosine", 5.0, 7.0), PulseMotion("rectangular", 4.0, 3.0)
+    rigid = [Scene(block=SLENDER, motion=motion, duration=12.0) for motion in (rough(1, 4.0), *pulses, rough(2, 6.0))]
+    rigid[2:2] = [Scene(block=SLENDER, start=Start(tilt=0.02 * k), duration=12.0) for k in range(5)]
+    bearings = [bearings_of(law, count=4) for law in ("algebraic", "bilinear")]
+    scenes = [scene.with_(base=BASE, bearings=one) for one in bearings for scene in rigid[::-1]] + rigid
+    shaken = [(scene, scene.motion) for scene in scenes if scene.motion]
+    return [scene.with_(motion=replace(motion, vertical=motion.scaled(0.5))) for scene, motion in shaken] + scenes
+
+
+def test_simulate_many_equals_one_at_a_time():
+    scenes = mixed_scenes()
+    many = simulate_many(scenes, tolerance=1e-14)
+    assert len(set(many.overturns)) == 2  # the set holds both outcomes
+    assert not many.failed.any()
+    for i, scene in enumerate(scenes):
+        one = simulate(scene, tolerance=1e-14, history=False)
+        assert many.overturns[i] == (one.outcome == "overturns")
+        assert many.lifted[i] == (one.outcome != "stands")
+        assert many.peak_tilt[i] == pytest.approx(one.peak_tilt, rel=1e-8, abs=1e-12)
+        if not many.overturns[i]:
+            assert many.peak_base_displacement[i] == pytest.approx(one.peak_base_displacement, rel=1e-9)
+
+
+def test_workers_are_as_many_as_are_asked_for_and_do_not_change_a_bit(monkeypatch):
+    scenes, pools = mixed_scenes(), []
+    monkeypatch.setattr(
+        batch, "ThreadPoolExecutor", lambda workers: pools.append(workers) or ThreadPoolExecutor(workers)
+    )
+    one, two = simulate_many(scenes, workers=1), simulate_many(scenes, workers=2)
+    for name in ("overturns", "peak_tilt", "peak_base_displacement", "impacts"):
+        assert np.array_equal(getattr(one, name), getattr(two, name))
+    assert set(pools) == {2}  # one worker needs no thread
+
+
+def test_no_scenes():
+    assert simulate_many([]).overturns.shape == (0,)
+
+
+@pytest.mark.parametrize(
+    "shape, vertical, fine",
+    [("one-sine", 0.0, 1), ("one-sine", 0.8, 4), ("one-cosine", 0.0, 4), ("half-sine", -0.5, 4), ("ricker", 0.0, 4)],
+)
+def test_an_overturning_map_is_that_of_full_runs(shape, vertical, fine):
+    """After the pulse the energy integral decides; a full run must agree in outcome and peak."""
+    scene = Scene(block=BLOCK, duration=60.0)
+    frequencies, amplitudes = np.linspace(1.5, 7, 23)[::fine], np.linspace(1.05, 9, 29)[::fine]
+    phase = 0.7 if vertical else 0.0
+    found = overturning_map(
+        scene.with_(duration=None if vertical else 60.0),
+        shape,
+        frequencies,
+        amplitudes,
+        tolerance=1e-16,
+        vertical_ratio=vertical,
+        vertical_phase=phase,
+    )
+    full = []
+    for a, f in itertools.product(amplitudes * GRAVITY * math.tan(0.25), frequencies * scene.rocking_frequency):
+        up = PulseMotion(shape, vertical * a, f, phase=phase) if vertical else None
+        full.append(simulate(scene.with_(motion=PulseMotion(shape, a, f, vertical=up)), history=False, tolerance=1e-16))
+    assert found.overturns.ravel().tolist() == [one.outcome == "overturns" for one in full]
+    assert found.peak_tilt.ravel() == pytest.approx([one.peak_tilt for one in full], rel=1e-9)
+
+
+def test_a_rocking_spectrum_runs_until_decided_and_is_that_of_full_runs():
+    motion, periods = rough(5, 5.0, duration=8.0), np.linspace(0.8, 7.0, 21)
+    cut = SampledMotion(motion.dt, motion.samples[: round(4.0 / motion.dt)])  # in the strong shaking
+    found = rocking_spectrum(cut, periods, 0.25)
+    assert found.decided.all() and 0 < found.overturns.sum() < len(periods)
+    for i, period in enumerate(periods):
+        block = Block(mass=1.0, radius=0.75 * GRAVITY * (period / (2 * math.pi)) ** 2, slenderness=0.25)
+        one = simulate(Scene(block=block, motion=cut, duration=cut.end + 60.0), history=False)
+        assert found.overturns[i] == (one.outcome == "overturns")
+        # to rounding, and what the motion makes of it where the block hardly rocks
+        assert found.peak_tilt[i] == pytest.approx(one.peak_tilt, abs=1e-8)
+    short = rocking_spectrum(cut, periods, 0.25, duration=0.9 * cut.end)
+    assert not short.decided[~short.overturns].any()
+
+
+# Inner functions are compiled as `analytic.compiled` says: numba has no public option for one part of it.
+
+
+def native(function):
+    """Machine code of a compiled function itself, without its wrappers."""
+    (text,) = function.inspect_llvm().values()
+    bodies = [part.partition("\n}")[0] for part in text.split("\ndefine ")[1:]]
+    return "".join(
+        body for body in bodies if not any(word in body.split("(")[0] for word in ("cpython", "cfunc", "NRT_"))
+    )
+
+
+def test_no_reference_is_counted_in_what_is_compiled_without():
+    """Where an array is handed on and kept, numba counts a reference, an atomic operation; not here."""
+
+    def hand_on(array, other, first):
+        kept = array if first else other
+        for _ in range(int(kept[0])):
+            kept = other if kept[1] > 0 else array
+        return kept[0]
+
+    found = {}
+    for name, decorate in (("counted", njit), ("entry", entry)):
+        function = decorate(hand_on)
+        function(np.ones(3), np.ones(3), True)
+        found[name] = "NRT_incref" in native(function) or "atomicrmw" in native(function)
+    assert found == {"counted": True, "entry": False}
+
+
+def test_an_inner_function_makes_no_array_and_is_not_called_from_python():
+    @inner
+    def makes():
+        return np.zeros(3)
+
+    with pytest.raises(Exception, match="Only accept returning of array passed into the function"):
+        from_python(makes)()
+
+
+@pytest.mark.parametrize("switch, enabled", [(gc.enable, True), (gc.disable, False)])
+def test_the_collector_is_as_before_after_compiling(switch, enabled):
+    switch()
+    try:
+        with compiling():
+            assert not gc.isenabled()
+        assert gc.isenabled() == enabled
+    finally:
+        gc.enable()
+
+
+def test_an_inner_function_is_no_machine_code_but_in_its_entry():
+    """numba would optimise and emit it at every level of calls, for some half of the time."""
+
+    @inner
+    def twice(x):
+        return 2 * x
+
+    @inner
+    def four_times(x):
+        return twice(twice(x))
+
+    @njit
+    def called(x):
+        return four_times(x) + 1
+
+    assert called(2.0) == 9.0
+    linked = [next(iter(function.overloads.values())) for function in (twice, four_times)]
+    engine = cpu_target.target_context.codegen()._engine
+    assert [engine.is_symbol_defined(one.fndesc.mangled_name) for one in linked] == [False, False]
+    (whole,) = called.overloads.values()
+    assert engine.is_symbol_defined(whole.fndesc.mangled_name)
+
+
+def test_the_kernel_keeps_to_the_arrays_it_is_given():
+    arrays = kernel.arrays(np.empty((1, TOTALS)), capacity=2, outputs=3)
+    assert arrays.P.shape[0] == ROWS and [len(rows) for rows in arrays[2:6]] == [2, 2, 2, 3]
+
+
+# The key of a compiled function is what it does: what it reads counts, and nothing else.
+PLAIN = """
+LIMIT = 2.0
+def inner(x):
+    return x * LIMIT
+def make(step):
+    def outer(x, least=0.5):
+        '''What it does.'''
+        return max(inner(x), least) + step + sum([k for k in (1, 2)])
+    return outer
+outer = make(3)
+"""
+
+
+def key_of(text, without=None):
+    scope = {"__name__": "analytic.made"}  # followed as the model's own
+    exec(text, scope)
+    scope.pop(without, None)
+    return digest(scope["outer"])
+
+
+def test_an_entry_stands_below_what_it_calls():
+    """Its key is taken where it stands: what comes later would not count, and a stale kernel would run."""
+    with pytest.raises(NameError, match="inner, read by .*outer, stands below the entry: move the entry down"):
+        key_of(PLAIN, without="inner")
+    assert kernel._run_rows._cache._impl.locator.get_source_stamp() == digest(kernel._run_rows)
+
+
+@pytest.mark.parametrize(
+    "before, after",
+    [("LIMIT = 2.0", "\nLIMIT = 2.0  # so far"), ("What it does.", "Another sentence."), ("\ndef", "\nOTHER = 1\ndef")],
+)
+def test_words_lines_and_what_is_not_read_do_not_count(before, after):
+    assert key_of(PLAIN.replace(before, after, 1)) == key_of(PLAIN)
+
+
+@pytest.mark.parametrize(
+    "before, after",
+    [
+        ("2.0", "2.5"),
+        ("x * LIMIT", "x / LIMIT"),
+        ("0.5", "0.6"),
+        ("max", "min"),
+        ("make(3)", "make(4)"),
+        ("1, 2", "1, 3"),
+    ],
+)
+def test_constants_operations_defaults_closures_and_what_is_called_count(before, after):
+    assert key_of(PLAIN.replace(before, after)) != key_of(PLAIN)
