@@ -160,7 +160,10 @@ def test_a_base_beyond_its_bearings_limit_is_said(solver):
 
 
 SLIDER = Scene(
-    block=Block(mass=100.0, radius=0.5, slenderness=0.3), motion=PulseMotion("one-sine", 5.0, 2.5), friction=0.1
+    block=Block(mass=100.0, radius=0.5, slenderness=0.3),
+    motion=PulseMotion("one-sine", 5.0, 2.5),
+    friction=0.1,
+    duration=3.0,
 )
 
 
@@ -178,21 +181,24 @@ def test_a_block_that_slips_beyond_its_half_width_is_said_by_every_solver(solver
 
 
 def test_a_block_that_falls_slips_as_it_falls_and_that_is_no_warning():
-    falls = SLIDER.with_(motion=None, block={"slenderness": 0.15}, start=Start(tilt=0.16), friction=0.03)
+    falls = SLIDER.with_(motion=None, duration=None, block={"slenderness": 0.15}, start=Start(tilt=0.16), friction=0.03)
     response = simulate(falls)
     assert response.outcome == "overturns" and response.sliding.peak > falls.block.half_width
     assert "peak_slip" not in [one.quantity for one in response.warnings]
 
 
-@pytest.mark.parametrize("x_max", [None, 1.0])
-def test_within_it_nothing_is_said_and_nothing_changes(x_max):
-    response = simulate(SCENE.with_(bearings={"x_max": x_max}), history=False)
-    assert not response.warnings and response.end == simulate(SCENE, history=False).end
-
-
-def test_the_start_counts():
-    scene = SCENE.with_(motion=None, start=Start(base_displacement=0.06))
-    assert [warning.kind for warning in simulate(scene).warnings] == ["limit"]
+@pytest.mark.parametrize(
+    "changes, told",
+    [
+        ({"bearings": {"x_max": None}}, []),
+        ({"bearings": {"x_max": 1.0}}, []),
+        ({"motion": None, "start": {"base_displacement": 0.06}}, ["limit"]),
+    ],
+)
+def test_within_it_nothing_is_said_and_nothing_changes_and_the_start_counts(changes, told):
+    scene = SCENE.with_(**changes)
+    response, limited = (simulate(one, history=False) for one in (scene, scene.with_(bearings={"x_max": 0.05})))
+    assert [warning.kind for warning in response.warnings] == told and response.end == limited.end
 
 
 @pytest.mark.parametrize("tilt, over", [(0.28, True), (-0.28, True), (0.279999, False), (-0.279999, False)])
