@@ -424,7 +424,6 @@ READ = {
         "# samples: 36\n" + rows("{a:.7f}").replace("0.0", "0", 1),
         {"units": "g", "dt": DT},
     ),
-    "a unit behind five words": ("time,acc_top_of_pier_gal\n" + rows("{t:.2f},{a:.5f}", GAL), {}),
     "a step in a line": ("Time Step: 0.02\n" + rows("{a:.9f}"), {"units": "g"}),
     "OpenSees": (FIVE, {"units": "g", "dt": DT}),
     "Excel, all in quotes": ('"Time (s)","Acc (g)"\n' + rows('"{t:.2f}","{a:.7f}"'), {}),

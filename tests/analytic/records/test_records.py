@@ -372,6 +372,7 @@ def test_letters_stand_for_velocity_and_displacement_beside_an_acceleration_alon
         *((title, "g") for title in ("acc_g", "acceleration_in_g", "acc/g", "NS, g", "x g", "g")),
         *((title, "gal") for title in ("NS_gal", "EW: gal", "gal")),
         ("a_mms2", "mm/s2"),
+        ("acc_top_of_pier_cms2", "cm/s2"),
         ("acc_fts2", "ft/s2"),
         ("x_cms", "cm/s"),
         ("v_mps", "m/s"),
