@@ -90,8 +90,9 @@ def _read(one: Any, known: set[int]) -> Iterator[str]:
                 if name in scope:
                     yield from _read(scope[name], known)
                     break
-            else:  # defined further down in its module
-                yield _source(sys.modules[function.__module__])
+            else:
+                words = f"{name}, read by {function.__qualname__}, stands below the entry: move the entry down"
+                raise NameError(words)  # else a change in what it calls would leave a stale kernel
 
 
 def _own(one):

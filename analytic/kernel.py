@@ -87,17 +87,6 @@ def run_rows(rows: np.ndarray, pulses: np.ndarray, ground: L.Ground, options: L.
     _run_rows(rows, pulses, ground._replace(upright=None), ground.upright, options, into)
 
 
-@entry
-def _run_rows(rows, pulses, ground, upright, options, into):
-    """upright : an argument of its own, see steps.py."""
-    P, work, impacts, uplifts, rests, history, totals = into
-    for i in range(rows.shape[0]):
-        numbers = tuple_of(rows[i], SIZE)
-        par = L.Parameters(*numbers[:OWN], Constants(*numbers[OWN:]))  # type: ignore[call-arg]  # of one length
-        own = L.Ground(ground.kind, ground.dt, ground.samples, None, L.Shaking(*tuple_of(pulses[i], SHAKING)))
-        _integrate(par, own, upright, options, L.Arrays(P, work, impacts, uplifts, rests, history, totals[i]))
-
-
 # One long function, as two loops share some twenty state variables.
 @inner
 def _integrate(par, ground, upright, options, arrays):
@@ -253,3 +242,15 @@ def _conclude(par, end_of_motion, body, base, totals):
         if not certain and not par.on_base:
             certain, totals[L.WILL_OVERTURN], _, _ = settle(par, body)  # (c)
     totals[L.LIFTED], totals[L.CERTAIN] = lifted, certain
+
+
+# Below all that it calls: at this point its key is taken, see _cache.py.
+@entry
+def _run_rows(rows, pulses, ground, upright, options, into):
+    """upright : an argument of its own, see steps.py."""
+    P, work, impacts, uplifts, rests, history, totals = into
+    for i in range(rows.shape[0]):
+        numbers = tuple_of(rows[i], SIZE)
+        par = L.Parameters(*numbers[:OWN], Constants(*numbers[OWN:]))  # type: ignore[call-arg]  # of one length
+        own = L.Ground(ground.kind, ground.dt, ground.samples, None, L.Shaking(*tuple_of(pulses[i], SHAKING)))
+        _integrate(par, own, upright, options, L.Arrays(P, work, impacts, uplifts, rests, history, totals[i]))

@@ -1,6 +1,5 @@
-"""Margins against closed forms, and against scans by full runs."""
+"""Margins against closed forms, and against full runs."""
 
-import contextlib
 import itertools
 import math
 from dataclasses import replace
@@ -11,7 +10,6 @@ from random_scenes import random_scene
 
 from analytic import Block, PulseMotion, Scene, SceneError, SettingError, Start, load_scene, simulate, synthetic_motion
 from analytic.margins import (
-    BISECTIONS,
     FINER,
     LIMIT_STATES,
     QUANTITIES,
@@ -52,15 +50,6 @@ def test_a_released_block_overturns_where_its_tilt_reaches_the_slenderness():
     assert not {"motion", "ka", "base mass"} & set(found)
 
 
-def test_a_released_block_keeps_within_a_limit_that_its_start_keeps():
-    """Each swing is smaller than the one before."""
-    found = by_name(block_scene(start=Start(tilt=0.08)), tilt=0.3)
-    assert not found["start"].reached("tilt")
-    assert found["start"].change("tilt") == pytest.approx(0.3 * 0.28 / 0.08 - 1, abs=1e-7)
-    assert found["slenderness"].change("tilt") == pytest.approx(0.08 / (0.3 * 0.28) - 1, abs=1e-7)
-    assert len(found["size"].bands) == 1
-
-
 def test_a_standing_block_rocks_from_its_uplift_acceleration_on():
     """The uplift acceleration of a block on rigid ground is g tan(slenderness)."""
     a = 2.5
@@ -96,20 +85,6 @@ def test_a_block_that_lifts_slides_from_shentons_acceleration_on():
     assert found.beyond(found.up) == "rocks" and found.leaves_model is None
 
 
-def test_a_wide_span_finds_the_uplift_at_several_times_the_motion():
-    """In one step the block lifts, exceeds half its slenderness and overturns."""
-    a, step = 0.5, 9.0 / 400
-    lift = G * math.tan(0.28) / a - 1
-    scene = block_scene(motion=PulseMotion("rectangular", a, 1.0))
-    margin = by_name(scene, span=9.0, step=step)["motion"]
-    assert 4 < lift < 5 and margin.outcome == "stands" and not any(map(margin.reached, LIMIT_STATES))
-    assert margin.change("lifts") == margin.up == pytest.approx(lift, abs=step / 2**BISECTIONS)
-    assert lift < margin.change("tilt") < margin.change("overturns") < lift + step
-    assert [outcome for _, _, outcome in margin.outcomes] == ["stands", "rocks", "overturns"] and not margin.interleaved
-    # 44 steps down would leave less than half a step
-    assert (margin.bands[0].low, margin.bands[-1].high) == (pytest.approx(-43 * step, abs=1e-9), 9.0)
-
-
 @pytest.mark.parametrize("amplitude, change", [(9.5, G / 9.5 - 1), (11.0, 0.0)])
 def test_a_block_leaves_the_model_where_the_ground_falls_away_as_fast_as_it(amplitude, change):
     motion = PulseMotion("one-sine", 0.0, 6.0, vertical=PulseMotion("one-sine", amplitude, 6.0))
@@ -123,14 +98,6 @@ def test_no_quantity_comes_to_nothing(span, step):
     assert margin.bands[0].low == pytest.approx(step - 1, abs=1e-9)
 
 
-@pytest.fixture(scope="module")
-def isolated():
-    """Under 1.6 times the shipped motion, where it rocks: (scene, {quantity: margin})."""
-    scene = load_scene("caryatid-isolated")
-    scene = scene.with_(motion=scene.motion.scaled(1.6), duration=None)
-    return scene, by_name(scene, tilt=0.3, span=0.8, step=0.02)
-
-
 def reached(scene, tilt):
     """The limit states that a run of its own reaches."""
     response = simulate(scene, history=False)
@@ -138,7 +105,7 @@ def reached(scene, tilt):
         "slides": response.sliding is not None and response.sliding.path > 0,
         "lifts": response.outcome in ("rocks", "overturns"),
         "tilt": response.peak_tilt > tilt * scene.block.slenderness or response.outcome == "overturns",
-        "stroke": response.peak_base_displacement > scene.bearings.x_max,
+        "stroke": scene.bearings is not None and response.peak_base_displacement > (scene.bearings.x_max or math.inf),
         "overturns": response.outcome == "overturns",
     }
     return tuple(state for state in LIMIT_STATES if states[state])
@@ -150,13 +117,22 @@ def changed(scene, name, change):
     return QUANTITIES[name].changed(scene, 1 + change)
 
 
-def test_bands_are_what_runs_in_their_middle_and_just_within_their_ends_reach(isolated):
-    scene, found = isolated
-    for name, margin in found.items():
+CARYATID = load_scene("caryatid-isolated")
+SCANNED = {  # the first under 1.6 times its motion, where it rocks
+    "bearings": (CARYATID.with_(motion=CARYATID.motion.scaled(1.6)), ("motion", "slenderness", "ka")),
+    **{f"random {index}": (random_scene(11, index), ()) for index in range(3)},
+}
+
+
+@pytest.mark.parametrize("scene, only", SCANNED.values(), ids=SCANNED)
+def test_bands_are_what_runs_in_them_and_just_within_their_ends_reach(scene, only):
+    scene = scene.with_(duration=None)
+    for margin in margins(scene, tilt=0.3, span=0.8 if only else 0.2, step=0.02 if only else STEP, only=only):
         for band in margin.bands:
-            within = min(1e-4, 0.25 * (band.high - band.low))
-            for change in (band.low + within, 0.5 * (band.low + band.high), band.high - within):
-                assert reached(changed(scene, name, change), 0.3) == band.reached, f"{name} {change}"
+            width = band.high - band.low
+            within = min(1e-4, 0.25 * width)
+            for change in (band.low + within, *(band.low + np.linspace(0.1, 0.9, 5) * width), band.high - within):
+                assert reached(changed(scene, margin.quantity, change), 0.3) == band.reached, (margin.quantity, change)
         for one, other in itertools.pairwise(margin.bands):
             assert one.high == other.low and (one.reached, one.holds) != (other.reached, other.holds)
 
@@ -235,15 +211,6 @@ def test_before_a_frayed_boundary_the_scan_is_finer():
     assert np.diff(gap).max() == pytest.approx(STEP / FINER, rel=1e-9)
 
 
-def scanned(scene, name, count, span=0.2):
-    """(changes, outcomes) of `count` full runs over the changes that the quantity allows."""
-    found = {}
-    for change in np.linspace(-span, span, count):
-        with contextlib.suppress(ValueError):
-            found[change] = simulate(changed(scene, name, change), history=False).outcome
-    return np.array(list(found)), np.array(list(found.values()))
-
-
 def test_a_range_ends_where_the_model_refuses_the_changed_scene_and_says_why():
     """Released beyond its balance the block falls; from 6.7 % less it lands, where its friction is below (8)'s."""
     found = by_name(block_scene(start=Start(tilt=0.3), friction=0.2), step=1e-3)
@@ -266,38 +233,6 @@ def test_a_range_ends_at_the_last_whole_step_that_is_a_scene_and_says_why(restit
 def test_a_scene_that_the_model_refuses_has_no_margins():
     with pytest.raises(SceneError, match="friction = 0.2: below 0.2113"):
         margins(block_scene(start=Start(tilt=0.2), friction=0.2))
-
-
-def assert_scan_agrees(margin, changes, outcomes):
-    """The nearest change within 1 %, and no stretch of runs above .1 % that the bands tell otherwise.
-
-    At a interleaved boundary both find bands between the other's runs: there no change of the scan is nearer by 1 %.
-    """
-    bands, spacing = margin.bands, changes[1] - changes[0]
-    assert bands[0].low - changes[0] < STEP and changes[-1] - bands[-1].high < STEP  # whole steps that are scenes
-    missed = 0
-    for change, outcome in zip(changes, outcomes, strict=True):
-        near = [band.outcome for band in bands if band.low - 1e-6 <= change <= band.high + 1e-6]
-        missed = missed + 1 if near and outcome not in near else 0
-        assert missed * spacing <= 1e-3, f"{margin.quantity} {change:+.5f}"
-    inside = (changes >= bands[0].low - 1e-6) & (changes <= bands[-1].high + 1e-6)
-    others = np.abs(changes[inside & (outcomes != margin.outcome)])
-    if len(others):
-        farther = abs(margin.nearest) - others.min()
-        assert (farther if margin.interleaved else abs(farther)) <= max(0.01 * others.min(), spacing)
-
-
-LONG = (pytest.mark.long, pytest.mark.timeout(1400))
-
-
-@pytest.mark.parametrize(
-    "seed, index, count",
-    [*((11, i, 101) for i in range(3)), *(pytest.param(12, i, 2000, marks=LONG) for i in range(10))],
-)
-def test_margins_agree_with_scans(seed, index, count):
-    scene = random_scene(seed, index).with_(duration=None)
-    for margin in margins(scene):
-        assert_scan_agrees(margin, *scanned(scene, margin.quantity, count))
 
 
 # What little of the motion decides, against closed forms and single runs
@@ -348,12 +283,6 @@ def test_the_changes_are_even_and_hold_the_scene_itself():
         changes[len(changes) // 2] == 0
         and found.peak_tilt[len(changes) // 2] == simulate(what, history=False).peak_tilt
     )
-
-
-def test_the_mirrored_motion_has_the_same_cliffs():
-    what = shaken(UPLIFT / 1.02)
-    mirrored = what.with_(motion=replace(what.motion, amplitude=-what.motion.amplitude))
-    assert cautions(what) == cautions(mirrored)
 
 
 def test_a_scene_that_costs_too_much_is_refused(monkeypatch):

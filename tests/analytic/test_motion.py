@@ -60,25 +60,6 @@ def test_a_digest_is_of_the_samples_and_their_step():
     assert len({one.digest(), other.digest(), SampledMotion(0.2, [1.0, -2.0]).digest()}) == 3
 
 
-@pytest.mark.parametrize(
-    "dt, samples, message",
-    [
-        (0.0, [1, 2], "motion.dt = 0.0: not a positive number"),
-        (-1, [1, 2], "motion.dt = -1: not a positive number"),
-        (math.nan, [1, 2], "motion.dt = nan: not a positive number"),
-        (math.inf, [1, 2], "motion.dt = inf"),
-        (0.1, [], "holds fewer than two samples; give at least two accelerations"),
-        (0.1, [1], "holds fewer than two samples"),
-        (0.1, [[1, 2], [3, 4]], "shape (2, 2)"),
-        (0.1, [1, math.nan, 2], "motion.record = nan: sample 1 is not finite; mend or remove it"),
-        (0.1, [1, 2, -math.inf], "motion.record = -inf: sample 2 is not finite"),
-    ],
-)
-def test_bad_samples(dt, samples, message):
-    with pytest.raises(SceneError, match=re.escape(message)):
-        SampledMotion(dt, samples)
-
-
 @pytest.mark.parametrize("shape", PULSES)
 def test_pulse_is_zero_outside_and_peaks_where_it_says(shape):
     pulse = PulseMotion(shape, -2.0, 3.0, start=1.5)
@@ -105,23 +86,6 @@ def test_velocity_gained_in_a_pulse(shape, gain):
     assert gained == pytest.approx(gain / 2.0, abs=1e-9)
 
 
-@pytest.mark.parametrize(
-    "arguments, message",
-    [
-        (("two-sine", 1, 1), "motion.pulse = 'two-sine': not a known pulse; choose one of one-sine, one-cosine"),
-        (("one-sine", math.nan, 1), "motion.amplitude = nan: not a finite number"),
-        (("one-sine", "1", 1), "motion.amplitude = '1'"),
-        (("one-sine", True, 1), "motion.amplitude = True"),
-        (("one-sine", 1, 0), "motion.frequency = 0.0: not a positive number; give a finite value above 0 [rad/s]"),
-        (("one-sine", 1, math.inf), "motion.frequency = inf"),
-        (("one-sine", 1, 1, -0.5), "motion.start = -0.5: negative; start the pulse at 0 or later [s]"),
-    ],
-)
-def test_bad_pulse(arguments, message):
-    with pytest.raises(SceneError, match=re.escape(message)):
-        PulseMotion(*arguments)
-
-
 def test_jumps_are_where_the_acceleration_jumps():
     for shape in PULSES:
         pulse = PulseMotion(shape, 2.0, 5.0, 0.3)
@@ -134,21 +98,29 @@ def test_jumps_are_where_the_acceleration_jumps():
 # Two components of a record brought to one step and length
 
 
-def test_equal_steps_and_lengths_are_taken_as_they_are():
-    level, up = SampledMotion(0.1, [1.0, 2.0, 0.0], "H", ("odd",)), SampledMotion(0.1, [3.0, 4.0, 5.0], "V", ("odder",))
-    motion = paired(level, up)
-    assert (motion.samples.tolist(), motion.vertical.samples.tolist()) == ([1, 2, 0], [3, 4, 5])
-    assert (motion.label, motion.warnings) == ("H, vertical V", ("odd", "odder"))
+PAIRED = {  # (step, samples) of both, what they become, and what is said
+    "alike": ((0.1, [1, 2, 0]), (0.1, [3, 4, 5]), [1, 2, 0], [3, 4, 5], ""),
+    "the first shorter": ((0.1, [1, 2]), (0.1, [1, 2, 3, 4]), [1, 2, 0, 0], [1, 2, 3, 4], "H: 0.2 s of zeros put at"),
+    "the other shorter": ((0.1, [1, 2, 3, 4]), (0.1, [1, 2]), [1, 2, 3, 4], [1, 2, 0, 0], "V: 0.2 s of zeros put at"),
+    "resampled": (
+        (0.3, [1, 2, 4]),
+        (0.1, [0] * 7),
+        [1, 4 / 3, 5 / 3, 2, 8 / 3, 10 / 3, 4],
+        [0] * 7,
+        "H: resampled from 0.3 s to the 0.1 s of the other",
+    ),
+    "printed to other digits": ((0.1, [1, 2]), (0.1 * (1 + 1e-12), [1, 2]), [1, 2], [1, 2], ""),
+}
+
+
+@pytest.mark.parametrize("level, up, samples, upright, said", PAIRED.values(), ids=PAIRED)
+def test_two_components_are_brought_to_one_step_and_length(level, up, samples, upright, said):
+    motion = paired(SampledMotion(*level, "H", ("odd",)), SampledMotion(*up, "V", ("odder",)))
+    assert (motion.dt, motion.label, motion.vertical.dt) == (0.1, "H, vertical V", 0.1)
+    assert (motion.samples.tolist(), motion.vertical.samples.tolist()) == (pytest.approx(samples), upright)
+    first, second, *more = motion.warnings
+    assert (first, second, bool(more)) == ("odd", "odder", bool(said)) and said in "".join(more)
     assert motion.vertical.warnings == () and motion.vertical.vertical is None
-
-
-def test_the_shorter_one_is_padded_and_that_is_said():
-    short, long = SampledMotion(0.1, [1.0, 2.0], "short"), SampledMotion(0.1, [1.0, 2.0, 3.0, 4.0], "long")
-    for level, up in ((short, long), (long, short)):
-        motion = paired(level, up)
-        shorter = motion.samples if level is short else motion.vertical.samples
-        assert shorter.tolist() == [1, 2, 0, 0] and len(motion.samples) == 4
-        assert motion.warnings == ("short: 0.2 s of zeros put at its end, as the other component is longer",)
 
 
 @pytest.mark.parametrize("coarse, fine", [(0.02, 0.01), (0.01, 0.004), (1 / 3, 0.1)])
@@ -162,16 +134,6 @@ def test_the_coarser_one_is_resampled_to_the_finer_step_and_that_is_said(coarse,
         assert motion.dt == motion.vertical.dt == fine
         assert found.samples[: len(times)] == pytest.approx(level.acceleration(times), rel=1e-12, abs=1e-12)
         assert motion.warnings[0].startswith(f"level: resampled from {coarse:.6g} s to the {fine:.6g} s of the other")
-
-
-def test_the_last_sample_of_a_resampled_motion_is_kept():
-    level, up = SampledMotion(0.3, [1.0, 2.0, 4.0]), SampledMotion(0.1, np.zeros(7))
-    assert paired(level, up).samples.tolist() == pytest.approx([1, 4 / 3, 5 / 3, 2, 8 / 3, 10 / 3, 4])
-
-
-def test_steps_printed_to_other_digits_are_one_step():
-    motion = paired(SampledMotion(0.005, [1.0, 2.0]), SampledMotion(0.005 * (1 + 1e-12), [1.0, 2.0]))
-    assert motion.dt == 0.005 and not motion.warnings
 
 
 # The shipped synthetic motion: its peaks, its determinism, the paper's three outcomes.
@@ -249,19 +211,46 @@ def test_the_papers_free_caryatid_overturns_by_no_accident_of_the_last_digit(cha
     assert simulate(scene, history=False).outcome == "overturns"
 
 
-@pytest.mark.parametrize(
-    "arguments, message",
-    [
-        ({"style": "kobe-like"}, "motion.synthetic = 'kobe-like': not a known synthetic motion; choose duzce-like"),
-        ({"seed": -1}, "motion.seed = -1: not a whole number from 0 on; give an integer seed"),
-        ({"seed": 1.5}, "motion.seed = 1.5"),
-        ({"seed": True}, "motion.seed = True"),
-    ],
-)
-def test_bad_arguments(arguments, message):
-    with pytest.raises(SceneError) as caught:
-        synthetic_motion(**arguments)
-    assert message in str(caught.value)
+REFUSED = [
+    (SampledMotion, (0.0, [1, 2]), "motion.dt = 0.0: not a positive number"),
+    (SampledMotion, (-1, [1, 2]), "motion.dt = -1: not a positive number"),
+    (SampledMotion, (math.nan, [1, 2]), "motion.dt = nan: not a positive number"),
+    (SampledMotion, (math.inf, [1, 2]), "motion.dt = inf"),
+    (SampledMotion, (0.1, []), "holds fewer than two samples; give at least two accelerations"),
+    (SampledMotion, (0.1, [1]), "holds fewer than two samples"),
+    (SampledMotion, (0.1, [[1, 2], [3, 4]]), "shape (2, 2)"),
+    (SampledMotion, (0.1, [1, math.nan, 2]), "motion.record = nan: sample 1 is not finite; mend or remove it"),
+    (SampledMotion, (0.1, [1, 2, -math.inf]), "motion.record = -inf: sample 2 is not finite"),
+    (
+        PulseMotion,
+        ("two-sine", 1, 1),
+        "motion.pulse = 'two-sine': not a known pulse; choose one of one-sine, one-cosine",
+    ),
+    (PulseMotion, ("one-sine", math.nan, 1), "motion.amplitude = nan: not a finite number"),
+    (PulseMotion, ("one-sine", "1", 1), "motion.amplitude = '1'"),
+    (PulseMotion, ("one-sine", True, 1), "motion.amplitude = True"),
+    (
+        PulseMotion,
+        ("one-sine", 1, 0),
+        "motion.frequency = 0.0: not a positive number; give a finite value above 0 [rad/s]",
+    ),
+    (PulseMotion, ("one-sine", 1, math.inf), "motion.frequency = inf"),
+    (PulseMotion, ("one-sine", 1, 1, -0.5), "motion.start = -0.5: negative; start the pulse at 0 or later [s]"),
+    (
+        synthetic_motion,
+        ("kobe-like",),
+        "motion.synthetic = 'kobe-like': not a known synthetic motion; choose duzce-like",
+    ),
+    (synthetic_motion, ("duzce-like", -1), "motion.seed = -1: not a whole number from 0 on; give an integer seed"),
+    (synthetic_motion, ("duzce-like", 1.5), "motion.seed = 1.5"),
+    (synthetic_motion, ("duzce-like", True), "motion.seed = True"),
+]
+
+
+@pytest.mark.parametrize("made, arguments, message", REFUSED)
+def test_a_motion_that_is_none_is_refused(made, arguments, message):
+    with pytest.raises(SceneError, match=re.escape(message)):
+        made(*arguments)
 
 
 # The Caryatid of the studies is the one of the shipped scenes.

@@ -15,49 +15,44 @@ from analytic.records.folder import directions_of, folder_motions, reversed_sign
 FIRST, SECOND = np.array([0.0, 1.0, -2.0, 0.5]), np.array([0.0, 0.5, 1.5, -1.0])
 
 
+def listed(values, title="a [m/s2]"):
+    """Times and values, a line each."""
+    return f"t [s],{title}\n" + "".join(f"{0.01 * k:.2f},{a}\n" for k, a in enumerate(values))
+
+
 def write(folder, name, values=FIRST):
-    (folder / name).write_text("t [s],a [m/s2]\n" + "".join(f"{0.01 * k:.2f},{a}\n" for k, a in enumerate(values)))
+    (folder / name).write_text(listed(values))
 
 
-@pytest.mark.parametrize(
-    "names",
-    [
-        ("RSN1_DUZCE_DZC180.csv", "RSN1_DUZCE_DZC270.csv"),
-        ("AOM001.EW", "AOM001.NS"),
-        ("HL.DLFA..HNE.D.csv", "HL.DLFA..HNN.D.csv"),
-        ("1999_RawAcc_E.asc", "1999_RawAcc_N.asc"),
-        ("site-H1.csv", "site-H2.csv"),
-        ("BK.HN1.csv", "BK.HN2.csv"),
-    ],
-)
-def test_two_files_that_differ_in_the_component_are_a_pair(tmp_path, names):
-    write(tmp_path, names[0])
-    write(tmp_path, names[1], SECOND)
+PAIRS = [
+    ("RSN1_DUZCE_DZC180.csv", "RSN1_DUZCE_DZC270.csv"),
+    ("AOM001.EW", "AOM001.NS"),
+    ("HL.DLFA..HNE.D.csv", "HL.DLFA..HNN.D.csv"),
+    ("1999_RawAcc_E.asc", "1999_RawAcc_N.asc"),
+    ("site-H1.csv", "site-H2.csv"),
+    ("BK.HN1.csv", "BK.HN2.csv"),
+]
+NO_PAIRS = [
+    ("record1.csv", "record2.csv"),
+    ("record_1.csv", "record_2.csv"),
+    ("A_000.csv", "A_045.csv"),
+    ("A_000.csv", "A_180.csv"),
+    ("A_N.csv", "B_E.csv"),
+    ("A_001.csv", "A_002.csv", "A_091.csv"),  # a count
+    ("A_N.csv", "A_Y.csv"),
+]
+
+
+@pytest.mark.parametrize("names", PAIRS + NO_PAIRS)
+def test_two_files_that_differ_in_the_component_are_a_pair_and_others_are_not_which_is_said(tmp_path, names):
+    for factor, name in enumerate(names):
+        write(tmp_path, name, FIRST + factor * SECOND)
     found, left = folder_motions(tmp_path, directions=4)
-    (motions,) = found.values()
-    assert len(motions) == 4 and left == []
-    assert motions[0].samples == pytest.approx(FIRST)
-    assert motions[2].samples == pytest.approx(SECOND)
-
-
-@pytest.mark.parametrize(
-    "names",
-    [
-        ("record1.csv", "record2.csv"),
-        ("record_1.csv", "record_2.csv"),
-        ("A_000.csv", "A_045.csv"),
-        ("A_000.csv", "A_180.csv"),
-        ("A_N.csv", "B_E.csv"),
-        ("A_001.csv", "A_002.csv", "A_091.csv"),  # a count
-        ("A_N.csv", "A_Y.csv"),
-    ],
-)
-def test_other_files_are_no_pair_and_that_is_said(tmp_path, names):
-    for factor, name in enumerate(names, 1):
-        write(tmp_path, name, factor * FIRST)
-    found, left = folder_motions(tmp_path, directions=4)
-    assert [len(motions) for motions in found.values()] == [1] * len(names)
-    assert ["no pair" in line for line in left] == [True] * len(names)
+    pair = names in PAIRS
+    assert [len(motions) for motions in found.values()] == ([4] if pair else [1] * len(names))
+    assert ["no pair" in line for line in left] == [True] * (0 if pair else len(names))
+    first, across = [motion.samples for motions in found.values() for motion in motions][:: 2 if pair else 1][:2]
+    assert first == pytest.approx(FIRST) and across == pytest.approx(FIRST + SECOND)
 
 
 def test_more_directions_than_can_be_run_are_refused_before_they_are_made(tmp_path):
@@ -73,65 +68,107 @@ def test_more_directions_than_can_be_run_are_refused_before_they_are_made(tmp_pa
         folder_motions(tmp_path, directions=9993)
 
 
-def test_a_vertical_motion_and_what_is_no_record_are_left_out_and_said(tmp_path):
-    write(tmp_path, "RSN1_A000.csv")
-    write(tmp_path, "RSN1_A-UP.csv")
-    (tmp_path / "README.md").write_text("# notes\n")
-    (tmp_path / "sub").mkdir()
-    found, left = folder_motions(tmp_path)
-    assert len(found) == 1 and sorted(line.split(":")[0] for line in left) == ["README.md", "RSN1_A-UP.csv"]
-
-
-def mixed(folder):
-    """A motion that states its unit; the same without it, 98.1 times too large in g; and a spectrum without titles."""
-    write(folder, "motion.csv", 100 * FIRST)
-    text = (folder / "motion.csv").read_text()
-    (folder / "motion.csv").write_text(text.replace("a [m/s2]", "加速度(cm/s²)"))
-    (folder / "gal_no_unit.csv").write_text(text.replace("a [m/s2]", "acc"))
-    (folder / "spectrum.txt").write_text("".join(f"{0.02 * k:.3f}\t{0.4 + 0.01 * k:.4f}\n" for k in range(20)))
-    return folder
-
-
-def test_units_hold_for_files_that_state_none_and_what_looks_like_no_earthquake_is_left_out(tmp_path):
-    found, left = folder_motions(mixed(tmp_path), units="g")
-    ((motion,),) = found.values()
-    assert motion.label == "motion.csv" and motion.samples == pytest.approx(FIRST) and motion.warnings == ()
-    assert left == [
-        "gal_no_unit.csv: left out, the peak of 200 g is above 3 g: check the unit (read in g, units)",
-        "spectrum.txt: left out, all accelerations have one sign: check that they are no spectrum and have no offset",
-    ]
-    found, left = folder_motions(tmp_path, units="gal")
-    assert [*found] == ["gal_no_unit.csv"] and left[1] == "motion.csv: left out, same as gal_no_unit.csv"
-    _, left = folder_motions(tmp_path)
-    assert left[0].startswith("gal_no_unit.csv: left out, motion.units: missing; the header names no unit; add units, ")
-
-
-def test_a_step_holds_for_files_that_state_none(tmp_path):
-    write(tmp_path, "a.csv")
-    (tmp_path / "b.txt").write_text("# acc [m/s2]\n" + "".join(f"{a}\n" for a in FIRST))
-    found, left = folder_motions(tmp_path, dt=0.02)
-    assert left == [] and [motion.dt for (motion,) in found.values()] == [0.01, 0.02]
-
-
-def test_what_is_left_out_is_named_with_its_value_and_the_remedy(tmp_path):
-    write(tmp_path, "a.csv")
-    write(tmp_path, "b.csv", [0, 1, "1.2.3", 4])
-    write(tmp_path, "c.csv", 1e-5 * FIRST)
-    _, (bad, small) = folder_motions(tmp_path)
-    assert bad == "b.csv: left out, line 4 = '1.2.3': not a number; mend or remove it"
-    assert small.startswith("c.csv: left out, the peak of 2.039e-06 g is below 1e-4 g: check the unit (read in m/s2, ")
-
-
-def test_a_motion_of_ones_own_is_never_left_out(tmp_path):
-    mine = SampledMotion(0.01, 981 * FIRST, "as the scene calls it")
-    found, left = folder_motions(mixed(tmp_path), own=mine, units="g")
-    assert [*found] == ["gal_no_unit.csv", "motion.csv"] and [line.split(":")[0] for line in left] == ["spectrum.txt"]
-
-
 VERTICAL = "left out, a vertical motion; a scene whose [motion] names it as vertical beside its record runs it"
 THREE = "t [s],E [m/s2],N [m/s2],Up [m/s2]\n" + "".join(
     f"{0.01 * k:.2f},{FIRST[k]},{SECOND[k]},{0.3 * SECOND[k]:.2f}\n" for k in range(4)
 )
+# A motion that states its unit; the same without it, 98.1 times too large in g; and a spectrum without titles.
+MIXED = {
+    "motion.csv": listed(100 * FIRST, "加速度(cm/s²)"),
+    "gal_no_unit.csv": listed(100 * FIRST, "acc"),
+    "spectrum.txt": "".join(f"{0.02 * k:.3f}\t{0.4 + 0.01 * k:.4f}\n" for k in range(20)),
+}
+ONE_SIGN = "left out, all accelerations have one sign: check that they are no spectrum and have no offset"
+FOLDERS = {
+    "units of what states none": (
+        MIXED,
+        {"units": "g"},
+        {"motion.csv": [FIRST]},
+        [
+            "gal_no_unit.csv: left out, the peak of 200 g is above 3 g: check the unit (read in g, units)",
+            f"spectrum.txt: {ONE_SIGN}",
+        ],
+    ),
+    "the same in other units": (
+        MIXED,
+        {"units": "gal"},
+        {"gal_no_unit.csv": [FIRST]},
+        ["spectrum.txt: ", "motion.csv: left out, same as gal_no_unit.csv"],
+    ),
+    "no units": (
+        MIXED,
+        {},
+        {"motion.csv": [FIRST]},
+        ["gal_no_unit.csv: left out, motion.units: missing; the header names no unit; add units, ", "spectrum.txt: "],
+    ),
+    "one's own is never left out": (
+        MIXED,
+        {"units": "g", "own": SampledMotion(0.01, 981 * FIRST, "as the scene calls it")},
+        {"gal_no_unit.csv": [981 * FIRST], "motion.csv": [FIRST]},
+        ["spectrum.txt: "],
+    ),
+    "a step of what states none": (
+        {"a.csv": listed(FIRST), "b.txt": "# acc [m/s2]\n" + "".join(f"{a}\n" for a in SECOND)},
+        {"dt": 0.02},
+        {"a.csv": [FIRST], "b.txt": [SECOND]},
+        [],
+    ),
+    "vertical, and no record": (
+        {"RSN1_A000.csv": listed(FIRST), "RSN1_A-UP.csv": listed(FIRST), "README.md": "# notes\n"},
+        {},
+        {"RSN1_A000.csv": [FIRST]},
+        ["README.md: ", "RSN1_A-UP.csv: "],
+    ),
+    "damaged, and too small": (
+        {"a.csv": listed(FIRST), "b.csv": listed([0, 1, "1.2.3", 4]), "c.csv": listed(1e-5 * FIRST)},
+        {},
+        {"a.csv": [FIRST]},
+        [
+            "b.csv: left out, line 4 = '1.2.3': not a number; mend or remove it",
+            "c.csv: left out, the peak of 2.039e-06 g is below 1e-4 g: check the unit (read in m/s2, ",
+        ],
+    ),
+    "copies": (
+        {
+            name: listed(SECOND if name in ("0.csv", "A_N.csv") else FIRST)
+            for name in ("0.csv", "A_E.csv", "A_N.csv", "o.csv")
+        },
+        {},
+        {"A_*.csv": [FIRST, SECOND]},
+        ["0.csv: left out, same as A_N.csv", "o.csv: left out, same as A_E.csv"],
+    ),
+    "a vertical channel": (
+        {"a.csv": "# number of samples: 9\n" + THREE},
+        {},
+        {"a.csv": [FIRST, SECOND]},
+        [f"a.csv, column 4 (Up): {VERTICAL}"],
+    ),
+    "an odd channel": (
+        {
+            "a.csv": "t [s],E [m/s2],N [m/s2]\n"
+            + "".join(f"{0.01 * k:.2f},{a},{abs(a) + 1}\n" for k, a in enumerate(FIRST))
+        },
+        {},
+        {"a.csv, column 2 (E)": [FIRST]},
+        [f"a.csv, column 3 (N): {ONE_SIGN}"],
+    ),
+}
+
+
+@pytest.mark.parametrize("files, said, motions, lines", FOLDERS.values(), ids=FOLDERS)
+def test_what_a_folder_gives_and_what_is_left_out_of_it_is_said(tmp_path, files, said, motions, lines):
+    (tmp_path / "sub").mkdir()
+    for name, text in files.items():
+        (tmp_path / name).write_text(text)
+    found, left = folder_motions(tmp_path, **said)
+    assert {name: [one.samples.tolist() for one in of] for name, of in found.items()} == {
+        name: [pytest.approx(values) for values in of] for name, of in motions.items()
+    }
+    assert len(left) == len(lines) and all(map(str.startswith, left, lines))
+    steps = {name: of[0].dt for name, of in found.items()}
+    assert steps == {name: 0.02 if name == "b.txt" else 0.01 for name in motions}
+    counted = {"states 9 samples, the data have 4" in " ".join(one.warnings) for of in found.values() for one in of}
+    assert counted == {"# number" in files.get("a.csv", "")}
 
 
 @pytest.mark.parametrize("vertical", ["a.csv", "b.csv", "longer.csv", "finer.csv"])
@@ -158,43 +195,15 @@ def test_a_scenes_motion_with_its_vertical_one_is_the_records_of_the_folder_whos
     assert own not in found["a.csv"] and left == folder_motions(tmp_path)[1]
 
 
-def test_a_copy_counts_once_and_a_pair_stays_whole(tmp_path):
-    for name, values in (("0.csv", SECOND), ("A_E.csv", FIRST), ("A_N.csv", SECOND), ("other.csv", FIRST)):
+@pytest.mark.parametrize(
+    "files, words",
+    [({"a.csv": abs(FIRST)}, f"no horizontal ground motion in it; a.csv: {ONE_SIGN}"), ({}, "--records")],
+)
+def test_a_folder_of_which_nothing_is_left_is_refused_with_the_reasons(tmp_path, files, words):
+    for name, values in files.items():
         write(tmp_path, name, values)
-    found, left = folder_motions(tmp_path)
-    assert {name: [motion.label for motion in motions] for name, motions in found.items()} == {
-        "A_*.csv": ["A_E.csv", "A_N.csv"]
-    }
-    assert left == ["0.csv: left out, same as A_N.csv", "other.csv: left out, same as A_E.csv"]
-
-
-def test_a_vertical_channel_is_named_with_what_to_do_and_other_warnings_stay_on_the_motion(tmp_path):
-    (tmp_path / "a.csv").write_text("# number of samples: 9\n" + THREE)
-    found, left = folder_motions(tmp_path)
-    assert left == [f"a.csv, column 4 (Up): {VERTICAL}"]
-    assert ["states 9 samples, the data have 4" in one.warnings[0] for one in found["a.csv"]] == [True, True]
-
-
-def test_an_odd_channel_is_left_out_and_the_others_stay(tmp_path):
-    rows = "".join(f"{0.01 * k:.2f},{a},{abs(a) + 1}\n" for k, a in enumerate(FIRST))
-    (tmp_path / "a.csv").write_text(f"t [s],E [m/s2],N [m/s2]\n{rows}")
-    found, (left,) = folder_motions(tmp_path)
-    assert [*found] == ["a.csv, column 2 (E)"] and left.startswith(
-        "a.csv, column 3 (N): left out, all accelerations have"
-    )
-
-
-def test_a_folder_of_which_nothing_is_left_is_refused_with_the_reasons(tmp_path):
-    write(tmp_path, "a.csv", abs(FIRST))
-    with pytest.raises(
-        SettingError, match="no horizontal ground motion in it; a.csv: left out, all accelerations have"
-    ):
-        folder_motions(tmp_path)
-
-
-def test_an_empty_folder_and_none_are_refused(tmp_path):
-    for folder in (tmp_path, tmp_path / "none"):
-        with pytest.raises(SettingError, match="--records"):
+    for folder in (tmp_path, *([] if files else [tmp_path / "none"])):
+        with pytest.raises(SettingError, match=words):
             folder_motions(folder)
 
 
@@ -229,20 +238,17 @@ def test_a_motion_of_ones_own_that_lies_in_the_folder_is_there_once_and_first(tm
     assert folder_motions(tmp_path, own=other)[0].keys() == folder_motions(tmp_path)[0].keys()
 
 
-def test_a_reversed_motion_does_the_same_where_the_start_is_at_rest_and_only_there():
-    for scene in (load_scene("caryatid-rigid"), load_scene("caryatid-isolated")):
-        sway = 4.0 * np.sin(6.0 * 0.01 * np.arange(200))
-        scene = scene.with_(motion=SampledMotion(0.01, sway, vertical=SampledMotion(0.01, 0.3 * sway)), duration=3.0)
-        for start, same in (({}, True), ({"tilt": 0.02}, False), ({"tilt_rate": 0.05}, False)):
-            started = scene.with_(start=start)
-            ours, mirrored = (
-                simulate(started.with_(motion=motion), history=False)
-                for motion in (started.motion, reversed_sign(started.motion))
-            )
-            assert same_reversed(started) == same
-            assert (ours.impacts[0].time == mirrored.impacts[0].time) == same == (ours.peak_tilt == mirrored.peak_tilt)
-            if scene.base is not None:
-                assert (ours.peak_base_displacement == mirrored.peak_base_displacement) == same
+@pytest.mark.parametrize("name", ["caryatid-rigid", "caryatid-isolated"])
+@pytest.mark.parametrize("start, same", [({}, True), ({"tilt": 0.02}, False), ({"tilt_rate": 0.05}, False)])
+def test_a_reversed_motion_does_the_same_where_the_start_is_at_rest_and_only_there(name, start, same):
+    sway = 4.0 * np.sin(6.0 * 0.01 * np.arange(200))
+    motion = SampledMotion(0.01, sway, vertical=SampledMotion(0.01, 0.3 * sway))
+    scene = load_scene(name).with_(motion=motion, duration=3.0, start=start)
+    ours, mirrored = (simulate(scene.with_(motion=one), history=False) for one in (motion, reversed_sign(motion)))
+    assert same_reversed(scene) == same
+    for moved in ("peak_tilt", *(["peak_base_displacement"] if scene.base else [])):
+        assert (getattr(ours, moved) == getattr(mirrored, moved)) == same
+    assert (ours.impacts[0].time == mirrored.impacts[0].time) == same
 
 
 # The motions of FEMA P695 by name: as the package has them, in scenes and commands, and what is refused.

@@ -2,7 +2,7 @@
 
 import math
 import re
-from itertools import pairwise
+from itertools import product
 
 import numpy as np
 import pytest
@@ -27,30 +27,38 @@ def march_of(scene, **settings):
     return totals, impacts, changes
 
 
-PULSES = {
-    # Newmark: the block slides at mu g under a constant acceleration a for T, then stops; slip -(v T/2 + v^2/(2 mu g))
-    "rectangular": (0.2, PulseMotion("rectangular", 4.0, 2 * math.pi)),
-    "half-sine": (0.15, PulseMotion("half-sine", 5.0, 2 * math.pi)),
-}
+RECTANGLE, BELL = PulseMotion("rectangular", 4.0, 2 * math.pi), PulseMotion("half-sine", 5.0, 2 * math.pi)
 
 
-@pytest.mark.parametrize("friction, pulse", PULSES.values(), ids=PULSES)
-def test_a_sliding_block_is_newmarks(friction, pulse):
-    totals, impacts, changes = march_of(scene_of(friction, slenderness=0.4, motion=pulse, duration=6.0))
+def newmarks(friction, pulse):
+    """(way, speed, time of the stop, how much of it a step h may add, over h^2) of a block under the ground's pulse.
+
+    It slides at mu g from where the ground exceeds that; under a half-sine the speed is off by up to a'_g h^2/8.
+    """
     mg, a, w = friction * GRAVITY, pulse.amplitude, pulse.frequency
-    length = math.pi / w
-    if pulse.shape == "rectangular":
-        speed, way = (a - mg) * length, (a - mg) * length**2 / 2
-    else:
-        begin = math.asin(mg / a) / w  # from there the velocity is a (cos(w begin) - cos(w t))/w - mu g (t - begin)
-        speed = a / w * (math.cos(w * begin) + 1) - mg * (length - begin)
-        way = (
-            a / w * (math.cos(w * begin) * (length - begin) + math.sin(w * begin) / w) - mg * (length - begin) ** 2 / 2
-        )
+    end, begin = math.pi / w, 0.0 if pulse.shape == "rectangular" else math.asin(mg / a) / w
+    speed, way = (a - mg) * end, (a - mg) * end**2 / 2
+    if begin:  # from there the velocity is a (cos(w begin) - cos(w t))/w - mu g (t - begin)
+        speed = a / w * (math.cos(w * begin) + 1) - mg * (end - begin)
+        way = a / w * (math.cos(w * begin) * (end - begin) + math.sin(w * begin) / w) - mg * (end - begin) ** 2 / 2
+    begun = a * w * math.cos(w * begin) / 8 * (end - begin + speed / mg) if begin else 0.0
+    return way + speed**2 / (2 * mg), speed, end + speed / mg, begun + mg
+
+
+@pytest.mark.parametrize("friction, pulse", [(0.2, RECTANGLE), (0.15, BELL)], ids=["rectangular", "half-sine"])
+def test_a_sliding_block_is_newmarks(friction, pulse):
+    scene = scene_of(friction, slenderness=0.4, motion=pulse, duration=3.0)
+    totals, impacts, changes = march_of(scene)
+    way, speed, stop, loose = newmarks(friction, pulse)
     assert not len(impacts) and speed > 0
-    assert totals[S.END_SLIP] == pytest.approx(-(way + speed**2 / (2 * mg)), abs=1e-10)
-    assert changes[-1] == pytest.approx((length + speed / mg, S.STICK), abs=1e-10)
-    assert totals[S.FRICTION_WORK] == pytest.approx(mg * 3172.05 * totals[S.PATH], rel=1e-12)
+    assert totals[S.END_SLIP] == pytest.approx(-way, abs=1e-10)
+    assert changes[-1] == pytest.approx((stop, S.STICK), abs=1e-10)
+    assert totals[S.FRICTION_WORK] == pytest.approx(friction * GRAVITY * 3172.05 * totals[S.PATH], rel=1e-12)
+    for step in (1e-3, 3.1e-4, 1e-4):  # it stops within a step, in which it could go mu g step^2
+        run = simulate_time_stepping(scene, step=step, history=False)
+        assert run.outcome == "slides" and not run.impacts and run.peak_tilt == 0
+        assert run.sliding.end == pytest.approx(-way, abs=loose * step**2)
+        assert run.sliding.path == pytest.approx(run.sliding.peak) == pytest.approx(-run.sliding.end)
 
 
 def shentons_mode(slenderness, a, friction):
@@ -65,13 +73,11 @@ def shentons_mode(slenderness, a, friction):
 
 
 def test_the_first_mode_is_shentons():
-    for slenderness in np.linspace(0.1, 0.5, 5):
-        for a in np.linspace(0.05, 1.5, 20):
-            for friction in np.linspace(0.02, 1.2, 19):
-                pulse = PulseMotion("rectangular", float(a) * GRAVITY, 1000.0)
-                scene = scene_of(float(friction), float(slenderness), motion=pulse, duration=1e-3)
-                _, _, changes = march_of(scene)
-                assert changes[0, 1] == shentons_mode(slenderness, a, friction), (slenderness, a, friction)
+    grid = np.linspace(0.1, 0.5, 3), np.linspace(0.05, 1.5, 14), np.linspace(0.02, 1.2, 13)
+    for slenderness, a, friction in product(*(axis.tolist() for axis in grid)):
+        pulse = PulseMotion("rectangular", a * GRAVITY, 1000.0)
+        _, _, changes = march_of(scene_of(friction, slenderness, motion=pulse, duration=1e-3))
+        assert changes[0, 1] == shentons_mode(slenderness, a, friction), (slenderness, a, friction)
 
 
 @pytest.mark.parametrize("base", [None, 212.0, 3000.0, 1e9])
@@ -112,7 +118,7 @@ def test_energy_is_conserved_with_exactly_one_mode(seed):
 
 
 def test_friction_that_is_never_used_is_the_kernels_run():
-    """The march called directly: of 20 scenes times, rates and peaks as the kernel's, up to the fall, which slides."""
+    """The march called directly: times, rates, jumps and peaks as the kernel's, up to the fall, which slides."""
     rng, compared = np.random.default_rng(50), 0
     while compared < 20:
         scene = random_slider(rng, 6 * compared + 1 + compared % 2).with_(friction=None)
@@ -121,27 +127,21 @@ def test_friction_that_is_never_used_is_the_kernels_run():
             continue
         compared += 1
         totals, impacts, _ = march_of(scene.with_(friction=50.0))
-        count = min(len(impacts), 8)
-        for one, row in zip(model.impacts[:count], impacts, strict=False):
-            assert (one.time, one.rate_after) == pytest.approx((row[0], row[2]), abs=1e-9)
-            assert one.base_velocity_jump == pytest.approx(row[3], abs=1e-9)
-        assert totals[S.PEAK_TILT] == pytest.approx(model.peak_tilt, abs=1e-9)
-        if model.outcome == "overturns":
-            assert totals[S.FALL_TIME] == pytest.approx(model.fall_time, abs=1e-9)
-        else:
-            assert len(impacts) == len(model.impacts)
-            assert totals[S.PEAK_X] == pytest.approx(model.peak_base_displacement, abs=1e-9)
+        expected = [(one.time, one.rate_after, one.base_velocity_jump) for one in model.impacts[: len(impacts)][:8]]
+        np.testing.assert_allclose(impacts[:8][:, [0, 2, 3]], np.reshape(expected, (-1, 3)), rtol=0, atol=1e-9)
+        falls = model.outcome == "overturns"
+        assert falls or len(impacts) == len(model.impacts)
+        found = totals[[S.PEAK_TILT, S.FALL_TIME if falls else S.PEAK_X]]
+        own = model.peak_tilt, model.fall_time if falls else model.peak_base_displacement
+        assert found == pytest.approx(own, abs=1e-9)
 
 
 def test_the_history_is_the_trajectory():
     scene = scene_of(0.4, 0.348, 1.86, motion=PulseMotion("half-sine", 9.38, 6.34), duration=3.0)
     history = simulate(scene, output_step=1e-3).history
-    assert np.abs(np.diff(history.slip)).max() < 1e-3 * 2.0  # no jump
-    rate = np.gradient(history.tilt, history.time)
-    smooth = slice(5, 2000)
-    assert np.abs(rate - history.tilt_rate)[smooth].max() < 0.05
+    assert np.abs(np.diff(history.slip)).max() < 1e-3 * 2.0 and (np.diff(history.time) >= 0).all()  # no jump
+    assert np.abs(np.gradient(history.tilt, history.time) - history.tilt_rate)[5:2000].max() < 0.05
     assert history.slip[-1] == simulate(scene).sliding.end
-    assert all(a <= b for a, b in pairwise(history.time))
 
 
 # Answers of a scene with friction, and where the march is asked at all.
@@ -213,38 +213,20 @@ def test_cases(name):
     assert found.sliding.modes[0][0] == 0 and Response.from_json(found.to_json()).sliding == found.sliding
 
 
-@pytest.mark.parametrize("name", CASES)
-def test_a_mirrored_case_is_the_mirror_image(name):
-    scene, motion = CASES[name][0], CASES[name][0].motion
-    mirrored = scene.with_(motion=motion and motion.scaled(-1.0), start={"tilt": -scene.start.tilt})
-    one, other = simulate(scene, history=False), simulate(mirrored, history=False)
-    assert (other.outcome, other.overturning_time) == (one.outcome, one.overturning_time)
-    assert (other.sliding.end, other.sliding.modes) == (-one.sliding.end, one.sliding.modes)
-
-
-@pytest.mark.parametrize("name", ["caryatid-isolated", "caryatid-rigid", "free-rocking-rigid"])
-def test_without_the_key_nothing_is_marched(name, monkeypatch):
-    monkeypatch.setattr(sliding, "marched", None)  # a call would fail
-    simulate(load_scene(name), history=False)
-    assert simulate_many([load_scene(name)]).peak_slip.max() == 0
-
-
-def test_a_friction_that_is_not_exceeded_leaves_the_kernels_answer(monkeypatch):
-    monkeypatch.setattr(sliding, "marched", None)
-    scene = load_scene("free-rocking-rigid")
-    with_friction = simulate(scene.with_(friction=0.6))
-    assert with_friction.sliding is None and with_friction.warnings == ()
-    assert with_friction.impacts == simulate(scene).impacts
-
-
-def test_a_march_that_does_not_slide_leaves_the_kernels_answer():
-    """A demand of almost the friction may exceed it between the points at which it is read: the march decides."""
-    scene = load_scene("free-rocking-rigid")
+@pytest.mark.parametrize(
+    "name, share",
+    [("caryatid-isolated", None), ("caryatid-rigid", None), ("free-rocking-rigid", 1.05), ("free-rocking-rigid", 0.95)],
+)
+def test_a_friction_that_is_not_given_or_not_exceeded_leaves_the_kernels_answer(name, share, monkeypatch):
+    """Near the demand, which may exceed it between the points at which it is read, the march decides; else none is."""
+    scene = load_scene(name)
     plain = simulate(scene)
-    tight = simulate(scene.with_(friction=plain.friction_demand / sliding.NEAR * 0.95))
-    assert tight.sliding is None and tight.impacts == plain.impacts and tight.end == plain.end
-    many = simulate_many([scene, scene.with_(friction=plain.friction_demand / sliding.NEAR * 0.95)], contact=True)
-    assert many.peak_tilt[0] == many.peak_tilt[1] and not many.slid.any()
+    tight = scene.with_(friction=share and share * plain.friction_demand / sliding.NEAR)
+    if share != 0.95:
+        monkeypatch.setattr(sliding, "marched", None)  # a call would fail
+    run, many = simulate(tight), simulate_many([scene, tight], contact=True)
+    assert (run.sliding, run.warnings, run.impacts, run.end) == (None, plain.warnings, plain.impacts, plain.end)
+    assert many.peak_tilt[0] == many.peak_tilt[1] and many.peak_slip.max() == 0 and not many.slid.any()
 
 
 def test_a_block_that_slides_warns_of_what_any_run_does():
@@ -285,36 +267,30 @@ def test_a_friction_above_painleves_bound_is_refused_only_where_it_is_used():
     assert simulate(thin.with_(motion=None, start={"tilt": 0.1}, friction=50.0), history=False).outcome == "rocks"
 
 
-def test_a_given_restitution_that_needs_more_friction_is_refused():
-    scene = scene_of(0.5, 0.449, 1.044, motion=pulse("one-sine", 17.39, 10.13), duration=4.0)
-    words = r"restitution = 0.8: needs a block that sticks; at a friction of 0.5 it lands sliding, 0.55\d+ s; leave it"
-    with pytest.raises(SceneError, match=words):
-        simulate(scene.with_(block={"restitution": 0.8}))
-    # dissipating more needs more friction: .6 of eq. (7) a horizontal impulse above that of eq. (7)
-    released = scene_of(0.3, 0.28, start=RELEASED, duration=2.0)
-    assert simulate(released, history=False).sliding is None
-    low = released.with_(block={"restitution": 0.6 * RockingModel.of(released).restitution})
-    needed = slipping_friction(parameters(low))
-    assert needed > 0.3
-    with pytest.raises(
-        SceneError, match=rf"needs, at the impact at 0.6\d+ s, a friction of {needed:.4g} \(it is 0.3\)"
-    ):
-        simulate(low)
-    assert simulate(low.with_(friction=1.01 * needed), history=False).outcome == "rocks"
-
-
 def refused_scene(rng, number):
     """A slider with a restitution, or released by hand, or both; every fourth all but a point mass."""
     scene = random_slider(rng, number) if number % 2 else slider_of("flight", rng)
+    share, tilt, near, mu = (
+        rng.uniform(0.5, 1.05),
+        rng.uniform(-0.9, 0.9),
+        rng.uniform(1.01, 1.3),
+        rng.uniform(0.2, 2.0),
+    )
     if number % 3:
-        share = RockingModel.of(scene).restitution * rng.uniform(0.5, 1.05)
-        scene = scene.with_(block={"restitution": float(min(share, 1.0))})
+        scene = scene.with_(block={"restitution": min(RockingModel.of(scene).restitution * float(share), 1.0)})
     if number % 3 != 1:
-        scene = scene.with_(start={"tilt": float(scene.block.slenderness * rng.uniform(-0.9, 0.9))})
+        scene = scene.with_(start={"tilt": scene.block.slenderness * float(tilt)})
     if number % 4 == 0:
-        inertia = float(rng.uniform(1.01, 1.3) * scene.block.mass * scene.block.radius**2)
-        scene = scene.with_(block={"corner_inertia": inertia}, friction=float(rng.uniform(0.2, 2.0)))
+        inertia = float(near) * scene.block.mass * scene.block.radius**2
+        scene = scene.with_(block={"corner_inertia": inertia}, friction=float(mu))
     return scene.with_(duration=None) if number % 5 == 0 else scene
+
+
+REMEDIES = {
+    "let the block start at rest": {"start": {"tilt": 0.0}},
+    "leave it out": {"block": {"restitution": None}},
+    "leave the friction out": {"friction": None},
+}
 
 
 def followed(scene, key, words):
@@ -323,12 +299,7 @@ def followed(scene, key, words):
         mu = float(number[1])
         assert mu > scene.friction if number[2] == "more" else mu < scene.friction
         return scene.with_(friction=mu)
-    if words == "let the block start at rest":
-        return scene.with_(start={"tilt": 0.0})
-    if words == "leave it out" and key == "block.restitution":
-        return scene.with_(block={"restitution": None})
-    assert words in ("leave it out", "leave the friction out")
-    return scene.with_(friction=None)
+    return scene.with_(**REMEDIES["leave the friction out" if key == "friction" and "leave" in words else words])
 
 
 # what fails: whether its number does

@@ -1,17 +1,16 @@
 """Horizons of motions whose sensitivity is known: none for a pendulum-like one, short for a chaotic one."""
 
 import dataclasses
-from pathlib import Path
 
 import numpy as np
 import pytest
+from literature import ONE_SINE, under_a_pulse
 from sliding_scenes import LOST
 
-from analytic import Block, SampledMotion, Scene, Start, simulate
-from analytic.records import read_record
+from analytic import Block, PulseMotion, SampledMotion, Scene, Start, simulate
 from analytic.rocking import restitution
+from comparisons.measuring.boundaries import Edge, edges, least_normal, locate, pulse
 from comparisons.measuring.horizon import (
-    EARLY,
     LADDER,
     LEAST,
     SPREAD,
@@ -21,9 +20,8 @@ from comparisons.measuring.horizon import (
     solver_horizon,
     unsure_outcome,
 )
+from comparisons.running.refine import drive
 from engines import get_engine
-
-RECORDS = Path(__file__).parents[3].parent / "shared" / "records"
 
 BLOCK = Block(mass=3172.05, radius=1.0884, slenderness=0.2)
 
@@ -101,16 +99,6 @@ def test_errors_that_are_none_of_restitution_are_measured_by_what_they_move(shak
     assert 1e-4 < perturbation_of(scene, response, reference) < 1e-2
 
 
-def test_lost_small_impacts_count_by_what_they_move(shaken):
-    """A solver that comes to rest where the model still rocks by a hundredth of its slenderness."""
-    scene, reference = shaken
-    history = reference.history
-    still = np.where(np.abs(history.tilt) < 0.01 * scene.block.slenderness, 0.0, history.tilt)
-    lost = dataclasses.replace(reference, history=dataclasses.replace(history, tilt=still))
-    assert restitution_error(scene, lost) < 1e-9
-    assert perturbation_of(scene, lost, reference) > 1e-3 > EARLY * SPREAD / 2
-
-
 def test_restitution_errors_are_weighted_by_the_rate():
     scene = Scene(block=BLOCK, start=Start(tilt=0.1), duration=10.0)
     response, e = simulate(scene), restitution(scene)
@@ -123,48 +111,6 @@ def test_restitution_errors_are_weighted_by_the_rate():
     assert restitution_error(scene, dataclasses.replace(response, impacts=())) == 0.0
 
 
-def assert_no_engine_parts_before_its_own_horizon(engine, scenes):
-    for scene in scenes:
-        reference = simulate(scene, output_step=2e-3)
-        response = get_engine(engine).simulate(scene)
-        own = solver_horizon(scene, response, reference)
-        end = min(own.horizon, reference.unstable_time or np.inf, response.history.time[-1])
-        time = reference.history.time[reference.history.time < end]
-        apart = np.interp(time, response.history.time, response.history.tilt) - reference.history.tilt[: len(time)]
-        distance = np.abs(apart).max() / scene.block.slenderness
-        # By the spread: 1.2 for the sampling of the copies, whose tilt changes fast at an impact.
-        assert distance < 1.2 * SPREAD, f"{scene.name}: {distance:.3g} by {own.horizon:.3g} s, {own.perturbation:.2g}"
-
-
-@pytest.mark.parametrize("engine", ["exudyn", "pybullet", "mujoco", "pymunk", "dart", "drake"])
-def test_no_engine_parts_before_its_own_horizon(engine):
-    """Small rocking under long shaking, where exudyn's corners were off before the horizon of 1e-4."""
-    scenes = [long_shaking(0.15, seed).with_(name=f"seed {seed}", duration=12.0) for seed in (3, 4)]
-    assert_no_engine_parts_before_its_own_horizon(engine, scenes)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("engine", ["exudyn", "pybullet", "mujoco"])
-@pytest.mark.parametrize(
-    "name", ["RSN1605_DUZCE_DZC270.AT2", "IELC180.AT2", "ARL360.at2", "formats/RSN1063_NORTHR_RRS228.AT2"]
-)
-def test_no_engine_parts_before_its_own_horizon_on_a_record(engine, name):
-    if not (RECORDS / name).exists():
-        pytest.skip(f"the record {name} is not here")
-    motion = read_record(RECORDS / name)
-    scenes = [
-        Scene(
-            name=f"{slenderness}, {share} of uplift",
-            duration=min(motion.end, 20.0),
-            block=BLOCK.model_copy(update={"slenderness": slenderness}),
-            motion=motion.scaled(share * 9.81 * np.tan(slenderness) / motion.peak),
-        )
-        for slenderness in (0.15, 0.25)
-        for share in (1.3, 2.0)
-    ]
-    assert_no_engine_parts_before_its_own_horizon(engine, scenes)
-
-
 def test_errors_of_a_block_that_slides_are_those_against_its_own_impacts():
     """Its restitution is not that of (7): by that the model itself would be off."""
     model = simulate(LOST)
@@ -172,3 +118,88 @@ def test_errors_of_a_block_that_slides_are_those_against_its_own_impacts():
     assert perturbation_of(LOST, model, model) == LEAST
     off = [dataclasses.replace(impact, rate_after=1.01 * impact.rate_after) for impact in model.impacts]
     assert perturbation_of(LOST, dataclasses.replace(model, impacts=tuple(off)), model) == pytest.approx(0.01)
+
+
+@pytest.mark.parametrize("engine", ["exudyn", "pybullet", "mujoco", "pymunk", "dart", "drake"])
+@pytest.mark.parametrize("seed", [3, 4])
+def test_no_engine_parts_before_its_own_horizon(engine, seed):
+    """Small rocking under long shaking, where exudyn's corners were off before the horizon of 1e-4."""
+    scene = long_shaking(0.15, seed).with_(duration=12.0)
+    reference, response = simulate(scene, output_step=2e-3), get_engine(engine).simulate(scene)
+    own = solver_horizon(scene, response, reference)
+    end = min(own.horizon, reference.unstable_time or np.inf, response.history.time[-1])
+    time = reference.history.time[reference.history.time < end]
+    apart = np.interp(time, response.history.time, response.history.tilt) - reference.history.tilt[: len(time)]
+    # By the spread: 1.2 for the sampling of the copies, whose tilt changes fast at an impact.
+    assert np.abs(apart).max() / scene.block.slenderness < 1.2 * SPREAD, (own.horizon, own.perturbation)
+
+
+# Overturning boundaries of the analytic model, and a search beside one of them.
+
+
+# the block of the published boundaries
+SCENE = under_a_pulse(1.0, 1.0).with_(motion=None, duration=None)
+EDGE = Edge("rigid ground", "one-sine", 4.0, 5.0, True, 0, 4.9, 6.0, 0.1)
+
+
+def test_edges_are_the_published_boundaries_and_the_safe_gap():
+    found = edges(SCENE, "rigid", "one-sine", (2.0, 4.0, 8.0))
+    for frequency in (2.0, 4.0, 8.0):
+        column, amplitudes = [edge for edge in found if edge.frequency == frequency], ONE_SINE[frequency]
+        # published over g gamma, here over g tan(gamma)
+        mine = [edge.amplitude * np.tan(0.25) / 0.25 for edge in column]
+        assert mine == pytest.approx(amplitudes, rel=2e-5)
+        assert [(edge.rises, edge.mode) for edge in column] == [(True, 1), (False, 1), (True, 0)][-len(amplitudes) :]
+        for one, other in zip(column, column[1:], strict=False):
+            assert one.high == other.low == pytest.approx(np.sqrt(one.amplitude * other.amplitude))
+    for edge in found:
+        beside = [pulse(SCENE, edge.shape, edge.frequency, edge.amplitude * side) for side in (1 - 1e-4, 1 + 1e-4)]
+        runs = [simulate(SCENE.with_(motion=motion)) for motion in beside]
+        assert [run.outcome == "overturns" for run in runs] == [not edge.rises, edge.rises]
+        assert all(run.decided for run in runs)
+    assert edges(SCENE, "rigid", "one-cosine", (8.0,)) == []  # where none overturns
+    assert least_normal(SCENE, PulseMotion("one-sine", 0.1, 5.0)) == 1.0
+
+
+def search(edge, outcome, distances=((2e-4, 1.2e-2), (0.1,)), tolerance=2e-5):
+    (found,) = drive([locate(edge, distances, tolerance)], lambda batch: [outcome(a) for _, a in batch])
+    return found
+
+
+@pytest.mark.parametrize("shift", [0.0, 3e-5, -1e-4, 4e-3, -0.015, 0.08])
+def test_a_shifted_boundary_is_found_to_its_tolerance(shift):
+    for edge in (EDGE, dataclasses.replace(EDGE, rises=False)):
+        found = search(edge, lambda amplitude, rises=edge.rises: (amplitude > 5.0 * (1 + shift)) == rises)
+        assert found.half_width <= 1e-5 and abs(found.shift - shift) <= found.half_width * (1 + 1e-9)
+
+
+@pytest.mark.parametrize(
+    "outcome, reason",
+    [
+        (lambda amplitude: True, "overturns on both sides"),
+        (lambda amplitude: False, "stands on both sides"),
+        (lambda amplitude: None, "no run was decided"),
+        (lambda amplitude: bool(amplitude < 5.0), "outcomes the other way round"),
+        # too wide a bracket to tell
+        (
+            lambda amplitude: None if abs(amplitude / 5.0 - 1) < 0.011 else amplitude > 5.0,
+            "undecided between -1.2 and +1.2 %",
+        ),
+    ],
+)
+def test_a_boundary_that_is_not_there_is_said_to_be_missing(outcome, reason):
+    found = search(EDGE, outcome)
+    assert found.shift is None and found.half_width is None and found.reason.startswith(reason)
+
+
+def test_the_search_stays_on_its_side_of_the_middle_between_two_boundaries():
+    asked = []
+    search(EDGE, lambda amplitude: asked.append(amplitude) or False)
+    assert 4.9 < min(asked) and max(asked) < 6.0
+    assert min(asked) == pytest.approx(5.0 - 0.9 * 0.1)
+    assert search(EDGE, lambda amplitude: bool(amplitude > 5.0)).runs <= 4 + 7
+
+
+def test_an_undecided_run_widens_the_bracket_instead_of_taking_a_side():
+    found = search(EDGE, lambda amplitude: None if abs(amplitude / 5.0 - 1) < 1e-4 else bool(amplitude > 5.0))
+    assert abs(found.shift) <= found.half_width and 1e-4 <= found.half_width <= 2e-4

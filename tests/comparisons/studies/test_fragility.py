@@ -45,7 +45,7 @@ def study(folder, work, scenes=FREE, runs=RUNS):
 
 @pytest.fixture(autouse=True, scope="module")
 def few_draws():
-    """Bootstrap of fewer samples than the study's: `tests/comparisons/measuring/test_fragility.py` tests it."""
+    """Bootstrap of fewer samples than the study's: `tests/comparisons/measuring/test_statistics.py` tests it."""
     with pytest.MonkeyPatch.context() as patch:
         for name in ("DRAWS", "PAIRED_DRAWS"):
             patch.setattr(fits, name, 60)
