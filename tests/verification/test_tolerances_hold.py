@@ -27,12 +27,13 @@ def shared(monkeypatch):
 
 
 DEAR = ("overturning boundary", "synthetic motion", "60 s of shaking")  # of other engines by hand, or `rocking verify`
+AGAIN = "2 and 5 times omega_r"  # a boundary whose scenes differ in numbers from those of another row
 
 
 def marks(row):
     """Main variants of exudyn and PyBullet first; other variants and engines in the second command."""
     long = not ENGINES[row.engine].subject and any(words in row.name for words in DEAR)
-    slow = ACCURATE.get(row.engine) != row.variant
+    slow = ACCURATE.get(row.engine) != row.variant or AGAIN in row.name
     sets = [pytest.mark.long] * long or [pytest.mark.slow] * slow
     return [pytest.mark.xdist_group(f"{row.engine} {row.variant}"), *sets]
 
