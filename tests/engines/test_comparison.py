@@ -95,18 +95,6 @@ def test_a_fall_at_another_time_and_the_base_up_to_it(changed, quantities):
     assert told(FALLING, **{name: getattr(own, name) + by for name, by in changed.items()}) == quantities
 
 
-def test_a_fall_in_another_swing_is_another_end():
-    """The model under a stronger pulse, in place of an engine, falls at once, before any impact."""
-    wrong = run_of(FALLING.with_(motion=FALLING.motion.scaled(1.3)))
-    own = run_of(FALLING)
-    assert wrong.outcome == own.outcome == "overturns" and (len(wrong.impacts), len(own.impacts)) == (0, 3)
-    run = compare(FALLING, wrong)
-    seen = {one.quantity: (one.here, one.model, one.limit) for one in run.differences}
-    assert run.comparable == COMPARED and "peak_base_displacement" in seen
-    assert seen["fall_time"] == (wrong.fall_time, own.fall_time, pytest.approx(0.02 * PERIOD))
-    assert seen["impacts_before_fall"] == (0, 3, 0)
-
-
 def test_impacts_before_the_fall_are_counted_where_none_is_missed_for_its_time():
     own = run_of(FALLING)
     first, *rest = own.impacts

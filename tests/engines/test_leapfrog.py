@@ -131,14 +131,9 @@ def test_what_a_contact_leaves_to_a_pivot_is_no_landing(grown):
     assert grown((APART, (1.1 * NEAR * G * LARGEST**2, fall))) < LARGEST
 
 
-def test_times_go_with_the_root_of_a_length_and_the_smallest_step_with_the_square_of_the_largest(fresh):
-    """Lengths by 4 and times by 2: no digit changes."""
+def test_the_smallest_step_goes_with_the_square_of_the_largest():
     usual, twice = (step_limits(TILTED, ImpactAware(largest_step=step)) for step in (2e-4, 4e-4))
     assert twice == pytest.approx((2 * usual[0], 4 * usual[1]))
-    large = gap_rule(2 * LARGEST, 2 * SMALLEST, G)
-    for k in range(60):
-        gap, closing = abs(math.cos(k)) ** 9 * 1e-3, math.sin(k)
-        assert large(((4 * gap, 2 * closing),)) == 2 * fresh(((gap, closing),))
 
 
 @pytest.mark.parametrize("step", [0.29, 0.31, 1.7e-3])
@@ -295,24 +290,23 @@ def test_how_a_run_ends(monkeypatch, spin, after, words, count):
 every_ruled = pytest.mark.parametrize("engine", RULED)
 
 
-@pytest.mark.parametrize("engine, base, fine", [("pybullet", None, 2e-5), *((engine, 212.0, 5e-6) for engine in RULED)])
-def test_the_error_of_restitution_falls_along_the_ladder(engine, base, fine):
+@every_ruled
+def test_the_error_of_restitution_falls_along_the_ladder(engine):
     """From the energies of swings, which count what flight loses."""
     engine, found = get_engine(engine), []
-    scenes = [scene(0.2, base, 3.5, start=Start(tilt=share * 0.2)) for share in (0.3, 0.55, 0.8)]
+    scenes = [scene(0.2, 212.0, 3.5, start=Start(tilt=share * 0.2)) for share in (0.3, 0.55, 0.8)]
     for step in engine.variants["impact-aware"].levels:
         off = [errors.impact_errors(given, engine.simulate(given, largest_step=step), 2)["swing"] for given in scenes]
         found.append(rms(np.concatenate(off)))
     assert found == sorted(found, reverse=True)
-    assert found[0] > 20 * found[-1] and found[1] < 2e-4 and found[-1] < fine
+    assert found[0] > 20 * found[-1] and found[1] < 2e-4 and found[-1] < 5e-6
 
 
 @pytest.mark.parametrize("engine, variant", [*((name, "impact-aware") for name in RULED), ("pybullet", "fixed-step")])
-@pytest.mark.parametrize("radius", [0.1, 10.0])
-def test_momentum_is_kept_at_any_size_and_no_energy_comes_from_nowhere(engine, variant, radius):
+def test_momentum_is_kept_and_no_energy_comes_from_nowhere(engine, variant):
     """Nothing pushes a free base and its block from outside: m x' + m_b v = 0, through impacts."""
-    block = Block(mass=2460.0 * radius**3, radius=radius, slenderness=0.25)
-    given = Scene(block=block, base=Base(mass=0.1 * block.mass), start=Start(tilt=0.15), duration=2 * math.sqrt(radius))
+    block = Block(mass=2.46, radius=0.1, slenderness=0.25)
+    given = Scene(block=block, base=Base(mass=0.1 * block.mass), start=Start(tilt=0.15), duration=0.64)
     response, trace = get_engine(engine).traced(given, variant=variant, history=False)
     ratios = [impact.rate_after / impact.rate_before for impact in response.impacts[:2]]
     assert ratios == pytest.approx([restitution(given)] * 2, abs=1e-4 if variant == "impact-aware" else 5e-3)
@@ -494,15 +488,15 @@ def test_what_mujoco_warns_of_fails_in_its_words(monkeypatch, trouble, reason, w
 
 @pytest.mark.slow
 def test_a_step_that_drake_does_not_solve_is_a_failure_in_its_words(monkeypatch):
-    module = built("drake")
+    simulator = built("drake").Simulator
+    advance = simulator.AdvanceTo
 
-    class Stuck(module.Simulator):
-        def AdvanceTo(self, time):
-            if time > 0.1:
-                raise RuntimeError("solver failed to converge at simulation time = 0.1 with dt = 0.001.")
-            super().AdvanceTo(time)
+    def stuck(self, time):
+        if time > 0.1:
+            raise RuntimeError("solver failed to converge at simulation time = 0.1 with dt = 0.001.")
+        advance(self, time)
 
-    monkeypatch.setattr(module, "Simulator", Stuck)
+    monkeypatch.setattr(simulator, "AdvanceTo", stuck)
     response = get_engine("drake").simulate(ROCKING)
     assert response.outcome == "failed" and response.failure.reason == "Drake found no solution of a step"
     assert "failed to converge" in response.failure.message and "at step 100" in response.failure.message
@@ -579,27 +573,6 @@ def test_a_force_inside_an_engine_that_is_lost_late_or_off_is_measured_and_a_lar
     assert response.outcome == ("failed" if wrong else "rocks")  # by its energy, too, where the force is too small
     assert (error > IMPULSE_LIMIT) == wrong and (error > 4e-4) == ((gain, delay) != (1, 0))  # a clean run shows 4e-5
     assert delay or error == pytest.approx(abs(gain - 1), rel=0.02, abs=4e-5)
-
-
-def test_where_bodies_will_be_is_where_chipmunk_then_moves_them(monkeypatch):
-    """The adapter reads a step ahead: what it said is, to round-off, what the next call begins with."""
-    given = scene(0.2, 212.0, 1.0, start=Start(tilt=0.15, tilt_rate=0.1, base_displacement=0.01, base_velocity=0.02))
-    bodies, moved = built("pymunk").ChipmunkBodies(given, 1e-4, plain=False), []
-    advance = bodies.space.step
-
-    def watched(length):
-        advance(length)
-        moved.append((-bodies.block.angle, bodies.block.position.x, bodies.slab.position.x))
-
-    monkeypatch.setattr(bodies.space, "step", watched)
-    told, before = [], 0.0
-    for k in range(400):
-        length = 1e-4 * (1 + k % 3)
-        tilt, _, x, _, _, _, base, _ = bodies.step(length, before, 0.0, -9.81 * 0.5 * (length + before), 0.0)
-        told.append((tilt, x, base))
-        before = length
-    np.testing.assert_allclose(moved[1:], told[:-1], rtol=0, atol=1e-12)
-    np.testing.assert_allclose(moved[0][::2], (0.15, 0.01), rtol=0, atol=1e-12)
 
 
 # What a record says that its adapter imposes on steps and loads is what it does, and all of it.

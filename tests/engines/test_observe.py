@@ -66,25 +66,6 @@ def test_ringing_after_an_impact_is_waited_out():
     assert not_waited > 1e-4 and waited < 1e-5
 
 
-def test_mirror():
-    scene, *_, here = observed("isolated, shaken", 1e-3)
-    there = seen(scene.with_(motion=scene.motion.scaled(-1.0)), sampled(scene, 1e-3, side=-1)[0])
-    np.testing.assert_array_equal(strong(there), strong(here) * [1.0, -1.0, -1.0, -1.0])
-    for field in (
-        "outcome",
-        "uplifts",
-        "rests",
-        "peak_tilt",
-        "peak_base_displacement",
-        "friction_demand",
-        "min_normal_ratio",
-        "peak_base_acceleration",
-        "unstable_time",
-        "fall_time",
-    ):
-        assert getattr(here, field) == getattr(there, field), field
-
-
 def test_contact_noise_is_no_impact():
     scene = Scene(block=block(0.25), base=BASE, bearings=BEARINGS, motion=shaking(1.0), duration=15.0)
     _, trace, reference, response = observed(scene, 1e-3, noise=0.99 * EDGE)
