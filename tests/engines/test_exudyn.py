@@ -6,7 +6,7 @@ import os
 import signal
 import threading
 import time
-from dataclasses import replace
+from dataclasses import asdict, replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -56,21 +56,22 @@ def restitution_error(given, **settings):
 # Corners.
 
 
-def test_settings_go_with_weight_size_and_gravity():
-    """A block scaled by lengths of 4, times of 4 (gravity of a quarter) and masses of 64: each number by its unit."""
+@pytest.mark.parametrize(
+    "gravity, factors",
+    [
+        (0.25, {"stiffness": 4, "longest_step": 4, "pivoting_step": 4}),
+        (4.0, {"stiffness": 64, "rebound": 4, "slip": 4, "tolerance": 0.25}),
+    ],
+)
+def test_settings_go_with_weight_size_and_gravity(gravity, factors):
+    """A block scaled by lengths of 4, masses of 64 and times of 4 or 1: each number by its unit."""
     from engines.exudyn.sizing import MEASURED, CompliantCorners, scaled
 
-    mass, radius, gravity = MEASURED
-    block, usual = Block(mass=64 * mass, radius=4 * radius, slenderness=0.2), CompliantCorners()
-    found = scaled(Scene(block=block, start=Start(tilt=0.1), gravity=gravity / 4), usual)
-    assert found.stiffness == pytest.approx(usual.stiffness * 64 / 4**2)
-    assert (found.rebound, found.slip) == pytest.approx((usual.rebound, usual.slip))
-    steps = usual.longest_step, usual.pivoting_step
-    assert (found.longest_step, found.pivoting_step) == pytest.approx((4 * steps[0], 4 * steps[1]))
-    heavy = scaled(Scene(block=block, start=Start(tilt=0.1), gravity=4 * gravity), usual)
-    assert (heavy.rebound, heavy.slip) == pytest.approx((4 * usual.rebound, 4 * usual.slip))
-    assert (found.tolerance, heavy.tolerance) == pytest.approx((usual.tolerance, usual.tolerance / 4))
-    assert (heavy.friction, heavy.sticking, heavy.damping) == (usual.friction, usual.sticking, usual.damping)
+    mass, radius, usual = MEASURED
+    block = Block(mass=64 * mass, radius=4 * radius, slenderness=0.2)
+    found = scaled(Scene(block=block, start=Start(tilt=0.1), gravity=gravity * usual), CompliantCorners())
+    wanted = {name: factors.get(name, 1) * value for name, value in asdict(CompliantCorners()).items()}
+    assert asdict(found) == pytest.approx(wanted)
 
 
 @pytest.mark.parametrize("share, base", [(0.59, None), (0.8, 3172.05)])
