@@ -460,16 +460,12 @@ def test_settings_of_the_contact_bring_a_tenth_of_the_error(monkeypatch, engine,
 # Troubles in an engine's own words.
 
 
-def blows_up(mujoco, data):
-    data.qvel[:] = math.inf
-
-
-def warns(mujoco, data):
-    mujoco.get_mju_user_warning()("Contact buffer is full")
-
-
 @pytest.mark.parametrize(
-    "trouble, reason, words", [(blows_up, "finite", "unstable"), (warns, "MuJoCo warned", "buffer is full")]
+    "trouble, reason, words",
+    [
+        (lambda mujoco, data: data.qvel.fill(math.inf), "finite", "unstable"),
+        (lambda mujoco, data: mujoco.get_mju_user_warning()("Contact buffer is full"), "MuJoCo warned", "is full"),
+    ],
 )
 def test_what_mujoco_warns_of_fails_in_its_words(monkeypatch, trouble, reason, words):
     mujoco = built("mujoco").mujoco

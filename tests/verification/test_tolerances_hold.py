@@ -37,13 +37,14 @@ def shared(monkeypatch):
 
 # Of other engines by hand, or `rocking verify`: what is dear, and on rigid ground what the rows of a sliding base hold.
 DEAR = ("overturning boundary", "synthetic motion", "60 s of shaking", "aware, rigid", "script, rigid", "step, rigid")
-AGAIN = "2 and 5 times omega_r"  # a boundary whose scenes differ in numbers from those of another row
+# Rows whose scenes differ in numbers or in the ground alone from those of another one.
+AGAIN = ("2 and 5 times omega_r", "60 s of shaking below uplift, rigid ground")
 
 
 def marks(row):
     """Main variants of exudyn and PyBullet first; other variants and engines in the second command."""
     long = not ENGINES[row.engine].subject and any(words in row.name for words in DEAR)
-    slow = ACCURATE.get(row.engine) != row.variant or AGAIN in row.name
+    slow = ACCURATE.get(row.engine) != row.variant or any(words in row.name for words in AGAIN)
     sets = [pytest.mark.long] * long or [pytest.mark.slow] * slow
     return [pytest.mark.xdist_group(f"{row.engine} {row.variant}"), *sets]
 
@@ -179,7 +180,6 @@ LARGE, STEP = {"largest_step": 5e-3}, {"step": 1e-3}
     [
         ("exudyn", "compliant-corners", {"stiffness": 2e10}, "restitution, rms", "rigid ground"),
         (*DEFAULT, LARGE, "overturning time", "one-sine of 3.8 g slenderness, rigid ground"),
-        (*DEFAULT, LARGE, "base drift at rest", "60 s of shaking below uplift, on bearings"),
         ("pybullet", "fixed-step", STEP, "restitution, rms", "sliding base, slenderness 0.2"),
     ],
 )
