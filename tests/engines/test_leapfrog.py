@@ -338,10 +338,9 @@ def test_bases_on_bearings(engine, base, damping):
 
 
 @every_ruled
-@pytest.mark.parametrize("shape", ["one-cosine", "rectangular"])
-def test_a_pulse_that_begins_with_a_jump_lifts_the_block_at_once(engine, shape):
+def test_a_pulse_that_begins_with_a_jump_lifts_the_block_at_once(engine):
     """Where a kick held the jump the block lifted a step late: .03 of the tilt five steps later."""
-    pulse = PulseMotion(shape, 1.3 * 9.81 * math.tan(0.2), 6.0, 0.10037)
+    pulse = PulseMotion("rectangular", 1.3 * 9.81 * math.tan(0.2), 6.0, 0.10037)
     given, late = scene(0.2, duration=0.3, motion=pulse), [pulse.start + 0.02, pulse.start + 0.1]
     histories = exact(given).history, get_engine(engine).simulate(given).history
     wanted, found = (np.interp(late, history.time, history.tilt) for history in histories)

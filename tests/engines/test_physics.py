@@ -106,16 +106,6 @@ def test_bearing_force_is_the_law_on_the_engines_own_path(engine, variant, law, 
     assert np.ptp(trace.bearing_force) > 1e3  # N: it was used
 
 
-@accurate_variant
-@pytest.mark.parametrize("law, damping", [("bilinear", 500.0), ("bouc-wen", 0.0)])
-def test_isolated_block_moves_as_the_exact_solution(engine, variant, law, damping):
-    bearings, start = bearings_of(law, count=4, damping=damping), Start(base_displacement=0.02, base_velocity=-0.1)
-    given = scene(0.5, 212.0, 4.0, bearings=bearings, motion=PulseMotion("one-sine", 2.0, 5.0), start=start)
-    response, reference = simulate(engine, variant, given), exact(given)
-    assert response.outcome == reference.outcome == "stands"
-    assert response.peak_base_displacement == pytest.approx(reference.peak_base_displacement, rel=1e-4)
-
-
 # Error of restitution at starts of .01 slendernesses: slow impacts err as the inverse square of their speed.
 SMALL = {("pymunk", "impact-aware"): 2e-3}  # measured 1.8e-3
 
