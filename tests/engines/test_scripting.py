@@ -92,7 +92,7 @@ OTHERS = {
     "small, at the end of the range": pulse(on_ground(block_of(0.1, 0.1))),
     "large, at the end of the range": pulse(block_of(0.5, 10.0)),
     "phase": upward(pulse(block_of(0.2), phase=0.5, start=0.3), phase=0.3),
-    **{f"rigid, {shape}": pulse(on_ground(block_of(0.2)), shape, 1.25, 3.0) for shape in SHAPES},
+    **{f"rigid, {shape}": pulse(on_ground(block_of(0.2)), shape, 1.25, 3.0) for shape in SHAPES[1:]},
     **{f"isolated, {shape}, vertical": upward(pulse(block_of(0.2), shape, 1.2)) for shape in SHAPES[1::3]},
 }
 SLIDES_ON_BEARINGS = pulse(block_of(0.2), size=3.0, speed=2.0).with_(friction=0.25)
@@ -290,7 +290,7 @@ def test_a_damaged_record_stops_a_script(damage, tmp_path):
 
 def test_a_record_of_uneven_times_is_the_same_motion(tmp_path):
     """The zeros before the motion left out."""
-    scene = on_ground(block_of(0.2)).with_(motion=PulseMotion("half-sine", 3.0, 6.0, start=1.0), duration=2.5)
+    scene = on_ground(block_of(0.2)).with_(motion=PulseMotion("half-sine", 3.0, 6.0, start=1.0), duration=1.8)
     motion = SampledMotion(0.01, scene.motion.acceleration(np.arange(301) * 0.01))
     script = written(ABLE[0], scene.with_(motion=motion), tmp_path)
     run_alone(script, "--csv", tmp_path / "even.csv", "--plot", tmp_path / "tilt.svg")
