@@ -1,12 +1,9 @@
 """Scripts of scenes, run as a user runs them, and measured by the project's own measures."""
 
-import ast
-import io
 import math
 import runpy
 import subprocess
 import sys
-import tokenize
 from dataclasses import dataclass
 
 import numpy as np
@@ -92,16 +89,3 @@ def measured(scene: Scene, script, said) -> Ran:
     )
     jumps = jump / (model.jump_arm * (before - after)) - 1 if scene.base else np.empty(0)
     return Ran(said, trace, seen, analytic.simulate(scene), slip, after / before - model.restitution, jumps)
-
-
-def code_lines(text):
-    """Number of lines that are not blank, comment or docstring."""
-    skipped = (tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.ENDMARKER)
-    found = set()
-    for token in tokenize.generate_tokens(io.StringIO(text).readline):
-        if token.type not in skipped:
-            found.update(range(token.start[0], token.end[0] + 1))
-    for node in ast.walk(ast.parse(text)):
-        if isinstance(node, ast.Module | ast.FunctionDef | ast.ClassDef) and ast.get_docstring(node) is not None:
-            found -= set(range(node.body[0].lineno, node.body[0].end_lineno + 1))
-    return len(found)

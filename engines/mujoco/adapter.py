@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from analytic import Scene
 
 
-# tests/engines/test_sliding.py shows it: friction and contact are one convex problem, in which a sliding contact opens.
+# tests/engines/test_physics.py shows it: friction and contact are one convex problem, in which a sliding contact opens.
 SLIPPING = (
     "a corner that slides rises, the faster the higher, by some millimetres at 1 m/s: a block whose friction is below "
     "tan γ, which can only slide, rocks and may overturn; an impact in which the corner slides has a restitution near 1"

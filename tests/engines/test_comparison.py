@@ -6,14 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic import Base, Bearings, Block, Failure, Impact, PulseMotion, Response, Scene, Start, load_scene, simulate
+from analytic import Base, Bearings, Block, Failure, Impact, PulseMotion, Scene, Start, load_scene, simulate
 from analytic.errors import SceneError
-from analytic.response import COMPARED, DIFFERENCES, EDGE, Difference
-from comparisons.ensembles.statues import random_scene
+from analytic.response import COMPARED, EDGE
 from engines import get_engine
 from engines.comparison import FRICTION, Reference, compare, outcome_of
 from engines.matching import STILL
-from engines.statue_range import RANGE, in_words, outside
+from engines.statue_range import RANGE, outside
 
 BLOCK = Block(mass=3172.05, radius=1.0884, slenderness=0.28)
 FREE = Scene(block=BLOCK, start=Start(tilt=0.14))
@@ -94,18 +93,6 @@ def test_outcomes_differ_where_they_are_decided_and_told_otherwise():
 def test_a_fall_at_another_time_and_the_base_up_to_it(changed, quantities):
     own = run_of(FALLING)
     assert told(FALLING, **{name: getattr(own, name) + by for name, by in changed.items()}) == quantities
-
-
-def test_a_fall_in_another_swing_is_another_end():
-    """The model under a stronger pulse, in place of an engine, falls at once, before any impact."""
-    wrong = run_of(FALLING.with_(motion=FALLING.motion.scaled(1.3)))
-    own = run_of(FALLING)
-    assert wrong.outcome == own.outcome == "overturns" and (len(wrong.impacts), len(own.impacts)) == (0, 3)
-    run = compare(FALLING, wrong)
-    seen = {one.quantity: (one.here, one.model, one.limit) for one in run.differences}
-    assert run.comparable == COMPARED and "peak_base_displacement" in seen
-    assert seen["fall_time"] == (wrong.fall_time, own.fall_time, pytest.approx(0.02 * PERIOD))
-    assert seen["impacts_before_fall"] == (0, 3, 0)
 
 
 def test_impacts_before_the_fall_are_counted_where_none_is_missed_for_its_time():
@@ -210,15 +197,6 @@ def test_what_cannot_be_compared_and_the_friction_with_which_it_can():
     assert told(slides.with_(friction=0.6)) == []
     failed = replace(run_of(FREE), outcome="failed", failure=Failure("it broke"))
     assert compare(FREE, failed) is failed
-
-
-def test_a_difference_is_data_and_a_sentence():
-    assert all("7" in str(Difference(quantity, 7, 7, None)) for quantity in DIFFERENCES)
-    run = compare(FREE, replace(run_of(FREE), peak_tilt=0.2))
-    assert Response.from_json(run.to_json()).differences == run.differences
-    (one,) = run.differences
-    assert (one.here, one.model, one.limit) == (0.2, pytest.approx(0.14), 0.02)
-    assert one.near == (pytest.approx(0.14 * (1 - 1e-4)), pytest.approx(0.14 * (1 + 1e-4)))
 
 
 def test_near_an_outcome_boundary_either_outcome_is_right_and_a_third_is_not():
@@ -327,13 +305,8 @@ def test_each_quantity_is_held_against_the_limits_of_the_range(scene, named):
 def test_a_block_that_stands_has_no_tilt_whatever_an_engine_leaves_of_it():
     scene = Scene(block=STATUE)
     stands = replace(run_of(scene), peak_tilt_ratio=1e-6)
-    assert not outside(scene, stands) and not outside(scene, replace(stands, outcome="slides"))
-    (one,) = outside(scene, replace(stands, outcome="rocks"))
-    assert str(one).startswith("peak tilt over slenderness 1e-06 is outside the range")
-
-
-def test_scenes_drawn_within_the_range_are_inside():
-    assert not [k for k in range(40) if any(name != "tilt" for name, *_ in outside_of(random_scene(9, k)))]
+    for outcome, named in (("stands", []), ("slides", []), ("rocks", ["tilt"])):
+        assert [one.quantity for one in outside(scene, replace(stands, outcome=outcome))] == named
 
 
 @pytest.mark.parametrize("engine", ["exudyn", "pybullet"])
@@ -341,12 +314,13 @@ def test_an_engine_says_once_that_a_scene_is_outside_the_range_and_is_compared(e
     """At a slenderness of .01 PyBullet takes 45 times the loss of eq. (7), with e off by .007 alone."""
     scene = ROCKING.with_(block={"slenderness": 0.01}, start=Start(tilt=0.006), duration=2.0)
     run, inside = (get_engine(engine).simulate(one, history=False) for one in (scene, ROCKING.with_(duration=0.2)))
+    said, none = ([str(one) for one in each.warnings if "outside the range" in str(one)] for each in (run, inside))
     low, high, words = RANGE["slenderness"]
     words = words.format(low=low, high=high)
-    assert [str(warning) for warning in run.warnings if warning.quantity == "slenderness"] == [
-        f"slenderness 0.01 is outside the range in which engines are tested ({words}): nothing is promised there"
-    ]
-    assert words in in_words() and not [one for one in inside.warnings if "outside the range" in str(one)]
+    assert (said, none) == (
+        [f"slenderness 0.01 is outside the range in which engines are tested ({words}): nothing is promised there"],
+        [],
+    )
     lost = [one for one in run.differences if one.quantity == "impact_loss"]
     assert len(lost) == (engine == "pybullet")
     assert all(one.model == pytest.approx(3e-4, rel=1e-3) and one.here > 10 * one.model for one in lost)

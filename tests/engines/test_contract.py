@@ -1,12 +1,17 @@
 """What every engine and each of its variants must fulfil; an engine is covered by its folder in `engines`.
 
+They are found by name, here and in other packages; an absent one is told from a broken one, which is named. Each way
+that an engine's process can end badly is provoked; the test module is what that process imports.
+
 What their blocks do is in `test_physics`.
 """
 
+import faulthandler
 import itertools
 import json
 import math
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -17,15 +22,21 @@ from importlib import metadata
 import numpy as np
 import pytest
 from engine_cases import ACCURATE, PULSE, VARIANTS, default_variant, every_variant, scene, shaking, simulate
-from installed_package import install_fake_engine
+from installed_package import FAKE_ENGINE, install, install_fake_engine
 
 import engines
-from analytic import SceneError, SettingError, Start
+from analytic import SceneError, SettingError, Start, load_scene
 from analytic import simulate as exact
 from analytic.caryatid import BEARINGS
+from analytic.errors import EngineBroken, EngineNotInstalled
 from analytic.response import History
+from analytic.rocking import momentum_restitution
 from engines import ENGINES, get_engine, guard
-from engines.contract import KINDS
+from engines.contract import KINDS, Engine
+from engines.greeting import without
+from engines.guard import OUT_OF_TIME, check_time_limit, raised, run_apart
+from engines.plugins import find_engines
+from engines.simulating import Simulator
 
 # What an engine's record holds, and what it refuses.
 
@@ -95,7 +106,7 @@ def test_given_restitution_is_refused_or_kept_but_never_ignored(engine, variant)
     own = get_engine(engine).variants[variant]
     if own.takes_restitution:
         first = simulate(engine, variant, given).impacts[0]
-        assert first.rate_after / first.rate_before == pytest.approx(0.7, abs=2e-3)  # by a couple, see test_couple
+        assert first.rate_after / first.rate_before == pytest.approx(0.7, abs=2e-3)  # by a couple, see test_physics
     else:
         with pytest.raises(SceneError) as caught:
             simulate(engine, variant, given)
@@ -153,17 +164,14 @@ def test_start_in_flight(engine, variant):
 
 
 @every_variant
-@pytest.mark.parametrize("start, base", [(0.1, None), (0.0, 212.0)])
-def test_ground_motion_that_is_not_finite_fails_with_the_last_finite_state(
-    engine, variant, start, base, monkeypatch, tmp_path
-):
+def test_ground_motion_that_is_not_finite_fails_with_the_last_finite_state(engine, variant, monkeypatch, tmp_path):
     """Behind the reader's back the record turns to NaN: what the engine makes of it must surface, and leave no log."""
     monkeypatch.chdir(tmp_path)
     motion = shaking(0.5)
     samples = motion.samples.copy()
     samples[50:] = math.nan
     object.__setattr__(motion, "samples", samples)
-    given = scene(0.2, base, bearings=BEARINGS if base else None, start=Start(tilt=start), motion=motion)
+    given = scene(0.2, 212.0, bearings=BEARINGS, motion=motion)
     response = simulate(engine, variant, given)
     assert response.outcome == "failed"
     assert response.failure.reason and response.failure.message
@@ -175,42 +183,22 @@ def test_ground_motion_that_is_not_finite_fails_with_the_last_finite_state(
     assert list(tmp_path.iterdir()) == []  # no MUJOCO_LOG.TXT
 
 
-@default_variant
-def test_hang_ends_at_the_time_limit(engine, variant):
-    endless = scene(0.2, duration=3e3, start=Start(tilt=0.12))
-    _, failure = guard.run_apart(simulate, engine, variant, endless, time_limit=3.0)
-    assert failure.reason == guard.OUT_OF_TIME
-
-
 # Repeatable and symmetric.
-
-
-def in_every_variant(engine, given):
-    """What the guarded process runs."""
-    return [simulate(engine, variant, given) for variant in get_engine(engine).variants]
 
 
 @default_variant
 def test_runs_repeat_bit_for_bit_also_in_other_processes(engine, variant):
     given = scene(0.15, 212.0, 0.6, bearings=BEARINGS, motion=PULSE)
-    first, second = (in_every_variant(engine, given) for _ in range(2))
+    first, second = (simulate(engine, variant, given) for _ in range(2))
     with ThreadPoolExecutor(2) as two:  # two at once
-        elsewhere = list(
-            two.map(lambda _: guard.run_apart(in_every_variant, engine, given, time_limit=120.0), range(2))
-        )
-    for repeated in (second, *(runs for runs, _ in elsewhere)):
-        for here, there in zip(first, repeated, strict=True):
-            assert (here.variant, here.end, here.impacts) == (there.variant, there.end, there.impacts)
-            assert all(
-                np.array_equal(getattr(here.history, name), getattr(there.history, name)) for name in History.COLUMNS
-            )
+        apart = list(two.map(lambda _: guard.run_apart(simulate, engine, variant, given, time_limit=120.0), range(2)))
+    for there in (second, *(run for run, _ in apart)):
+        assert (first.end, first.impacts) == (there.end, there.impacts)
+        assert all(np.array_equal(getattr(first.history, one), getattr(there.history, one)) for one in History.COLUMNS)
 
 
-@pytest.mark.parametrize(
-    "present", [pytest.param(("exudyn",), id="one"), pytest.param((), id="none", marks=pytest.mark.slow)]
-)
-def test_all_else_works_where_engines_are_not_installed(present):
-    missing = [name for name in ENGINES if name not in present]
+def test_all_else_works_where_no_engine_is_installed():
+    missing = list(ENGINES)
     program = f"""
 import sys
 missing = {missing!r}
@@ -245,20 +233,17 @@ from engines import get_engine
 block = Block(mass=3172.05, radius=1.0884, slenderness=0.3)
 bearings = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69, damping=300.0)
 pulse = PulseMotion("one-sine", 6.0, 6.0)
-scenes = [
-    Scene(block=block, base=Base(mass=212.0), start=Start(tilt=0.15), duration=0.7),
-    Scene(block=block, base=Base(mass=900.0), bearings=bearings, motion=pulse, duration=0.7),
-]
+start = Start(tilt=0.1)
+scene = Scene(block=block, base=Base(mass=900.0), bearings=bearings, motion=pulse, start=start, duration=0.6)
 found = {}
 for name in sys.argv[2:]:
     engine = get_engine(name)
     for variant, kind in engine.variants.items():
         digest = hashlib.sha256()
-        for scene in scenes:
-            trace = engine.run(scene, variant, kind.settings).trace
-            for column in (*trace.COLUMNS, "centre"):
-                values = getattr(trace, column)
-                digest.update(b"" if values is None else values.tobytes())
+        trace = engine.run(scene, variant, kind.settings).trace
+        for column in (*trace.COLUMNS, "centre"):
+            values = getattr(trace, column)
+            digest.update(b"" if values is None else values.tobytes())
         found[f"{name}, {variant}"] = kind.kind, digest.hexdigest()
 print(json.dumps(found))
 """
@@ -279,3 +264,299 @@ def test_only_assisted_variants_use_the_formula_of_the_restitution(tmp_path, nam
     right, wrong = found
     assisted = {name for name, (kind, _) in right.items() if kind == "assisted"}
     assert {name for name in right if right[name] != wrong[name]} == assisted == {"crude, euler"}
+
+
+BY = "declared as {} by the distribution {} 0.1: "
+RIGID = "free-rocking-rigid"
+
+
+def test_an_unknown_engine_is_told_with_the_known_ones():
+    words = "unknown engine 'simbody': choose one of exudyn, pybullet, dart, drake, mujoco, pymunk"
+    with pytest.raises(KeyError, match=words):
+        engines.get_engine("simbody")
+
+
+def test_an_absent_engine_says_how_to_install_it_and_a_broken_adapter_does_not_pass_for_absent(monkeypatch, tmp_path):
+    (tmp_path / "broken_adapter.py").write_text("import no_such_package")
+    monkeypatch.syspath_prepend(tmp_path)
+    for name, package in (("absent", "no_such_package"), ("broken", "math")):
+        record = Engine(name, package, "pip install it", "#000000", "o", "broken_adapter")
+        monkeypatch.setitem(engines.ENGINES, name, record)
+    words = "engine 'absent' needs the package no_such_package: pip install it"
+    with pytest.raises(EngineNotInstalled, match=words):
+        engines.get_engine("absent")
+    # only those asked for are looked at
+    assert engines.available_engines(["absent"]) == ((), {"absent": words})
+    monkeypatch.setattr(engines, "BUILT_IN", ("absent", "broken"))
+    with pytest.raises(ModuleNotFoundError, match="no_such_package") as raised:
+        engines.available_engines(["absent", "broken"])
+    assert not isinstance(raised.value, EngineNotInstalled)
+
+
+# What an engine prints on import is kept back, and nothing else.
+
+
+def test_what_else_is_printed_comes_whole_also_where_an_error_is_raised(capfd):
+    lines = "help\n" + "line\n" * 20_000  # more than a pipe holds
+    with pytest.raises(ImportError), without(b"hello "):
+        os.write(2, b"hello world\n" + lines.encode())
+        print("from Python", file=sys.stderr, flush=True)
+        raise ImportError
+    out, err = capfd.readouterr()
+    assert out == "" and sorted(err.splitlines()) == sorted([*lines.splitlines(), "from Python"])
+
+
+def test_without_a_standard_error_it_is_as_usual():
+    program = "import os\nfrom engines.greeting import without\nos.close(2)\nwith without(b'x'):\n    y = 1\nassert y"
+    assert subprocess.run([sys.executable, "-c", program], capture_output=True, timeout=60).returncode == 0
+
+
+# Engines of other packages.
+
+
+def python(folder, *arguments):
+    """The process that ran Python with `folder` among the places of packages."""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(folder), os.environ["PYTHONPATH"]])}
+    command = [sys.executable, *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=300, env=environment)
+
+
+@pytest.fixture(autouse=True)
+def unloaded():
+    """No test finds what another one has imported."""
+    yield
+    for name in [name for name in sys.modules if name.startswith("crude_")]:
+        del sys.modules[name]
+
+
+PROGRAM = """
+from pathlib import Path
+from analytic import Block, Scene, Start, simulate
+from comparisons.running.cases import Case
+from comparisons.running.executors import Processes
+from comparisons.running.sweep import run_sweep
+from first import impact
+from engines import BROKEN, BUILT_IN, ENGINES, get_engine, installed_engines
+
+if __name__ == "__main__":
+    scene = Scene(block=Block(mass=10.0, radius=1.0, slenderness=0.2), start=Start(tilt=0.1), duration=1.5)
+    with Processes(1, ["crude", "pybullet"]) as pool:
+        rows = run_sweep([Case(scene, solver) for solver in ("analytic", "crude", "pybullet")], measure=impact,
+                         executor=pool, store=Path(__file__).with_name("runs.jsonl"), progress=False)
+    here = get_engine("crude").simulate(scene)
+    assert list(ENGINES) == [*BUILT_IN, "crude"] and installed_engines()[-1] == "crude" and not BROKEN
+    assert here.variant == "euler" and "crude is a fake" in map(str, here.warnings)
+    assert abs(here.impacts[0].time - simulate(scene).impacts[0].time) < 2e-3
+    assert [row.failure for row in rows] == [None, None, None]
+    assert rows[1].case.solver == "crude" and rows[1].values["time"] == here.impacts[0].time
+"""
+
+
+def test_an_engine_from_outside_is_one_of_the_engines_here_and_in_workers_which_greet_nobody(tmp_path):
+    program = install_fake_engine(tmp_path) / "program.py"
+    (tmp_path / "first.py").write_text("def impact(case, response):\n    return {'time': response.impacts[0].time}\n")
+    program.write_text(PROGRAM)
+    done = python(tmp_path, program)
+    assert done.returncode == 0, done.stderr
+    assert "build time" not in done.stdout + done.stderr
+
+
+def test_an_assisted_variant_takes_a_restitution_that_no_couple_reaches(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(install_fake_engine(tmp_path))
+    engine = Simulator.of(find_engines(engines.BUILT_IN)[0]["crude"])
+    scene = load_scene(RIGID).with_(duration=2.0)
+    for given in (0.5 * momentum_restitution(scene), 0.5 + 0.5 * momentum_restitution(scene)):
+        first = engine.simulate(scene.with_(block={"restitution": given})).impacts[0]
+        assert first.rate_after / first.rate_before == pytest.approx(given, abs=1e-3)
+
+
+def changed(old, new):
+    assert FAKE_ENGINE.count(old) == 1
+    return FAKE_ENGINE.replace(old, new)
+
+
+ENTRY = "crude_engine:ENGINE"
+# what: (entry, its value, source of crude_engine, words, name under which it is kept)
+BAD_ENTRIES = {
+    "it raises": ("crude", ENTRY, "1 / 0", "it cannot be imported (ZeroDivisionError: ", "crude"),
+    "no such attribute": ("crude", "crude_engine:ENGIN", FAKE_ENGINE, "it cannot be imported (AttributeError", "crude"),
+    "no engine": ("crude", "crude_engine", FAKE_ENGINE, "it is a module, no engines.contract.Engine", "crude"),
+    "another name": ("rude", ENTRY, FAKE_ENGINE, "it calls itself 'crude'", "rude"),
+    "a name of ours": (
+        "exudyn",
+        ENTRY,
+        changed('name="crude"', 'name="exudyn"'),
+        "that name is taken",
+        "exudyn of crude-engine 0.1",
+    ),
+    "the model's": (
+        "analytic",
+        ENTRY,
+        changed('name="crude"', 'name="analytic"'),
+        "that name is taken",
+        "analytic of crude-engine 0.1",
+    ),
+    "no default among levels": (
+        "crude",
+        ENTRY,
+        changed("(2e-3, 5e-4)", "(2e-3,)"),
+        "it cannot be imported (ValueError: levels = (0.002,): it lacks",
+        "crude",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", BAD_ENTRIES)
+def test_a_broken_entry_is_named_and_no_engine(monkeypatch, tmp_path, what):
+    name, value, source, words, key = BAD_ENTRIES[what]
+    monkeypatch.syspath_prepend(install(tmp_path, "crude-engine", {name: value}, crude_engine=source))
+    found, broken = find_engines(engines.BUILT_IN)
+    assert found == {} and list(broken) == [key]
+    assert str(broken[key]).startswith(f"engine {name!r}, " + BY.format(value, "crude-engine") + words)
+
+
+def test_two_packages_with_one_name_keep_the_first(monkeypatch, tmp_path):
+    install(tmp_path, "z-engine", {"crude": ENTRY})
+    monkeypatch.syspath_prepend(install_fake_engine(tmp_path))
+    found, broken = find_engines(engines.BUILT_IN)
+    assert list(found) == ["crude"] and "crude-engine 0.1" in found["crude"].origin
+    assert list(broken) == ["crude of z-engine 0.1"] and "that name is taken" in str(broken["crude of z-engine 0.1"])
+
+
+RECORD = """
+from engines.contract import Engine
+ENGINE = Engine("crude", {package!r}, "pip install it", "#D55E00", "v", "crude_adapter")
+"""
+NOT_THERE = "'crude' needs the package no_such_package: pip install it"
+
+
+@pytest.mark.parametrize(
+    "package, adapter, error, words",
+    [
+        ("math", "import no_such_package", EngineBroken, "its module crude_adapter cannot be imported (ModuleNotF"),
+        ("math", "VARIANTS = {'euler': 1}", EngineBroken, "crude_adapter.VARIANTS is no dict of engines.contract.Va"),
+        (
+            "math",
+            "from crude_engine import VARIANTS",
+            EngineBroken,
+            "crude_adapter has no function versions and no run",
+        ),
+        ("no_such_package", "", EngineNotInstalled, NOT_THERE),
+    ],
+)
+def test_a_broken_or_absent_adapter_from_outside_costs_no_other_engine(
+    monkeypatch, tmp_path, package, adapter, error, words
+):
+    modules = dict(crude_engine=FAKE_ENGINE, crude_record=RECORD.format(package=package), crude_adapter=adapter)
+    monkeypatch.syspath_prepend(install(tmp_path, "crude-engine", {"crude": "crude_record:ENGINE"}, **modules))
+    found, broken = find_engines(engines.BUILT_IN)
+    monkeypatch.setitem(engines.ENGINES, "crude", found["crude"])
+    assert broken == {} and "crude" not in engines.available_engines(["crude"])[0]
+    with pytest.raises(error) as caught:
+        engines.get_engine("crude")
+    assert words in str(caught.value)
+    declared = "engine 'crude', " + BY.format("crude_record:ENGINE", "crude-engine")
+    assert error is EngineNotInstalled or str(caught.value).startswith(declared + words)
+
+
+HELPED = changed("    return Run(", "    return helped(") + "\n\ndef helped(*_):\n    return None + 1\n"
+# what: (source of crude_engine, what it raises, the line that is named)
+RAISING = {
+    "in a helper": (HELPED, "TypeError: unsupported operand", "return None + 1"),
+    "in what it calls": (changed("np.array(rows).T", "np.array(rows, 'no')"), "TypeError: ", "np.array(rows, 'no')"),
+    "another signature": (changed("variant, settings):", "variant):"), "TypeError: run() takes 2", "def run("),
+    "no run": (changed("    return Run(", "    ("), "TypeError: crude_engine.run returned a NoneType", "def run("),
+}
+
+
+@pytest.mark.parametrize("source, words, place", RAISING.values(), ids=RAISING)
+def test_what_an_adapter_raises_names_its_line(monkeypatch, tmp_path, source, words, place):
+    monkeypatch.syspath_prepend(install(tmp_path, "crude-engine", {"crude": ENTRY}, crude_engine=source))
+    engine = Simulator.of(find_engines(engines.BUILT_IN)[0]["crude"])
+    with pytest.raises(TypeError) as caught:
+        engine.simulate(load_scene(RIGID))
+    line = next(number for number, text in enumerate(source.split("\n"), 1) if place in text)
+    told = raised(caught.value)
+    assert told.startswith(words) and told.endswith(f"(in crude_engine, line {line})")
+
+
+@pytest.mark.slow  # all engines are loaded to be listed
+@pytest.mark.parametrize(
+    "old, new, words",
+    [
+        ('{"crude-engine": "0.1"}', "1 / 0", "crude_engine.versions fails"),
+        ("import math", "import no_such_package", BY.format(ENTRY, "crude-engine") + "it cannot be imported"),
+    ],
+)
+def test_the_commands_name_a_broken_one_in_one_message(tmp_path, old, new, words):
+    packages = install(tmp_path, "crude-engine", {"crude": ENTRY}, crude_engine=changed(old, new))
+    asked = python(packages, "-m", "comparisons", "run", RIGID, "--engine", "crude")
+    assert asked.returncode == 2 and "Traceback" not in asked.stderr
+    *_, said = asked.stderr.splitlines()  # a slow machine says before that the model is compiled
+    assert said.startswith("Error: engine 'crude'") and words in said
+    listed = python(packages, "-m", "comparisons", "engines", *["crude"] * ("versions" in words))
+    assert words in listed.stdout + listed.stderr
+    assert "versions" in words or all(name in listed.stdout for name in engines.BUILT_IN)
+
+
+def hang():
+    time.sleep(60.0)
+
+
+def speak():
+    os.write(1, b"engine: assertion failed in contact\n")
+    os.abort()
+
+
+def unsendable():
+    return lambda: None
+
+
+def interrupted():
+    raise KeyboardInterrupt
+
+
+def ignores_ctrl_c():
+    signal.raise_signal(signal.SIGINT)
+    return "went on"
+
+
+def err():
+    raise RuntimeError("Newton did not converge at 0.25 s")
+
+
+def wrong_setting():
+    raise SettingError("step = 0.001: unknown")
+
+
+@pytest.mark.parametrize(
+    "run, arguments, limit, evidence",
+    [
+        (hang, (), 1.0, "in hang"),  # where it hung
+        (speak, (), 30.0, "assertion failed in contact"),
+        (unsendable, (), 30.0, "pickle"),
+        (interrupted, (), 30.0, "KeyboardInterrupt"),
+        (faulthandler._sigsegv, (), 30.0, "SIGSEGV"),
+        (os._exit, (3,), 30.0, "exit code 3"),
+        (signal.raise_signal, (signal.SIGKILL,), 30.0, "SIGKILL"),
+        (err, (), 30.0, "RuntimeError: Newton did not converge at 0.25 s"),
+    ],
+)
+def test_a_run_that_ends_badly_is_a_failure_with_evidence(run, arguments, limit, evidence):
+    began = time.monotonic()
+    value, failure = run_apart(run, *arguments, time_limit=limit)
+    assert time.monotonic() - began < limit + 5
+    assert value is None and evidence in failure.message
+    assert (failure.reason == OUT_OF_TIME) == (run is hang)
+
+
+def test_ctrl_c_is_the_parents_to_handle_and_a_wrong_setting_the_callers_mistake():
+    assert run_apart(ignores_ctrl_c, time_limit=60.0) == ("went on", None)
+    with pytest.raises(SettingError, match="step"):
+        run_apart(wrong_setting, time_limit=30.0)
+
+
+@pytest.mark.parametrize("limit", [0.0, -1.0, float("nan"), 2e6])
+def test_a_time_limit_that_no_timer_takes_is_refused(limit):
+    with pytest.raises(ValueError, match="time_limit"):
+        check_time_limit(limit)

@@ -25,7 +25,7 @@ from engines.checks import (
     replayed_force,
 )
 from engines.events import MOST_RESTITUTION, check_impacts, find_events, straddled
-from engines.momentum import IMPULSE_LIMIT, bearing_impulse, impulse_error, missing_impulse
+from engines.momentum import IMPULSE_LIMIT, impulse_error, missing_impulse
 from engines.swings import Trace, find_swings
 
 
@@ -53,14 +53,6 @@ def test_impacts_do_not_depend_on_the_steps(name, mean_step, tolerance):
     np.testing.assert_allclose(strong(response), strong(reference), rtol=0, atol=tolerance)
 
 
-def test_rates_smeared_around_the_impact_do_not_change_what_is_found():
-    """As in a compliant contact: the rates there mean nothing."""
-    scene, trace, reference, _ = observed("rigid ground", 2.5e-4, contact_tilt=2e-4)
-    rate = np.where(np.abs(trace.tilt) < 2e-4, 0.3 * trace.tilt_rate, trace.tilt_rate)
-    found = strong(seen(scene, dataclasses.replace(trace, tilt_rate=rate)))
-    np.testing.assert_allclose(found, strong(reference), rtol=0, atol=1e-9)
-
-
 def test_ringing_after_an_impact_is_waited_out():
     scene, trace, reference, _ = observed("isolated", 5e-4)
     last = np.searchsorted([impact.time for impact in reference.impacts], trace.time)
@@ -74,25 +66,6 @@ def test_ringing_after_an_impact_is_waited_out():
     assert not_waited > 1e-4 and waited < 1e-5
 
 
-def test_mirror():
-    scene, *_, here = observed("isolated, shaken", 1e-3)
-    there = seen(scene.with_(motion=scene.motion.scaled(-1.0)), sampled(scene, 1e-3, side=-1)[0])
-    np.testing.assert_array_equal(strong(there), strong(here) * [1.0, -1.0, -1.0, -1.0])
-    for field in (
-        "outcome",
-        "uplifts",
-        "rests",
-        "peak_tilt",
-        "peak_base_displacement",
-        "friction_demand",
-        "min_normal_ratio",
-        "peak_base_acceleration",
-        "unstable_time",
-        "fall_time",
-    ):
-        assert getattr(here, field) == getattr(there, field), field
-
-
 def test_contact_noise_is_no_impact():
     scene = Scene(block=block(0.25), base=BASE, bearings=BEARINGS, motion=shaking(1.0), duration=15.0)
     _, trace, reference, response = observed(scene, 1e-3, noise=0.99 * EDGE)
@@ -100,12 +73,6 @@ def test_contact_noise_is_no_impact():
     assert (response.impacts, response.uplifts, response.rests) == ((), (), ())
     # The check can fail: the same noise above the edge of contact is seen.
     assert seen(scene, dataclasses.replace(trace, contact_tilt=0.5 * EDGE)).uplifts
-
-
-def test_uplift_is_where_the_acceleration_crosses_its_threshold():
-    motion = PulseMotion("one-sine", 1.2 * 9.81 * math.tan(0.25), 5.2, start=0.5)
-    *_, response = observed(Scene(block=block(0.25), duration=3.0, motion=motion), 1e-3)
-    assert response.uplifts == pytest.approx([0.5 + math.asin(1 / 1.2) / 5.2], abs=1e-5)
 
 
 @pytest.mark.parametrize(
@@ -356,6 +323,23 @@ def test_a_carry_takes_substeps_as_the_bearing_needs_them():
     assert found == pytest.approx(wanted, rel=1e-5)
 
 
+def test_a_carry_takes_no_more_steps_than_it_needs(monkeypatch):
+    taken, carry = [], swings._runge_kutta
+    monkeypatch.setattr(swings, "_runge_kutta", lambda *given: taken.append(given[-1]) or carry(*given))
+    for name in ("rigid ground", "isolated"):
+        observed(name, 2e-3)
+    assert swings.RK_STEPS <= max(taken) < 0.1 * swings.MOST_STEPS
+
+
+@pytest.mark.parametrize("direction, step, inner", [(1, "last", -1), (-1, "first", 1)])
+def test_a_force_that_is_extrapolated_goes_through_the_two_steps_beside_a_contact(direction, step, inner):
+    _, trace, *_ = observed("isolated", 4e-3)
+    found = find_swings(trace)
+    for at in (edge := getattr(found, step), edge + inner):
+        along = swings._tangent(trace, found, direction)(trace.time[at])
+        np.testing.assert_allclose(along[:9], trace.bearing_force[at][:9], rtol=1e-9)  # of swings of several steps
+
+
 @pytest.mark.parametrize("friction, gap, flies", [(0.6, 0.05, True), (0.6, 1e-3, False), (None, 0.05, False)])
 def test_a_passage_of_the_upright_is_an_impact_unless_the_block_is_in_the_air(friction, gap, flies):
     """A block that rocks, raised by so much about its first impact; without a friction the model's does not fly."""
@@ -413,10 +397,9 @@ def test_steps_longer_than_whole_swings_fail(step, resolved):
 
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("column", Trace.COLUMNS[1:])
-@pytest.mark.parametrize("size", [1e30, 1e300])
-def test_an_exploded_state_fails_without_a_warning_of_numpy(column, size):
+def test_an_exploded_state_fails_without_a_warning_of_numpy(column):
     scene, trace, *_ = observed("isolated", 2e-3)
-    burst = np.where(trace.time > 3.0, size * np.cos(300 * trace.time), getattr(trace, column))
+    burst = np.where(trace.time > 3.0, 1e300 * np.cos(300 * trace.time), getattr(trace, column))
     response = seen(scene, dataclasses.replace(trace, **{column: burst}))
     assert response.outcome == "failed" or (column == "tilt" and response.outcome == "overturns")
     assert (response.outcome == "failed") == (response.failure is not None)
@@ -453,13 +436,6 @@ def test_an_exact_motion_keeps_the_sum_over_its_impacts(scene, law):
     assert np.ptp(missing_impulse(scene, alone)[0]) > 0.01 * np.ptp(impulse)
 
 
-def test_the_viscous_impulse_is_damping_times_the_way():
-    scene = SCENES["isolated, shaken"].with_(bearings={"law": "linear", "ka": 1e-9, "damping": 500.0})
-    trace, _ = sampled(scene, 1e-2)
-    way = trace.base_displacement - trace.base_displacement[0]
-    np.testing.assert_allclose(bearing_impulse(scene, trace), scene.bearings.count * 500.0 * way, atol=1e-6)
-
-
 @pytest.mark.parametrize("factor", [0.0, 0.5, 2.0])
 def test_the_motion_of_another_force_fails(factor):
     """The scene asks for one law; the motion is the exact one of `factor` times its force."""
@@ -468,7 +444,7 @@ def test_the_motion_of_another_force_fails(factor):
         bearings={"ka": factor * bearings.ka, "kb": factor * bearings.kb} if factor else {"law": "linear", "ka": 1e-6}
     )
     trace, _ = sampled(other, 5e-4)
-    (failed, warned) = (seen(ROCKING, dataclasses.replace(trace, first_script=first)) for first in (False, True))
+    failed, warned = (seen(ROCKING, dataclasses.replace(trace, first_script=first)) for first in (False, True))
     assert failed.outcome == "failed" and "bearing force" in failed.failure.reason
     assert impulse_error(ROCKING, trace) == pytest.approx(abs(factor - 1), rel=0.1)
     assert warned.failure is None and "bearing force" in warned.warnings[-1].text
