@@ -150,9 +150,8 @@ def failing():
 
 
 @pytest.mark.parametrize("crude", [APPLIES], indirect=True)
-@pytest.mark.parametrize(
-    "name", [each for each in but("statues", "shake-table") if each != "stability"]
-)  # which needs runs
+# but for stability, which needs runs
+@pytest.mark.parametrize("name", [each for each in but("statues", "shake-table") if each != "stability"])
 def test_runs_of_it_that_fail_make_rows_that_are_declared_and_shown(short, tuned, tmp_path, name):
     found, _ = answer_of(name, failing(), tmp_path)
     assert [row for row in found.rows if row.get("failure") or row["part"] == "failure" or row.get("failed")]
