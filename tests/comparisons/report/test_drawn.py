@@ -21,7 +21,7 @@ def test_every_study_has_its_rows_and_none_of_them_is_refused():
 
 
 OTHERWISE = re.compile(r"\d[eE][-+]?\d|\b[a-zA-Z]_[a-zA-Z]\b|\bNone\b|\bnan\b")
-AS_TYPED = ("[href]", "[data", "[drawn]", "rocking ", " = ", "message: ")  # a command; settings; evidence
+AS_TYPED = ("[href]", "[data", "[drawn]", "rocking ", " = ", "message: ", "': ")  # a command; settings; evidence
 
 
 def test_numbers_and_symbols_are_written_as_a_reader_does():
