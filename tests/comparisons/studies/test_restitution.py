@@ -11,6 +11,7 @@ from analytic import simulate
 from analytic.rocking import restitution
 from comparisons.running.by_solver import read
 from comparisons.running.plan import Request
+from comparisons.running.provenance import Result
 from comparisons.running.study import compute
 from comparisons.running.sweep import Row
 from comparisons.showing.parts import where
@@ -28,6 +29,7 @@ from comparisons.studies.restitution.cases import (
     grid_cases,
     impact_scene,
 )
+from comparisons.studies.restitution.contact import contact
 from comparisons.studies.restitution.study import damped_error, friction_needed, plan
 from engines import get_engine
 
@@ -139,3 +141,11 @@ def test_rows_of_one_impact_carry_the_diagnosis_or_the_failure():
     first, *others = where(answered(plan(Request(("pymunk",)), grid), run)[-1].rows, part="why")
     assert (first["error"], first["failure"]) == (1.23456e-7, None) and all(row["failure"] for row in others)
     assert {row["ground"] for row in (first, *others)} == {*GROUNDS}
+
+
+def test_what_cannot_be_told_of_one_impact_is_evidence():
+    silent = {"part": "why", "engine": "pybullet", "variant": "v", "ground": "rigid ground", "failure": None}
+    rows = [silent | {"why_not": "no corner is struck"}, silent | {"failure": {"reason": "a crash"}}]
+    settings = {"why": {"slenderness": 0.2, "start": 0.6, "least": 1e-3, "causes": {}}}
+    page = contact(Result("restitution", settings, rows, {}))
+    assert page.evidence == tuple(("pybullet, v, rigid ground", why) for why in ("no corner is struck", "a crash"))
