@@ -19,7 +19,7 @@ from ..running.age import age
 from ..running.files import write_all
 from ..running.provenance import PACKAGES, RESULTS, read_result
 from ..showing import diagrams, modes
-from ..showing.parts import SIGNS, Section, Table, percent
+from ..showing.parts import NAME, SIGNS, Section, Table, percent
 from ..showing.wording import TRUSTED, USABLE
 from . import equations
 from .answer import (
@@ -284,10 +284,9 @@ def _provenance(scenes: Result, block: Result | None) -> Section:
     settings = {}
     for row in [*scenes.rows, *(block.rows if block else ())]:
         if row.get("settings") is not None:
-            settings[row["engine"], row["variant"]] = row["settings"]
+            settings[NAME.of(row)] = row["settings"]
     listed = [
-        [f"{solver}, {variant}", ", ".join(f"{key} = {value}" for key, value in chosen.items())]
-        for (solver, variant), chosen in settings.items()
+        [name, ", ".join(f"{key} = {value}" for key, value in chosen.items())] for name, chosen in settings.items()
     ]
     return Section(
         "Versions, machine, settings",

@@ -3,9 +3,6 @@
 import html
 import json
 import re
-import resource
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -26,6 +23,7 @@ from comparisons.running.cases import Case
 from comparisons.running.executors import Task, lines_of
 from comparisons.running.files import PlaceError
 from comparisons.running.provenance import ResultError, read_result
+from comparisons.showing.parts import where
 from engines import installed_engines
 
 PROJECT = Path(__file__).parents[3]
@@ -52,18 +50,6 @@ def test_pages_need_nothing_but_themselves_and_each_link_leads_to_its_place(plac
             assert not anchor or target.count(f' id="{anchor}"') == 1, link
 
 
-def test_a_section_that_is_old_says_so_in_its_heading_in_the_index_and_on_its_page(place):
-    """`drawn.OLD` is; by hand: what a reader must see wherever the finding stands."""
-    page = (place / WITH_STUDIES / "report.html").read_text(encoding="utf-8")
-    old = [words for words in re.findall("<h2>(.*?)</h2>", page, re.DOTALL) if "(older than the code)" in words]
-    assert len(old) == 1 and old[0].startswith("What matters more than the engine")
-    index = re.search(r'<nav aria-label="Contents">(.*?)</nav>', page, re.DOTALL)[1]
-    links = dict(re.findall(r'<a href="#([\w-]+)">(.*?)</a>', index, re.DOTALL))
-    assert [anchor for anchor, words in links.items() if "(older than the code)" in words] == ["sensitivity"]
-    words = "this result is older than the code: computed on another day."
-    assert words in page and words in (place / WITH_STUDIES / "pages/sensitivity.html").read_text(encoding="utf-8")
-
-
 def test_outside_the_range_no_engine_is_recommended(tmp_path):
     file = tmp_path / runs.SCENES
     content = json.loads((ROWS / WITH_STUDIES / runs.SCENES).read_text(encoding="utf-8"))
@@ -86,19 +72,14 @@ def test_a_report_of_all_engines_says_what_its_result_file_says(tmp_path):
     result = read_result(tmp_path / runs.SCENES)
     page = (tmp_path / "pages/runs.html").read_text(encoding="utf-8")
     for name in runs.CARYATID:
-        rows = [row for row in result.rows if row["scene"] == name]
+        rows, own = where(result.rows, scene=name), simulate(load_scene(name))
         assert [row["engine"] for row in rows] == ["analytic", *installed_engines()]
-        assert (rows[0]["outcome"], rows[0]["peak_tilt_ratio"]) == (
-            simulate(load_scene(name)).outcome,
-            simulate(load_scene(name)).peak_tilt_ratio,
-        )
+        assert (rows[0]["outcome"], rows[0]["peak_tilt_ratio"]) == (own.outcome, own.peak_tilt_ratio)
         table = page[page.index(f"{result.settings['scenes'][name]['name']}, until decided") :]
         cells = re.findall("<td[^>]*>(.*?)</td>", re.search("peak [|]φ[|]/γ.*?</tr>", table, re.DOTALL)[0])
         assert [number_in(cell) for cell in cells] == pytest.approx([row["peak_tilt_ratio"] for row in rows], rel=1e-3)
-    history = simulate(load_scene("caryatid-isolated")).history
-    for column in history.COLUMNS:
-        kept = result.arrays[f"caryatid-isolated/analytic/{column}"]
-        np.testing.assert_array_equal(kept, getattr(history, column))
+        for column in own.history.COLUMNS:
+            np.testing.assert_array_equal(result.arrays[f"{name}/analytic/{column}"], getattr(own.history, column))
 
 
 def test_missing_engines_are_named_with_their_remedy(tmp_path, monkeypatch):
@@ -160,20 +141,6 @@ def test_differences_are_those_of_all_samples():
     assert np.abs(apart["apart/tilt"]).max() == pytest.approx(1e-3, rel=1e-9)
     assert apart["apart/time"][np.abs(apart["apart/tilt"]).argmax()] == time[54_321]
     assert (apart["apart/base_displacement"] == -2e-3).all()
-
-
-@pytest.mark.long
-@pytest.mark.timeout(1400)
-def test_no_process_of_a_report_on_a_million_samples_takes_800_mb(tmp_path):
-    motion, time = synthetic_motion(), 2e-4 * np.arange(1_000_000)
-    shaking = 0.7 * motion.acceleration(time % motion.end)  # rocks for 200 s and does not overturn
-    np.savetxt(tmp_path / "long.txt", np.column_stack([time, shaking]), fmt="%.6f")
-    command = [sys.executable, "-m", "comparisons", "report", "--record", tmp_path / "long.txt", "--units", "m/s2"]
-    subprocess.run([*command, "--output", tmp_path / "report"], check=True)
-    assert resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss < 800e3
-    result = read_result(tmp_path / "report" / runs.SCENES)
-    assert {row["outcome"] for row in result.rows if row["scene"] == "caryatid-rigid"} == {"rocks"}
-    assert max(len(values) for values in result.arrays.values()) <= histories.MOST_SHOWN
 
 
 def test_errors_of_one_impact_in_steps_are_those_of_the_time_stepping():

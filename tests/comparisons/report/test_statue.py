@@ -70,31 +70,41 @@ def test_a_copy_reversed_or_free_standing_is_a_run_of_its_own(quick, tmp_path):
     assert (own["slip"], own["slip_end"]) == (slid.peak, slid.end)
 
 
-TITLES = {  # worst of each record, the scene's own motion and, where it is not that of the first record, its outcome
+TITLES = {  # outcomes: of each record, the scene's own motion first; whether that run was decided
     ("stands", "stands"): "does not lift under any of 2 records, its own among them",
     ("rocks", "overturns"): "overturns under 1 of 2 records; under its own motion it rocks and stays upright",
     ("overturns", "overturns", "rocks"): "overturns under 2 of 3 records, its own among them",
     ("stands", "failed", "rocks"): "leaves the model under 1 of 3 records; under its own motion it does not lift",
+    ("rocks",): "rocks and stays upright under 1 of 1 record; without a motion it rocks and stays upright",
 }
 
 
 @pytest.mark.parametrize("outcomes, words", TITLES.items())
 def test_the_title_is_the_worst_of_all_records_and_what_the_scenes_own_motion_does(outcomes, words):
+    own = {"outcome": outcomes[0], "decided": True}
     rows = [{"record": k, "outcome": one} for k, one in enumerate(outcomes)]
-    found = {"own": {"outcome": outcomes[0], "decided": True}, "motions": rows}
-    assert _worst(found, {"motion": "own"}) == words
-
-
-def test_the_title_without_other_motions_and_where_the_scene_has_none_or_is_cut():
-    rocks = {"outcome": "rocks", "decided": True}
-    assert _worst({"own": rocks, "motions": []}, {"motion": "own"}) == "rocks and stays upright"
-    words = _worst({"own": rocks, "motions": [{"record": "r", "outcome": "rocks"}]}, {"motion": None})
-    assert words == "rocks and stays upright under 1 of 1 record; without a motion it rocks and stays upright"
-    words = _worst(
-        {"own": {"outcome": "stands", "decided": False}, "motions": [{"record": "r", "outcome": "stands"}]},
-        {"motion": "own"},
+    assert _worst({"own": own, "motions": rows}, {"motion": "own" if outcomes[1:] else None}) == words
+    cut = _worst({"own": own | {"decided": False}, "motions": rows[1:]}, {"motion": "own"})
+    assert cut.endswith("(not decided when the run ended)")
+    assert _worst({"own": {"outcome": "rocks", "decided": True}, "motions": []}, {"motion": "own"}) == (
+        "rocks and stays upright"
     )
-    assert words.endswith("; under its own motion it does not lift (not decided when the run ended)")
+
+
+def test_the_engines_that_agree_and_what_the_others_have_other():
+    fell = {"quantity": "outcome", "here": "overturns", "model": "rocks", "limit": None}
+    known = {"analytic": COMPARED, "one": COMPARED, "near": EDGE, "two": EDGE, "three": "N <= 0", "four": "no"}
+    rows = [
+        {"engine": name, "failure": None, "comparable": how, "differences": [fell] * (name == "two")}
+        for name, how in known.items()
+    ]
+    agree, two, *others = _engines([*rows, {**rows[-1], "engine": "five", "failure": {"reason": "it gave up"}}]).split(
+        "; "
+    )
+    assert agree == "one and near agree with the analytic model"
+    assert two.startswith("two differs from the analytic model: the block overturns")
+    three = "three cannot be compared with the analytic model: N <= 0"
+    assert others == [three, "four was not compared", "five failed: it gave up."]
 
 
 def test_the_scenes_own_motion_counts_among_the_records_and_once(quick, tmp_path):
@@ -104,27 +114,6 @@ def test_the_scenes_own_motion_counts_among_the_records_and_once(quick, tmp_path
         rows = _by_record(statue_of(scene, motions)["motions"])
         assert len(rows) == count
         assert [row["overturns"] for row in rows if row["record"] != "other"] == [1] * bool(count)
-
-
-def test_the_engines_that_agree_and_what_the_others_have_other():
-    fell = {"quantity": "outcome", "here": "overturns", "model": "rocks", "limit": None}
-    kinds = {
-        "analytic": (COMPARED, []),
-        "one": (COMPARED, []),
-        "near": (EDGE, []),
-        "two": (EDGE, [fell]),
-        "three": ("N <= 0", []),
-        "four": ("no", []),
-    }
-    rows = [
-        {"engine": name, "failure": None, "comparable": how, "differences": off} for name, (how, off) in kinds.items()
-    ]
-    rows.append({**rows[-1], "engine": "five", "failure": {"reason": "it gave up"}})
-    agree, two, *others = _engines(rows).split("; ")
-    assert agree == "one and near agree with the analytic model"
-    assert two.startswith("two differs from the analytic model: the block overturns")
-    three = "three cannot be compared with the analytic model: N <= 0"
-    assert others == [three, "four was not compared", "five failed: it gave up."]
 
 
 def test_one_that_rocks_gets_its_own_restitution_and_replaces_an_older_report(quick, tmp_path):

@@ -2,7 +2,6 @@
 
 import json
 import re
-from dataclasses import replace
 from xml.etree import ElementTree
 
 import numpy as np
@@ -14,9 +13,7 @@ from sliding_scenes import SAVED
 from analytic import Start, load_scene, simulate
 from analytic.layout import MODES
 from comparisons.showing import modes
-from comparisons.showing.charts import HAIR, INK, SHAPES, STYLE, TONES, Axis, Chart, figure, key_of, log_axis, marker
-from comparisons.showing.figures import lines, regions
-from comparisons.showing.parts import Column
+from comparisons.showing.charts import INK, SHAPES, STYLE, TONES, Axis, Chart, log_axis, marker
 from comparisons.showing.plots import draw_histories, style
 from engines import ENGINES
 
@@ -76,54 +73,9 @@ def test_ticks_lie_between_the_ends_and_say_their_values():
     assert log_axis("e", [3e-9, 0.0, 2e-4]).low == 1e-9
 
 
-def test_every_solver_has_a_marker_of_its_own_and_its_name_on_what_it_drew():
-    assert {marker(name) for name in ENGINES} <= set(SHAPES) and len({marker(name) for name in ENGINES}) == len(ENGINES)
-    chart = Chart(LINEAR, LINEAR, "Two.")
-    for name in ("exudyn", "analytic"):
-        chart.line([0, 1], [0, 1], name)
-        chart.dots([0, 1], [0, 1], name, says=["first", "second < third"])
-    root = element(chart)
-    assert {part.get("data-who") for part in root.iter("g")} - {None} == {"exudyn", "analytic"}
-    told = [part.get("data-says") for part in root.iter("path") if part.get("data-says")]
-    assert told == 2 * ["first", "second < third"]
-    assert ENGINES["exudyn"].colour in chart.svg() and ENGINES["exudyn"].colour in key_of("exudyn")
-
-
-X, Y = Column("slenderness γ [rad]", "x", digits=None), Column("error [-]", "y")
-FIRST, SECOND = list(ENGINES)[:2]
-
-
-def row(engine, variant, x, y, ground="rigid"):
-    return {"engine": engine, "variant": variant, "x": x, "y": y, "ground": ground}
-
-
-ROWS = [
-    row(FIRST, "fine", 0.1, 1e-5),
-    row(FIRST, "fine", 0.2, 1e-4),
-    row(FIRST, "coarse", 0.1, 1e-2),
-    row(FIRST, "coarse", 0.2, None),
-    row(SECOND, "fine", 0.2, 1e-3, "sliding"),
-    row(SECOND, "fine", 0.3, 0.0, "sliding"),
-]
-
-
-def panels(figure):
-    return list(ElementTree.fromstring(f"<all>{figure.svg.decode()}</all>"))
-
-
 def place_of(mark):
     """(x, y) of a mark."""
     return tuple(map(float, re.findall(r"[\d.]+", mark.get("transform"))[:2]))
-
-
-def test_marks_stand_on_their_line_and_tell_their_values():
-    (panel,) = panels(lines(ROWS[:2], X, Y, "Errors.", log="y"))
-    marks = [part for part in panel.iter("path") if part.get("data-says")]
-    assert [one.get("data-says") for one in marks] == [
-        f"{FIRST}, fine: 1.0·10⁻⁵ at 0.1",
-        f"{FIRST}, fine: 1.0·10⁻⁴ at 0.2",
-    ]
-    assert [place_of(one) for one in marks] == points(*drawn_lines(panel))
 
 
 def test_marks_beyond_the_panel_stand_at_its_frame_with_an_arrowhead_that_points_there():
@@ -154,24 +106,6 @@ def test_lines_and_shades_can_be_told_from_the_page(scheme):
         assert contrast(mixed, colours["paper"]) >= 3, tone
     assert contrast(colours["faint"], colours["paper"]) >= 3
     assert min(contrast(colours["ink"], colours[f"s{shade}"]) for shade in range(6)) >= 4.5
-
-
-def test_a_map_of_many_cells_draws_a_rectangle_for_each_run_of_equal_ones():
-    places, kinds = np.array([[0, 1, 1], [1, 0, 1]]), {"stands": "", "overturns": "falls"}
-    charts, keys = regions("x [m]", "y [s]", np.array([1.0, 2.0]), np.array([10.0, 20.0, 30.0]), {"": places}, kinds)
-    made = figure(charts, "Who overturns.", keys, keys)
-    (panel,) = panels(made)
-    read = json.loads(panel.get("data-read"))
-    (drawn,) = [group for group in panel.iter("g") if group.get("data-who")]
-    sides = []
-    for rect in drawn.iter("rect"):
-        x, y, width, height = (float(rect.get(key)) for key in ("x", "y", "width", "height"))
-        ends = [value(read["x"], at) for at in (x, x + width - HAIR)]
-        sides.append([*ends, *(value(read["y"], at) for at in (y + height - HAIR, y))])
-        assert rect.get("class") == "falls"
-    np.testing.assert_allclose(sides, [(0.5, 1.5, 15, 35), (1.5, 2.5, 5, 15), (1.5, 2.5, 25, 35)], atol=0.02)
-    assert drawn.get("data-who") == "overturns" and made.solvers == ("stands", "overturns")
-    assert "falls" in made.keys["overturns"] and panel.get("aria-label").startswith("stands, overturns")
 
 
 def test_every_mode_of_the_march_is_there_once_and_what_ends_it():
@@ -216,22 +150,19 @@ def test_what_lies_beyond_the_horizon_is_shaded_and_overturning_does_not_flatten
     assert "analytic, kernel: overturns" in labels and axis.get_ylim()[1] == 2.0
 
 
-def test_solvers_differ_in_colour_and_in_dashes():
+def test_solvers_differ_in_marker_colour_and_dashes():
     """Those of the model's second implementations too, which stand beside the engines."""
+    assert {marker(name) for name in ENGINES} <= set(SHAPES) and len({marker(name) for name in ENGINES}) == len(ENGINES)
     looks = [style(solver) for solver in ("analytic", *ENGINES, "time-stepping")]
     assert len({look["color"] for look in looks}) == len({look["linestyle"] for look in looks}) == len(looks)
 
 
 def test_slip_has_a_panel_of_its_own_where_the_block_slides_and_when_is_shaded():
     response = simulate(SAVED)
-    told = [response, replace(response, engine="pybullet", sliding=replace(response.sliding, modes=()))]
-    axes = {axis.get_ylabel().split("\n")[0]: axis for axis in draw_histories(SAVED, told).axes}
-    slip = axes["slip of the block"]
-    assert len(slip.lines) == 1 + len(told)
+    (slip,) = (axis for axis in draw_histories(SAVED, [response]).axes if axis.get_ylabel().startswith("slip of"))
     np.testing.assert_array_equal(slip.lines[1].get_ydata(), response.history.slip)
     (shaded,) = slip.patches
-    begin, end = (time for time, mode in response.sliding.modes[2:4])
-    assert [shaded.get_x(), shaded.get_x() + shaded.get_width()] == pytest.approx([begin, end])
-    assert [text.get_text() for text in slip.get_legend().get_texts()] == ["slides"]
+    ends = [time for time, _ in response.sliding.modes[2:4]]
+    assert [shaded.get_x(), shaded.get_x() + shaded.get_width()] == pytest.approx(ends)
     still = SAVED.with_(motion=None, start=Start(tilt=0.1))
     assert len(draw_histories(still, [simulate(still)]).axes) == 1

@@ -120,27 +120,6 @@ def test_a_shake_table_is_counted_away_from_boundaries_too_but_not_by_way():
     assert (one.missed, one.added, one.failed, one.untold, one.left_differing) == (4, 2, 2, 0, 0)
 
 
-def test_what_tuned_engines_change_in_all_tests_is_said_with_where_it_lies():
-    plain = table_row(variant="w", tier="defaults", only_a=50)
-    assert shaken(table_row(), table_row(engine="f", failed=0, on_edge=1), plain).says["near"] == (
-        "On the shake table, with these runs, tuned engines miss 8 overturnings, add 4 and fail 2 times in 200 runs. "
-        "Of these 14, 6 are in the 40 runs near a boundary."
-    )
-    assert "near" not in shaken(plain).says
-
-
-def test_real_blocks_name_the_strongest_rivals_and_engines_stand_beside_the_model_fitted_alike():
-    engines = [table_row(specimen=name, right=right) for name, right in (("one", 44), ("two", None))]
-    assert shaken(*engines, table_row()).says["real"] == (
-        "on a shake table the model is right in 46 and 45 (92 % and 90 %) of 50 tests (one and two). It is not shown "
-        "to be better than a curve in PGA and PGV: it is right in 3 more of 100 (95 % interval −1 to 7). The curve is "
-        "right in 44 and 44 (88 % and 88 %), one threshold of PGV in 43 and 42 (86 % and 84 %) and the more frequent "
-        "outcome in 30 and 35 (60 % and 70 %). All of these are held out by record. Engines go by another rule, one "
-        "slenderness fitted to all tests. By this rule 45 and 44 (the model) and 44 and – (e, tuned) are right. "
-        "Restitution was not measured."
-    )
-
-
 @pytest.mark.parametrize(
     "more, words",
     [

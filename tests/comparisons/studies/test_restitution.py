@@ -4,27 +4,33 @@ import math
 
 import numpy as np
 import pytest
+from answered import answered, by_model
 from page_numbers import number_in
 
 from analytic import simulate
 from analytic.rocking import restitution
-from comparisons.report.detail import write_study
 from comparisons.running.by_solver import read
-from comparisons.running.provenance import RESULTS
+from comparisons.running.plan import Request
+from comparisons.running.provenance import Result
 from comparisons.running.study import compute
-from comparisons.showing.parts import RESTITUTION, Figure, Table, number, where
+from comparisons.running.sweep import Row
+from comparisons.showing.parts import where
 from comparisons.studies import get_study
 from comparisons.studies.restitution.cases import (
     CARYATID_BASE,
     FULL,
+    GROUNDS,
+    IMPACT_SECONDS,
     IMPACTS,
     LAWS,
     Grid,
     bearing_cases,
     free_scene,
     grid_cases,
+    impact_scene,
 )
-from comparisons.studies.restitution.study import damped_error, friction_needed
+from comparisons.studies.restitution.contact import contact
+from comparisons.studies.restitution.study import damped_error, friction_needed, plan
 from engines import get_engine
 
 STUDY = get_study("restitution")
@@ -106,54 +112,40 @@ def test_a_small_study_finds_what_is_known(small):
     assert one("bearings", variant="impact-aware", factor="excitation", of="pulse")["runs"] == 2
     damped = one("flight damping", level=1e-3)
     assert damped["measured"] == pytest.approx(damped["predicted"], rel=0.15)
+    for judgement in STUDY.judgements(result):  # no worst error is less than the root mean square beside it
+        worst = [number_in(mark.note.partition("worst ")[2].partition(";")[0]) for mark in judgement.marks.values()]
+        rms = [mark.value for mark in judgement.marks.values()]
+        assert len(rms) >= 2 and all(most > 0.97 * mean for most, mean in zip(worst, rms, strict=True))
     large = one("experiment", experiment="size", value=4.0)
     assert large["jump_8"] < 1e-3 and large["jump_8_printed"] > 0.5
     assert all(row["cpu_per_second"] > 0 for row in result.rows if row["part"] == "cell")
 
 
-@pytest.mark.slow
-def test_the_page_comes_from_the_result_alone(small):
-    page = STUDY.page(read(small))
-    opening, whole = page.opening(), page.whole()
-    assert whole.parts[:2] == opening.parts and list(map(type, opening.parts)) == [Figure, Table]
-    aware, first = "pybullet, impact-aware", "pybullet, first-script"
-    ratings = {row[0]: row[1] for row in opening.tables[0].rows}
-    assert ratings[aware] == "trusted" and ratings[first] == "not to be trusted"
-    (variants,) = [table for table in whole.tables if table.caption.startswith("All variants")]
-    settings = {row[0]: row[3] for row in variants.rows}
-    assert settings[first] == "step = 0.00417 s"
-    # first; both maps; on bearings; levels and cost; why; step phase; damping; eq. (8): no setting to change alone
-    assert len(whole.figures) == 9 and all(figure.alt and figure.caption for figure in whole.figures)
+@pytest.mark.parametrize("ground", GROUNDS)
+def test_the_scene_of_one_impact_holds_it_and_the_swing_after_it(ground):
+    run = simulate(impact_scene(ground))
+    assert run.impacts[0].time < IMPACT_SECONDS - 0.2 and run.end.time == pytest.approx(IMPACT_SECONDS)
 
 
-@pytest.mark.slow
-def test_no_worst_error_is_less_than_the_root_mean_square_beside_it(small):
-    """Both are of one measure, on rigid ground and on bearings."""
-    for judgement in STUDY.judgements(read(small)):
-        worst = [number_in(mark.note.partition("worst ")[2].partition(";")[0]) for mark in judgement.marks.values()]
-        rms = [mark.value for mark in judgement.marks.values()]
-        assert len(rms) >= 2 and all(most > 0.97 * mean for most, mean in zip(worst, rms, strict=True))
+def test_rows_of_one_impact_carry_the_diagnosis_or_the_failure():
+    def run(batch):
+        if batch.label != "one impact":
+            return by_model()(batch)
+        crash, cost = {"reason": "a crash"}, {"cpu_seconds": 0.1}
+        return [
+            Row(case, {} if k else {"error": 1.23456e-7}, crash if k else None, cost, False)
+            for k, case in enumerate(batch.cases)
+        ]
+
+    grid = Grid((0.2,), (None,), (0.6,), (), 4, ((0.25,), (1.0,), (2.0,)))
+    first, *others = where(answered(plan(Request(("pymunk",)), grid), run)[-1].rows, part="why")
+    assert (first["error"], first["failure"]) == (1.23456e-7, None) and all(row["failure"] for row in others)
+    assert {row["ground"] for row in (first, *others)} == {*GROUNDS}
 
 
-@pytest.mark.slow
-def test_its_own_page_needs_no_other_file(small, tmp_path):
-    file, _ = write_study(STUDY, small, tmp_path / "shown")
-    text = file.read_text()
-    assert file == tmp_path / "shown" / "restitution.html" and "<style>" in text and "pybullet, impact-aware" in text
-    assert not [link for link in ("src=", "href=", "<link", "@import") if link in text]
-
-
-def test_the_error_of_the_first_screen_is_the_one_by_states_in_the_section():
-    """Of both grounds the worse, as the stored rows have it; the other measure has its own name and column."""
-    result, study = read(RESULTS / "restitution"), get_study("restitution")
-    opening = study.page(result).opening()
-    (table,) = opening.tables
-    marks = next(one for one in study.judgements(result) if one.key == RESTITUTION).marks
-    assert "without slip" in opening.title and "by states" in opening.figures[0].caption
-    for row in table.rows:
-        cells, pair = dict(zip(table.columns, row, strict=True)), tuple(row[0].split(", "))
-        summaries = where(result.rows, scope="all", engine=pair[0], variant=pair[1])
-        for head, key in (("by states", "rms_state"), ("by swings", "rms")):
-            worst = max(one[key] for one in summaries)
-            assert cells[f"error of restitution {head}, rms [-]"] == number(worst, 2)
-        assert marks[pair].words.partition(" (")[0] == cells["error of restitution by states, rms [-]"]
+def test_what_cannot_be_told_of_one_impact_is_evidence():
+    silent = {"part": "why", "engine": "pybullet", "variant": "v", "ground": "rigid ground", "failure": None}
+    rows = [silent | {"why_not": "no corner is struck"}, silent | {"failure": {"reason": "a crash"}}]
+    settings = {"why": {"slenderness": 0.2, "start": 0.6, "least": 1e-3, "causes": {}}}
+    page = contact(Result("restitution", settings, rows, {}))
+    assert page.evidence == tuple(("pybullet, v, rigid ground", why) for why in ("no corner is struck", "a crash"))

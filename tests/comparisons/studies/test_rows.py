@@ -1,17 +1,27 @@
-"""Studies declare their rows: those stored are so, and a row that is not is named with column, value and remedy."""
+"""Studies declare their rows, and each column is explained; a row that is not so is named with its remedy."""
 
+import dataclasses
 import shutil
+from collections import Counter
 
 import pytest
-from answered import edit
+from answered import answered, by_model, edit
+from record_files import pairs
+from table_tests import published
 
+from comparisons.measuring.tolerances import TABLE
 from comparisons.running.by_solver import read, results_in
-from comparisons.running.provenance import RESULTS, ResultError, read_result, write_result
+from comparisons.running.cases import name_of
+from comparisons.running.plan import Request
+from comparisons.running.provenance import RESULTS, Result, ResultError, read_result, write_result
+from comparisons.running.sources import source_digests
 from comparisons.showing.parts import where
-from comparisons.studies import BUILT_IN, TOLERANCES, get_study
-from comparisons.studies.explained import TYPES, Explained
+from comparisons.studies import BUILT_IN, TOLERANCES, get_study, study_names
+from comparisons.studies.explained import SHARED, TYPES, Explained
 from comparisons.studies.rows import ROWS, _columns, read_study, wrong_with
-from comparisons.studies.vocabulary import columns_of
+from comparisons.studies.shake_table import campaign
+from comparisons.studies.vocabulary import OWN, columns_of
+from engines import installed_engines
 
 CELL = {**{"part": "order", "engine": "exudyn", "variant": "step", "ground": "rigid ground"}, "order": 2.0}
 
@@ -99,3 +109,56 @@ def test_a_wrong_row_is_named_by_its_file_and_its_place_there(tmp_path):
 def test_a_type_is_that_of_json():
     assert Explained("what").holds(1) and Explained("what").holds(1.5) and not Explained("what").holds(True)
     assert Explained("what", type="number or list").holds([]) and not Explained("what", type="flag").holds(1)
+
+
+# Of no stored result: an impact about which nothing can be determined.
+UNSEEN = {"restitution": {"why_not"}}
+FAILED = {"kind": "solver", "reason": "the solver gave up", "message": "no convergence"}
+UNSEEN_OF_ANY = {"exit_code", "time_limit"}  # of failures that no stored run had
+
+
+@pytest.fixture(scope="module")
+def columns(tmp_path_factory):
+    """{study: columns of its rows}; those of recorded motions and of a shake table are made up here, too."""
+    ask = Request(installed_engines()[:1], quick=True)
+    records = str(pairs(tmp_path_factory.mktemp("records"), 2))
+    recorded = answered(get_study("recorded").plan(ask, records=records), by_model(history=True))[-1].rows
+    last = get_study("shake-table").plan(Request(ask.engines), data=str(published(tmp_path_factory.mktemp("table"))))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(campaign, "GRID", 5)
+        shaken = answered(last, by_model(failure=lambda case: FAILED if case.solver != "analytic" else None))[-1].rows
+    found = {"recorded": set().union(*recorded), "shake-table": set().union(*shaken)}
+    for result in map(read, results_in(RESULTS)):
+        found.setdefault(result.kind, set()).update(*result.rows)
+    return found
+
+
+@pytest.mark.slow
+def test_every_column_is_explained_and_every_explained_one_is_a_column(columns):
+    assert {*BUILT_IN, TOLERANCES} == set(OWN) == columns.keys()
+    for kind, own in columns.items():
+        known = columns_of(kind)
+        assert own and own <= known.keys() and all(one.what and one.unit for one in known.values()), kind
+        assert OWN[kind].keys() - own == UNSEEN.get(kind, set()), kind
+    uses = Counter(column for found in columns.values() for column in found)
+    assert {column for column in SHARED if uses[column] < 2} == UNSEEN_OF_ANY  # else it is one study's own
+
+
+@pytest.mark.parametrize("name", BUILT_IN)
+def test_what_shows_is_no_part_of_what_a_result_depends_on(name):
+    behind = source_digests([name_of(get_study(name).plan)])
+    assert behind and not [module for module in behind if module.endswith(".page") or ".showing" in module]
+
+
+@pytest.mark.parametrize("found, bound, holds", [(0.1, 0.2, "yes"), (0.3, 0.2, "no"), (0.1, None, "no bound stated")])
+def test_a_tolerance_that_does_not_hold_is_said(found, bound, holds):
+    row = {"part": "tolerance", **dataclasses.replace(TABLE[0], bound=bound).result(found, None)}
+    page = get_study(TOLERANCES).page(Result(TOLERANCES, {}, [row], {}))
+    assert page.whole().tables[0].rows[0][7] == holds
+    assert ("1 of 1 do not hold" in page.title) == (holds == "no")
+
+
+def test_tolerances_are_no_study_and_who_asks_for_them_as_one_is_told_the_command(rocking, tmp_path):
+    status, out, err = rocking("study", "tolerances", "--output", tmp_path / "study")
+    assert status == 2 and "rocking verify --output DIR measures and writes it" in err
+    assert "tolerances" not in study_names() and not (tmp_path / "study").exists()

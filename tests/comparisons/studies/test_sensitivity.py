@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
-from answered import answered, by_runs, stored
+from answered import answered, by_runs
 from scipy.stats import norm
 
 from analytic import load_scene, simulate, synthetic_motion
 from analytic.bearing import BearingLaw
 from analytic.rocking import RockingModel
 from comparisons.ensembles.motions import with_vertical
-from comparisons.running.plan import Computed, Request
+from comparisons.running.plan import Request
 from comparisons.showing.parts import where
 from comparisons.studies import get_study
 from comparisons.studies.sensitivity.study import FASTER, RATIOS, SPREAD, changes
@@ -118,48 +118,3 @@ def test_outcomes_changed_by_vertical_motions_and_lost_contacts_are_those_of_sin
         )
         lifting = sum(run.min_normal_ratio <= 0 for run in runs)
         assert (row["runs"], row["outcomes_changed"], row["lifts_off"]) == (len(runs), changed, lifting)
-
-
-def made_up(change, changed, runs=100, engine="analytic", variant=""):
-    share = changed / runs
-    return {
-        **{"part": "change", "scene": "isolated", "engine": engine, "variant": variant, "change": change},
-        **{"outcomes_changed": changed, "to_overturning": 0, "runs": runs, "failed": 0, "p_value": 1.0},
-        **{"low": share / 2, "high": min(2 * share + 0.02, 1.0), "tilt": 0.1, "displacement": None},
-    }
-
-
-@pytest.fixture
-def page(found, tmp_path):
-    lost = dict.fromkeys(("outcomes_changed", "to_overturning", "low", "high", "p_value", "tilt", "displacement"))
-    rows = [
-        made_up("slenderness ±1 %", 4),
-        made_up("direction turned by 30°", 30),
-        made_up("vertical motion", 12),
-        made_up("size ±1 %", 2),
-        made_up(None, 1, engine="pybullet", variant="impact-aware"),
-        made_up(None, 25, engine="pybullet", variant="first-script"),
-        made_up(None, 0, engine="exudyn", variant="native-contact") | {"runs": 0, "failed": 100} | lost,
-        *(row for row in found.rows if row["part"] != "change"),
-    ]
-    settings = {**found.settings, "default_variants": {"pybullet": "impact-aware", "exudyn": "native-contact"}}
-    settings |= {"motions_of_engines": 60, "motions_of_other_variants": 10}
-    return STUDY.page(stored(tmp_path, "sensitivity", Computed(settings, rows)))
-
-
-def test_changes_and_engines_are_ranked_and_drawn_and_the_title_sets_the_first_against_the_engines_main_variants(page):
-    ranked, vertical = page.whole().tables
-    assert [row[0] for row in ranked.rows] == [
-        "motion rotated by 30°", "pybullet, first-script", "vertical motion", "slenderness ±1 %", "size ±1 %",
-        "pybullet, impact-aware", "exudyn, native-contact",
-    ]  # fmt: skip
-    assert ranked.rows[0][1:3] == ["30 % (15 % to 62 %)", "30 of 100"] and ranked.rows[-1][1] == "–"
-    assert "motion rotated by 30° changes 30 %" in page.title and "1.0 % (95 % upper bound 4.0 %)" in page.title
-    assert len(vertical.rows) == 1 + len(FASTER) * len(RATIOS)
-    (sentence,) = [text for text in page.lead if "pybullet, impact-aware" in text]
-    assert "2 of 4" in sentence and "4.0 %" in sentence  # lower ends above its upper one
-    assert "6.0 %" in page.how[0]  # Wilson's limit of 0 of 60
-
-    figure, over = page.whole().figures
-    assert figure.solvers == ("pybullet",) and figure.svg.decode().count('class="dot"') == 5
-    assert over.svg.decode().count("<rect") == len(FASTER) * len(RATIOS) + 6  # the scale's

@@ -1,26 +1,32 @@
 """The speed-error study: its errors against known ones, its boundary search, repetition and what is shown."""
 
-import dataclasses
+import itertools
 import math
 
 import numpy as np
 import pytest
+from answered import answered, by_runs
 
 from analytic import simulate
+from analytic.errors import SettingError
 from analytic.rocking import restitution
 from analytic.time_stepping import simulate_time_stepping
+from analytic.twin import METHODS as OFFERED
 from comparisons.measuring import models, scripts
 from comparisons.running.by_solver import read
 from comparisons.running.cases import Case, solver
+from comparisons.running.plan import Request
 from comparisons.running.provenance import Result
 from comparisons.running.study import compute
-from comparisons.showing.parts import COST, Figure, Table, short
+from comparisons.showing.parts import where
 from comparisons.studies import get_study
+from comparisons.studies.speed_error import integrators
 from comparisons.studies.speed_error.cases import NEEDED, entries, margin, problem_trials, searched, trials
-from comparisons.studies.speed_error.costs import advice, keeping, level_costs, levels_run, passing
-from comparisons.studies.speed_error.page import LEVELS, fit
-from comparisons.studies.speed_error.study import errors, measure
-from engines import ENGINES, get_engine
+from comparisons.studies.speed_error.costs import APART, KERNEL, advice, keeping, level_costs, levels_run, passing
+from comparisons.studies.speed_error.integrators import METHODS, PROBLEMS, run_of
+from comparisons.studies.speed_error.page import fit
+from comparisons.studies.speed_error.study import TICK, errors, measure, plan
+from engines import get_engine
 
 STUDY = get_study("speed-error")
 
@@ -163,21 +169,6 @@ def result_of(*rows):
     return Result(STUDY.name, {**settings, "variants": []}, list(rows), {"machine": machine, "commit": None})
 
 
-def cells(result, head):
-    """The rows of the one table of the page that has this column, without its first heads' names."""
-    (found,) = [part for part in STUDY.page(result).whole().tables if head in part.columns]
-    return [dict(zip(found.columns, line, strict=True)) for line in found.rows]
-
-
-def test_a_level_that_failed_or_lost_impacts_has_no_error():
-    rows = levels_run(
-        result_of(row("a", 1, 1e-5), row("a", 2, 1e-5, lost=2), row("a", 3, 1e-5, failure={"reason": "x"}))
-    )
-    assert [one["error"] for one in rows] == [1e-5, None, None] and passing(rows, 1e-3) == {}
-    (counted,) = cells(result_of(*rows), "failed [-]")
-    assert (counted["levels [-]"], counted["failed [-]"], counted["impacts missed [-]"]) == ("3", "1", "1")
-
-
 @pytest.mark.parametrize(
     "found, failed, chosen",
     [
@@ -194,29 +185,24 @@ def test_the_cheapest_setting_is_one_that_no_finer_one_contradicts(found, failed
     assert levels == ([] if chosen is None else [10.0**-chosen])
 
 
-def test_solvers_come_cheapest_first_by_what_they_need():
-    rows = [row("a", 3.0, 1e-2), row("a", 5.0, 1e-5), row("b", 4.0, 1e-4), row("c", 1e-3, 1e-9, model="more")]
-    result = result_of(*rows)
-    found = passing(levels_run(result)[:3], 1e-2)
-    assert {name: one["cpu_seconds"] for name, one in found.items()} == {"exudyn, a": 3.0, "exudyn, b": 4.0}
-    costs = {line["solver"]: line["≤ 0.001"].split(" ")[0] for line in cells(result, "≤ 0.001")}
-    assert costs == {"exudyn, a": "5000", "exudyn, b": "4000"} and [*found] == [*costs] == ["exudyn, a", "exudyn, b"]
+def test_a_level_that_failed_or_lost_impacts_has_no_error():
+    lost, failed = row("a", 2, 1e-5, lost=2), row("a", 3, 1e-5, failure={"reason": "x"})
+    rows = levels_run(result_of(row("a", 1, 1e-5), lost, failed))
+    assert [one["error"] for one in rows] == [1e-5, None, None] and passing(rows, 1e-3) == {}
 
 
-def test_observed_order_of_a_second_order_method():
-    rows = [row("a", 1.0, 3 * step**2, level=step) for step in (1e-1, 1e-2, 1e-3)]
-    assert cells(result_of(*rows, row("a", 1.0, 1e-15, level=1e-6)), "a scene") == [
-        {"solver": "exudyn, a", "a scene": "2.00 ± 0.00"}
-    ]
+def test_solvers_come_cheapest_first():
+    rows = levels_run(result_of(row("a", 3.0, 1e-2), row("a", 5.0, 1e-5), row("b", 4.0, 1e-4)))
+    for error, costs in ((1e-2, {"exudyn, a": 3.0, "exudyn, b": 4.0}), (1e-3, {"exudyn, b": 4.0, "exudyn, a": 5.0})):
+        found = passing(rows, error)
+        assert {name: one["cpu_seconds"] for name, one in found.items()} == costs and [*found] == [*costs]
 
 
 def test_more_than_needed_stands_beside_what_is_needed():
     rows = [row("a", 2.0, 1e-4), row("a", 6.0, 1e-2, model="more", lost=1), row("a", 3.0, 1e-4, law="bouc-wen")]
-    (more,) = cells(result_of(*rows), "modelled")
-    assert (more["CPU time ratio [-]"], more["error with more"]) == ("3.00", "0.010 (missed: 1)")
-    assert more["error of the model needed"] == "1.0·10⁻⁴"
-    (law,) = cells(result_of(*rows), "peak displacement changed by")
-    assert (law["CPU time ratio, median [-]"], law["peak displacement changed by"]) == ("1.50", "1.0 %")
+    more, law = (table.rows for table in STUDY.page(result_of(*rows)).whole().tables[-2:])
+    assert more == [["more", "exudyn, a", "step 0.001", "a scene", "3.00", "1.0·10⁻⁴", "0.010 (missed: 1)"]]
+    assert [one[2:6] for one in law] == [["1.50", "1.50", "1.50", "1.0 %"]]  # the ratio's median and range
 
 
 @pytest.mark.parametrize("error, cost", [(1e-2, 2.0), (1e-3, 8.0), (1e-4, 8.0)])
@@ -227,11 +213,8 @@ def test_a_cost_at_an_error_is_that_of_the_level_that_keeps_it(error, cost):
 
 
 def test_a_cost_is_that_of_the_round_that_took_least():
-    disturbed = row("a", 3.0, 1e-3, cpu_low=2.0, cpu_per_second=0.3, cpu_per_step=None)
-    failed = {key: value for key, value in row("b", 1.0, 1e-3).items() if not key.startswith("cpu")}
-    one, other = levels_run(result_of(disturbed, failed))
+    (one,) = levels_run(result_of(row("a", 3.0, 1e-3, cpu_low=2.0, cpu_per_second=0.3, cpu_per_step=None)))
     assert (one["cpu_seconds"], one["cpu_per_second"]) == (2.0, pytest.approx(0.2))
-    assert not [key for key in other if key.startswith("cpu")]
 
 
 def test_no_cost_is_told_where_a_finer_level_contradicts():
@@ -262,20 +245,17 @@ def costly(**finest):
     return result
 
 
-def test_one_cost_stands_in_the_first_table_the_title_and_the_first_screen():
-    """At an error of .001: that of the level with .0005, 200 s, over the model's 1 s; in the recommendation too."""
-    result = costly()
-    (judgement,) = STUDY.judgements(result)
-    mark = judgement.marks["exudyn", "compliant-corners"]
-    assert (judgement.key, judgement.rates, mark.value) == (COST, False, 200.0)
-    glance, title = STUDY.glance(result), STUDY.page(result).title
-    assert mark.words == "200 ×" and "200 (exudyn) times" in title and "take 200 times as long" in glance.says["cost"]
-    assert "2·10⁵ ms (exudyn)" in glance.says["cost"].replace("2.0", "2")
+def test_costs_are_those_of_the_level_over_the_models():
+    """At an error of .001: that of the level with .0005, 200 s, over the model's 1 s."""
+    result, pair = costly(), ("exudyn", "compliant-corners")
+    assert STUDY.judgements(result)[0].marks[pair].value == 200.0
+    glance = STUDY.glance(result)
     assert [one.cost for one in glance.advice if one.accuracy == 1e-3] == [200.0]
-    assert [(curve.who, len(curve.points)) for curve in glance.curves] == [
-        ("analytic, kernel", 1),
-        ("exudyn, compliant-corners", 2),
-    ]
+    assert [(curve.who, len(curve.points)) for curve in glance.curves] == [(KERNEL, 1), (", ".join(pair), 2)]
+    result.provenance["engines"] = {"exudyn": result.provenance | {"machine": {"processor": "another"}}}
+    mark = STUDY.judgements(result)[0].marks[pair]
+    assert (mark.words, mark.value) == (APART, None) and "on another processor" in mark.note
+    assert "cost" not in STUDY.glance(result).says and [one.engine for one in advice(result, 1e-3)] == ["exudyn"]
 
 
 def test_a_level_is_recommended_if_it_keeps_peak_tilt_and_boundary():
@@ -286,6 +266,21 @@ def test_a_level_is_recommended_if_it_keeps_peak_tilt_and_boundary():
     first, second, third = STUDY.glance(costly()).advice
     assert (first.engine, second.engine, third.engine) == ("exudyn", "exudyn", "")
     assert first.command == "rocking run SCENE --engine exudyn --set step=0.001"  # the main variant has no name
+
+
+@pytest.mark.parametrize("cost, named", [(280.0, ["exudyn", "pybullet"]), (330.0, ["exudyn"])])
+def test_engines_that_cost_the_same_are_recommended_together(cost, named):
+    """Medians are one and a half times the least: costs nearer than that are not told apart."""
+    result = costly()
+    other = {"engine": "pybullet", "variant": "impact-aware"}
+    paid = other | {"cpu_seconds": cost, "cpu_per_second": cost}
+    result.rows.extend([line | paid for line in result.rows if (line["engine"], line["level"]) == ("exudyn", 1e-3)])
+    for line in result.rows:
+        line["cpu_low"] = line["cpu_seconds"] / 1.5
+    result.settings["variants"].append(result.settings["variants"][0] | other)
+    found = advice(result, 1e-3)
+    assert [one.engine for one in found] == named and found[0].cost == pytest.approx(200 / 1.5)
+    assert ("so these are the same" in STUDY.glance(result).says["cost"]) == (len(named) == 2)
 
 
 def test_what_a_recommended_level_gives_at_a_boundary_is_told_though_it_is_not_judged():
@@ -299,87 +294,20 @@ def test_what_a_recommended_level_gives_at_a_boundary_is_told_though_it_is_not_j
     assert {row["measure"] for row in levels_run(result)} == {"boundary_shift", "restitution", "peak_tilt"}
 
 
-@pytest.mark.parametrize("cost, named", [(280.0, ["exudyn", "pybullet"]), (330.0, ["exudyn"])])
-def test_engines_that_cost_the_same_are_recommended_together(cost, named):
-    """Medians are one and a half times the least: costs nearer than that are not told apart."""
-    result = costly()
-    mine = [line for line in result.rows if line["engine"] == "exudyn" and line["level"] == 1e-3]
-    other = {"engine": "pybullet", "variant": "impact-aware", "cpu_seconds": cost, "cpu_per_second": cost}
-    result.rows.extend([line | other for line in mine])
-    for line in result.rows:
-        line["cpu_low"] = line["cpu_seconds"] / 1.5
-    (known,) = result.settings["variants"]
-    result.settings["variants"].append(known | {"engine": "pybullet", "variant": "impact-aware"})
-    found = advice(result, 1e-3)
-    assert [one.engine for one in found] == named and found[0].cost == pytest.approx(200 / 1.5)
-    assert ("so these are the same" in STUDY.glance(result).says["cost"]) == (len(named) == 2)
-
-
-@pytest.mark.parametrize(
-    "changed, why",
-    [({"machine": {"processor": "another"}}, "on another processor"), ({"commit": 40 * "1"}, "of another commit")],
-)
-def test_costs_of_another_processor_or_commit_give_no_ratio(changed, why):
-    result = costly()
-    result.provenance["engines"] = {"exudyn": result.provenance | changed}
-    page, (judgement,) = STUDY.page(result), STUDY.judgements(result)
-    mark = judgement.marks["exudyn", "compliant-corners"]
-    assert (mark.words, mark.value) == ("timed apart", None) and why in mark.note and why in page.lead[0]
-    assert page.title.endswith("is reached by engines timed apart")
-    (cell,) = [row[1] for part in page.first if isinstance(part, Table) for row in part.rows if "exudyn" in row[0]]
-    assert "timed apart" in cell and "×" not in cell
-    glance = STUDY.glance(result)
-    assert "cost" not in glance.says and [curve.name for curve in glance.curves][1:] == ["exudyn, tuned (timed apart)"]
-    assert [one.engine for one in glance.advice] == ["exudyn", "exudyn", ""]  # its level keeps the error all the same
-
-
-def test_a_script_has_its_own_cost_and_error():
-    result = costly()
-    written = {
-        "variant": scripts.NAME,
-        "parameter": None,
-        "level": None,
-        "errors": dict.fromkeys(("peak_tilt", "boundary_shift"), 4e-4),
-    }
-    finest = [line for line in result.rows if line["engine"] == "exudyn" and line["level"] == 1e-3]
-    result.rows.extend(
-        [line | written | dict.fromkeys(("cpu_seconds", "cpu_low", "cpu_per_second"), 3.0) for line in finest]
-    )
-    assert "one level: 3000 ms with an error of 0.040 % (exudyn)." in STUDY.glance(result).says["cost"]
-
-
-@pytest.fixture
-def studied(tmp_path_factory, near):
-    """The results of a small study, made twice."""
-
-    def keep(entry):
-        name = f"{entry.engine} {entry.variant}".strip()
-        return name in ("analytic kernel", "time-stepping", "pybullet fixed-step")
-
-    given = dict(quick=True, progress=False, repeats=2, scenes=[near], keep=keep)
-    folders = (tmp_path_factory.mktemp("speed-error") for _ in range(2))
-    return [read(file) for folder in folders for file in compute(STUDY, folder, engines=("pybullet",), **given)]
-
-
 @pytest.mark.slow
-def test_a_study_repeats_bit_for_bit_and_the_page_comes_from_its_result_alone(studied):
-    result, again = studied
-    assert result.rows and all(row["repeatable"] and row["timings"] == 2 for row in result.rows)
-    assert [row["errors"] for row in result.rows] == [row["errors"] for row in again.rows]
-    page = STUDY.page(result)
-    opening, whole = page.opening(), page.whole()
-    assert whole.parts[:2] == opening.parts and list(map(type, opening.parts)) == [Figure, Table]
-    heads = tuple(f"≤ {short(level)}" for level in LEVELS)
-    costs, _ = (part for part in whole.tables if part.columns[1:] == heads)  # of the boundary, and of the peak tilt
-    kernel = next(line for line in costs.rows if line[0] == "analytic, kernel")
-    assert len(kernel) == 1 + len(LEVELS) and all("(tolerance" in cell for cell in kernel[1:])
-    assert any(line[0] == "analytic, kernel" and line[1] for line in opening.tables[0].rows)
-    assert f"{len(result.rows)} of {len(result.rows)} levels" in " ".join(page.how)
-    slower = dataclasses.replace(result, rows=[one | {"cpu_seconds": 3 * one["cpu_low"]} for one in result.rows])
-    assert "3.0 times as long" in STUDY.page(slower).how[0]
+def test_a_study_repeats_bit_for_bit(tmp_path, near):
+    pytest.importorskip("pybullet")
+    some = (("analytic", "kernel"), ("time-stepping", ""), ("pybullet", "fixed-step"))
+    given = dict(quick=True, repeats=2, scenes=[near], keep=lambda entry: (entry.engine, entry.variant or "") in some)
+    paths = [
+        compute(STUDY, tmp_path / name, engines=("pybullet",), progress=False, **given)[0] for name in ("one", "other")
+    ]
+    rows, again = (read(path).rows for path in paths)
+    assert rows and all(row["repeatable"] and row["timings"] == 2 for row in rows)
+    assert [row["errors"] for row in rows] == [row["errors"] for row in again]
 
 
-@pytest.mark.parametrize("name", [name for name, engine in ENGINES.items() if engine.script])
+@pytest.mark.parametrize("name", ["exudyn", pytest.param("pybullet", marks=pytest.mark.slow)])
 def test_a_script_as_it_is_written_is_a_solver_with_errors_of_its_own(free, name):
     (entry,) = (one for one in entries([free], [name], quick=False) if one.variant == scripts.NAME)
     values = measure(entry.case(0), entry.case(0).run())
@@ -387,10 +315,78 @@ def test_a_script_as_it_is_written_is_a_solver_with_errors_of_its_own(free, name
     assert found.pop("lost") == 0 and 0 < found["restitution"] < 1e-4 and values["cost"]["cpu_seconds"] > 0
 
 
-def test_what_is_stored_of_a_run_of_an_integrator_has_all_its_errors(tmp_path):
+def test_what_is_stored_of_a_run_of_an_integrator_has_all_its_errors():
     """Else a run that is done again differs from the one stored."""
-    some = [trial for trial in problem_trials() if trial.name == "problem A"]
-    given = dict(quick=True, progress=False, repeats=1, scenes=some)
-    (path,) = compute(STUDY, tmp_path, engines=(), keep=lambda entry: entry.variant == "DOP853", **given)
-    found = [run["values"]["errors"] for run in read(path).runs if run["values"].get("errors")]
-    assert found and all("lost" in one and len(one) > 1 for one in found)
+    (some,) = (trial for trial in problem_trials() if trial.name == "problem A")
+    found = [measure(one.case(0), None) for one in entries([some], (), quick=True) if one.variant == "DOP853"]
+    assert found and all("lost" in one["errors"] and len(one["errors"]) > 1 for one in found)
+
+
+# (engine, variant): relative tolerance, and what its error then stays below
+REACHED = {
+    ("analytic", "kernel"): (1e-16, 1e-13),
+    ("scipy", "DOP853"): (1e-11, 1e-8),
+    ("scipy", "RK45"): (1e-9, 2e-8),
+    ("scipy", "LSODA"): (1e-11, 1e-8),
+    ("scipy", "Radau"): (1e-6, 1e-5),
+}
+
+
+@pytest.mark.parametrize("problem", PROBLEMS)
+@pytest.mark.parametrize("name", REACHED)
+def test_every_integrator_reaches_the_reference_with_all_impacts(problem, name):
+    (engine, variant), (tolerance, most) = name, REACHED[name]
+    tilt, impacts = run_of(problem, engine, variant, tolerance)()
+    assert impacts == PROBLEMS[problem].impacts and PROBLEMS[problem].error(tilt) < most
+
+
+def test_methods_are_those_the_twin_offers():
+    assert set(METHODS) == set(OFFERED) == {variant for engine, variant in REACHED if engine == "scipy"}
+
+
+@pytest.fixture
+def few(monkeypatch):
+    """The study with two integrators at a setting each, that gives up when it is told to."""
+    levels = {("analytic", "kernel"): [(), (1e-12,)], ("scipy", "DOP853"): [(), (1e-11, 1e-10)]}  # full, quick
+    monkeypatch.setattr(integrators, "TOLERANCES", levels)
+    run_of.cache_clear()
+    yield
+    run_of.cache_clear()
+
+
+def test_error_and_time_are_of_the_same_runs(few, monkeypatch):
+    case = next(one.case(0) for one in entries(problem_trials(), (), True) if one.engine == "scipy")
+    called = itertools.count(1)
+
+    def run():
+        return -PROBLEMS["problem A"].reference - 0.25 * next(called), 10
+
+    monkeypatch.setitem(integrators.INTEGRATORS, ("scipy", "DOP853"), lambda *_: run)
+    values = measure(case, None)
+    error = values["errors"]["horizon_tilt"]
+    assert error == pytest.approx(next(called) - 1)  # of the last timed run, and of the size of its tilt
+    assert error > 100  # a run this short is repeated
+    assert values["errors"]["lost"] == 0 and 0 < values["cost"]["cpu_seconds"] < TICK
+
+
+def test_the_problems_run_and_one_that_gives_up_is_reported_and_not_timed(few, monkeypatch, tmp_path):
+    def gives_up(problem, tolerance):
+        raise ValueError("f(a) and f(b) must have different signs")
+
+    for fails in (False, True):
+        if fails:
+            run_of.cache_clear()
+            monkeypatch.setitem(integrators.INTEGRATORS, ("scipy", "DOP853"), gives_up)
+        rows = answered(plan(Request(quick=True), scene="problem A"), by_runs(tmp_path / str(fails)))[-1].rows
+        (kernel, *others) = where(rows, part="work-precision")
+        assert {row["scene"] for row in rows} == {"problem A"}
+        assert (kernel["engine"], kernel["timings"]) == ("analytic", 3) and len(others) == 2
+        assert kernel["cpu_low"] <= kernel["cpu_seconds"] <= kernel["cpu_high"] and kernel["repeatable"]
+        for row in others:
+            assert ("cpu_seconds" in row) != fails == bool(row["failure"])
+            assert fails and "different signs" in str(row["failure"]) or row["cpu_seconds"] > 20 * kernel["cpu_seconds"]
+
+
+def test_a_scene_that_is_none_is_refused():
+    with pytest.raises(SettingError, match="--scene problem C: no such scene; give one of free-rigid, .*problem B"):
+        next(plan(Request(quick=True), scene="problem C"))
