@@ -71,7 +71,7 @@ MISTAKES = {
     **{
         f"{command} caryatid-rigid --records records --directions {number}": f"--directions = {number}: {words}"
         for command in ("run", "margin", "report")
-        for number, words in ((10**9, "give at most"), (0, "give 1 or more"))
+        for number, words in ((10**9, "a run of each takes more than 1e+08 steps in all"), (0, "give 1 or more"))
     },
     **{
         f"{command} --units g": "--units g: give the folder of the records with --records"
