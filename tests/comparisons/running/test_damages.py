@@ -117,6 +117,7 @@ def damaged(call, met, number, work):
     reads, tells = os.pipe()
     child = os.fork()
     if child == 0:
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # else ignored in the background
         sys.stdout = sys.stderr = os.fdopen(tells, "w", 1)
         whole, calls, status = getattr(os, call), itertools.count(1), 0
         if call == "write" and number == 1:
