@@ -383,18 +383,7 @@ def test_report(road, rocking, tmp_path, first, step):
     for kind in kinds:
         files.append(tmp_path / f"{kind.replace(' ', '-')}.toml")
         files[-1].write_text(KINDS[kind][0])
-    words = (
-        "--records",
-        "records",
-        "--units",
-        "m/s2",
-        "--studies",
-        "studies",
-        "--output",
-        "page",
-        "--json",
-        "page.json",
-    )
+    words = "--records records --units m/s2 --studies studies --output page --json page.json".split()
     engines = ("lying", "fails", "nan")
     status, out, err = rocking("report", *files, *words, *asked(engines))
     assert status == 0 and "Traceback" not in out + err
