@@ -29,7 +29,6 @@ from comparisons.running.provenance import RESULTS
 from comparisons.schemas.__main__ import schemas
 from engines import BUILT_IN, ENGINES, get_engine, guard
 
-ENGINE = "lying"  # of the commands that take one
 USUAL = {
     "margin": (margin.STEPS, margins.BISECTIONS),
     "design": (bearing_scan.PERIOD_STEP, bearing_scan.DAMPING_STEP),
