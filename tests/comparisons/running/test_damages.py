@@ -337,9 +337,10 @@ def test_a_result_does_not_overwrite_what_is_read_nor_another_result(rocking, tm
 
 def test_runs_that_are_damaged_in_use_or_no_file_are_told_before_the_work(rocking, tmp_path):
     study, path = ("study", "fragility", "--quick", "--output", tmp_path), tmp_path / "runs.jsonl"
-    with Store(path), pytest.raises(StoreError, match="another sweep is writing to it"):
+    with Store(path):
+        with pytest.raises(StoreError, match="another sweep is writing to it"):
+            Store(path)
         assert told(*rocking(*study))
-        Store(path)
     path.write_bytes(b"not json\n")
     assert told(*rocking(*study))
     for make in (Path.mkdir, os.mkfifo):
