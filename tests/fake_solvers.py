@@ -73,8 +73,10 @@ def segfaults(scene):
 
 
 def killed(scene, *, number):
-    """Killed from outside, as by the system when memory runs out, or a terminal that is closed."""
-    os.kill(os.getpid(), number)
+    """Killed from outside, as by the system when memory runs out, or a terminal that is closed, at a tilt of 0.05."""
+    if scene.start.tilt == 0.05:
+        os.kill(os.getpid(), number)
+    return sound(scene)
 
 
 def hangs(scene, *, seconds=60.0):

@@ -14,7 +14,6 @@ import numpy as np
 import pytest
 import typer
 from bad_scenes import SCENE, write_scene
-from engine_cases import ACCURATE
 from own_scenes import BRONZE, CLIFF
 
 from analytic import Caution, Failure, load_scene, simulate, solver
@@ -22,14 +21,14 @@ from comparisons import cli, commands
 from comparisons.cli.application import app
 from comparisons.running import progress, solving
 from comparisons.running.readable import readable
-from engines import ENGINES, get_engine, installed_engines
+from engines import ENGINES, get_engine, guard, installed_engines
 
 PNG = b"\x89PNG\r\n"
 
 
 def in_a_new_process(*arguments, **environment):
     return subprocess.run(
-        [sys.executable, "-m", "comparisons", "run", *arguments],
+        [sys.executable, "-X", "importtime", "-m", "comparisons", *arguments],
         capture_output=True,
         text=True,
         timeout=120,
@@ -37,23 +36,18 @@ def in_a_new_process(*arguments, **environment):
     )
 
 
-def test_run_writes_json_csv_and_plot(rocking, tmp_path):
-    files = [tmp_path / name for name in ("r.json", "r.csv", "r.png")]
-    status, out, _ = rocking("run", "free-rocking-isolated", "--json", files[0], "--csv", files[1], "--plot", files[2])
-    assert status == 0
-    assert "Free rocking on the isolated base" in out and "peak base displacement [m]" in out
-    result, expected = json.loads(files[0].read_text()), simulate(load_scene("free-rocking-isolated"))
-    assert result["outcome"] == "rocks"
-    assert result["impact_count"] == len(result["impacts"]) == expected.impact_count
-    assert result["peak_base_displacement"] == expected.peak_base_displacement
-    head, *rows = csv.reader(files[1].read_text().splitlines())
+def test_run_writes_csv_and_a_plot(rocking, tmp_path):
+    files = [tmp_path / name for name in ("r.csv", "r.png")]
+    status, out, _ = rocking("run", "free-rocking-isolated", "--csv", files[0], "--plot", files[1])
+    assert status == 0 and "Free rocking on the isolated base" in out and "peak base displacement [m]" in out
+    expected = simulate(load_scene("free-rocking-isolated")).history
+    head, *rows = csv.reader(files[0].read_text().splitlines())
     assert rocking("run", "free-rocking-isolated", "--csv", "-")[1].splitlines()[0] == ",".join(head)  # no file "-"
     assert head == [
         *("time", "tilt", "tilt_rate", "base_displacement", "base_velocity", "bearing_force", "ground_acceleration")
     ]
-    assert len(rows) == len(expected.history.time)
-    assert float(rows[-1][3]) == expected.history.base_displacement[-1]
-    assert files[2].read_bytes().startswith(PNG)
+    assert len(rows) == len(expected.time) and float(rows[-1][3]) == expected.base_displacement[-1]
+    assert files[1].read_bytes().startswith(PNG)
 
 
 @pytest.mark.parametrize(
@@ -65,9 +59,8 @@ def test_run_writes_json_csv_and_plot(rocking, tmp_path):
 )
 def test_json_of_an_engine_is_alone_too(engine):
     """In a new process: an engine may greet when it is loaded, or when C flushes its buffers at exit."""
-    done = in_a_new_process("free-rocking-rigid", "--engine", engine, "--json", "-")
-    assert json.loads(done.stdout)["engine"] == engine
-    assert done.returncode == 0, done.stderr
+    done = in_a_new_process("run", "free-rocking-rigid", "--engine", engine, "--json", "-")
+    assert done.returncode == 0 and json.loads(done.stdout)["engine"] == engine, done.stderr
 
 
 def test_the_variant_that_tables_name_may_be_given(rocking):
@@ -79,11 +72,21 @@ def test_the_variant_that_tables_name_may_be_given(rocking):
 
 
 @pytest.mark.slow
-def test_module_and_status_in_a_new_process(tmp_path):
+def test_module_and_status_in_a_new_process_and_names_the_terminal_cannot_show(tmp_path):
     path = write_scene(tmp_path, SCENE.replace("3172.05", "-1"))
-    done = in_a_new_process(path)
+    done = in_a_new_process("run", path)
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr == f"Error: {path}: block.mass = -1: out of range; give a number above 0 [kg]\n"
+    assert done.stderr.endswith(f"Error: {path}: block.mass = -1: out of range; give a number above 0 [kg]\n")
+    done = in_a_new_process("run", named(tmp_path, "石"), PYTHONIOENCODING="ascii")
+    assert done.returncode == 0 and "\\u77f3" in done.stdout
+
+
+@pytest.mark.slow
+def test_help_loads_no_engine_and_no_plots():
+    done = in_a_new_process("--help")
+    loaded = {line.rpartition("|")[2].strip() for line in done.stderr.splitlines()}
+    assert done.returncode == 0 and "comparisons.cli" in loaded
+    assert not loaded & {"matplotlib", *(engine.package for engine in ENGINES.values())}
 
 
 def test_all_mistakes_of_a_scene_are_told_one_a_line(rocking, tmp_path):
@@ -95,14 +98,22 @@ def test_all_mistakes_of_a_scene_are_told_one_a_line(rocking, tmp_path):
 
 
 def test_compiling_is_said_and_is_not_on_the_clock_of_the_run(rocking, monkeypatch):
+    done = []
+
     @functools.cache
     def slowly(vertical=False):
-        time.sleep(2.0)
+        time.sleep(0.3)
+        done.append("compiled")
+
+    def apart(function, *arguments, **how):
+        done.append(how["time_limit"])
+        return function(*arguments), None
 
     monkeypatch.setattr(progress, "PATIENCE", 0.1)
     monkeypatch.setattr(solver, "compile_kernels", slowly)
-    status, out, err = rocking("run", "free-rocking-rigid", "--time-limit", "2", "--json", "-")
-    assert status == 0 and json.loads(out)["cpu_seconds"] < 1.0
+    monkeypatch.setattr(guard, "run_apart", apart)
+    status, _, err = rocking("run", "free-rocking-rigid", "--time-limit", "2")
+    assert status == 0 and done[:2] == ["compiled", 2.0]
     assert err.splitlines()[0] == f"{progress.COMPILING}: some ten seconds" and err.count(progress.COMPILING) == 1
 
 
@@ -122,26 +133,8 @@ def test_engines_lists_what_is_there_and_what_is_not(rocking, monkeypatch):
     (line,) = (line for line in out.splitlines() if "mujoco" in line)
     absent = [name for name in ("dart", "drake", "mujoco", "pymunk") if name not in installed_engines()]
     assert line.startswith(f'not installed: {", ".join(absent)}; pip install -e ".[{",".join(absent)}]" in a ')
-    told = [line for line in out.splitlines() if "pip install" not in line]
-    assert max(map(len, told)) <= 80 and "slenderness 0.1 to 0.5 rad" in " ".join(out.split())
     for name in installed_engines():
         assert name in out and all(f" {variant} " in out for variant in get_engine(name).variants)
-
-
-@pytest.mark.long
-def test_compare(rocking, tmp_path):
-    picture, result = tmp_path / "c.png", tmp_path / "c.json"
-    status, out, _ = rocking("compare", "free-rocking-rigid", "--plot", picture, "--json", result)
-    content, names = json.loads(result.read_text()), ("analytic", *installed_engines())
-    assert status == 0 and tuple(response["engine"] for response in content["responses"]) == names
-    tuned = [name for name in installed_engines() if name in ACCURATE]
-    told = [content["sensitivity"][name] for name in tuned]  # free rocking forgets its past
-    assert all(one["horizon"] is None and 0 < one["perturbation"] < 1e-2 for one in told)
-    assert tuple(content["sensitivity"]) == tuple(installed_engines())
-    assert all(name in out for name in names)
-    assert picture.read_bytes().startswith(PNG)
-    table = out.partition("differs from the analytic model")[0]
-    assert max(map(len, table.splitlines())) <= 80 and "…" not in out
 
 
 def test_an_outcome_that_hangs_on_the_last_digits_is_said(rocking, tmp_path):
@@ -151,13 +144,12 @@ def test_an_outcome_that_hangs_on_the_last_digits_is_said(rocking, tmp_path):
         assert hangs == any(one["quantity"] == "outcome" for one in json.loads(out)["warnings"])
 
 
-@pytest.mark.parametrize("engine", ["pybullet", "mujoco"])
 @pytest.mark.parametrize("variant, said", [("first-script", True), ("impact-aware", False)])
-def test_a_run_that_is_off_the_analytic_model_says_so(rocking, tmp_path, engine, variant, said):
+def test_a_run_that_is_off_the_analytic_model_says_so(rocking, tmp_path, variant, said):
     file = tmp_path / "run.json"
-    _, out, _ = rocking("run", "free-rocking-rigid", "--engine", engine, "--variant", variant, "--json", file)
+    _, out, _ = rocking("run", "free-rocking-rigid", "--engine", "pybullet", "--variant", variant, "--json", file)
     told = json.loads(file.read_text())
-    assert told["comparable"] == "yes" and (f"{engine} differs from the analytic model" in out) == said
+    assert told["comparable"] == "yes" and ("pybullet differs from the analytic model" in out) == said
     found = {one["quantity"] for one in told["differences"]}
     assert bool(found) == bool(found & {"restitution", "missing_impacts"}) == said
 
@@ -195,31 +187,7 @@ def test_parse_settings():
     }
 
 
-@pytest.mark.slow
-def test_help_loads_no_engine_and_no_plots():
-    code = (
-        "import sys; from comparisons import cli\n"
-        "try: cli.main(['--help'])\n"
-        "except SystemExit: pass\n"
-        "names = ('exudyn', 'pybullet', 'mujoco', 'pymunk', 'dartpy', 'pydrake', 'matplotlib')\n"
-        "heavy = [name for name in names if name in sys.modules]\n"
-        "sys.exit(f'loaded: {heavy}' if heavy else 0)"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
-    assert done.returncode == 0, done.stderr
-
-
-ODD_NAMES = (
-    "$x_$",
-    "$\\frac{1$",
-    "[/red]",
-    "[bold]b[/bold]",
-    "a\nb\x1b[31mc",
-    "é 石 \udcff",
-    "%s {0} \\",
-    "x" * 5000,
-    "",
-)
+ODD_NAMES = ("$\\frac{1$", "[/red]", "a\nb\x1b[31mc", "é 石 \udcff", "x" * 5000, "")
 
 
 def named(folder, name):
@@ -235,12 +203,6 @@ def test_names_are_printed_and_drawn_as_they_are(rocking, tmp_path, name):
     assert (status, err) == (0, "")
     assert readable(name.encode(errors="replace").decode(), 100)[:30].strip() in out and "\x1b" not in out
     assert files[1].stat().st_size > 1000
-
-
-@pytest.mark.long
-def test_names_the_terminal_cannot_show(tmp_path):
-    done = in_a_new_process(named(tmp_path, "石"), PYTHONIOENCODING="ascii")
-    assert done.returncode == 0 and "\\u77f3" in done.stdout
 
 
 def test_an_engine_that_crashes_costs_its_own_row(rocking, monkeypatch):
@@ -280,18 +242,11 @@ tilt = 0.1
 
 
 @pytest.mark.parametrize("bearings", ["", "[bearings]\nlaw = 'linear'\nka = 2e4\n"], ids=["free", "borne"])
-@pytest.mark.parametrize(
-    "command", [("run",), ("run", "--engine", "pymunk"), ("compare", "--engine", "pymunk"), ("margin",)], ids=" ".join
-)
+@pytest.mark.parametrize("command", [("run",), ("compare", "--engine", "pybullet"), ("margin",)], ids=" ".join)
 def test_a_base_that_nothing_holds_is_said_first_and_once(rocking, tmp_path, command, bearings):
     file, said = write_scene(tmp_path, ON_BASE + bearings), not bearings
-    status, out, err = rocking(command[0], file, *command[1:], "--json", tmp_path / "r.json")
-    assert status == 0, err
-    assert out.startswith(FREE_BASE) == said and out.count("No friction is modelled") == said
-    told = json.loads((tmp_path / "r.json").read_text())
-    if command[0] != "margin":
-        texts = [f"Warning: {one['text']}" for one in told.get("responses", [told])[0]["warnings"]]
-        assert sum(text.startswith(FREE_BASE) for text in texts) == said
+    status, out, err = rocking(command[0], file, *command[1:])
+    assert status == 0 and out.startswith(FREE_BASE) == said and out.count("No friction is modelled") == said, err
 
 
 CALM = 0.27  # scale at which it peaks at six tenths of uplift
@@ -300,7 +255,7 @@ SENTENCE = "The outcome is sensitive to changes of the motion below 5%: the bloc
 
 
 @pytest.mark.parametrize("scale", [CLIFF, CALM])
-@pytest.mark.parametrize("command", [("run",), ("run", "--engine", "exudyn"), ("compare", "--engine", "exudyn")])
+@pytest.mark.parametrize("command", [("run",), ("compare", "--engine", "exudyn")])
 def test_what_little_of_the_motion_changes_is_said_last_and_once_and_only_where_it_is_so(
     rocking, tmp_path, command, scale
 ):
@@ -312,11 +267,6 @@ def test_what_little_of_the_motion_changes_is_said_last_and_once_and_only_where_
     told = json.loads(found.read_text())
     warnings = [one for one in told.get("responses", [told])[0]["warnings"] if one["kind"] == "motion"]
     assert [(one["quantity"], one["limit"]) for one in warnings] == [("outcome", 0.05)] * (scale == CLIFF)
-    if warnings:
-        assert warnings[0]["value"] == pytest.approx(-0.009, abs=5e-4)
-        own = load_scene(file)
-        ends = {simulate(own.with_(motion=own.motion.scaled(1 + change))).outcome for change in (0, -0.009)}
-        assert ends == {"overturns", "rocks"}
 
 
 def test_help_shows_every_command_in_one_group_with_a_line_and_an_example(rocking):
@@ -330,19 +280,13 @@ def test_help_shows_every_command_in_one_group_with_a_line_and_an_example(rockin
         assert len(group.get_command(None, name).get_short_help_str(200).split()) >= 2
 
 
-ENGINE = "exudyn"
 BUST = ("--height", 1.9, "--width", 0.55, "--material", "marble")
 DESIGN = ("--base-mass", 400, "--period", 2.5, "--xmax", 0.2)
 CONSTANTS = ("--base-mass", 400, "--ka", 3e4, "--kb", 3e3, "--alpha", 50)
 RECORD = ("--record", "own.csv")
 NEW = {
     "rigid, synthetic": BUST,
-    "rigid, record": (*BUST, *RECORD),
-    "rigid, tilted": (*BUST, "--tilt", 0.15),
-    "by design, synthetic": (*BUST, *DESIGN),
     "by design, record": (*BUST, *DESIGN, *RECORD),
-    "by constants, synthetic": (*BUST, *CONSTANTS, "--friction", 0.6),
-    "by constants, record": (*BUST, *CONSTANTS, *RECORD),
     "by constants, tilted": (*BUST, *CONSTANTS, "--xmax", 0.3, "--tilt", 0.15),
 }
 
@@ -370,49 +314,29 @@ BEARINGS = "[base]\nmass = 50.0\n[bearings]\nlaw = 'linear'\nka = 2000.0\n"  # (
 
 
 @pytest.mark.parametrize(
-    "command, ground, given",
+    "engine, ground, given, kept",
     [
-        ("compare", "", 0.9),
-        ("compare", BEARINGS, 0.75),
-        pytest.param("choose", "", 0.9, marks=pytest.mark.slow),
-        pytest.param("report", "", 0.9, marks=pytest.mark.long),
-        pytest.param("report", BEARINGS, 0.75, marks=pytest.mark.long),
-        pytest.param("choose", BEARINGS, 0.75, marks=pytest.mark.long),
+        ("exudyn", "", 0.9, True),
+        ("exudyn", BEARINGS, 0.75, True),
+        ("pybullet", "", 0.9, True),
+        ("drake", "", 0.9, False),
     ],
 )
-def test_a_restitution_that_is_given_is_kept_by_the_engine(rocking, folder, monkeypatch, command, ground, given):
-    monkeypatch.chdir(folder)
-    file = folder / "given.toml"
+def test_a_restitution_that_is_given_is_kept_by_the_engine_or_costs_its_row(
+    rocking, tmp_path, engine, ground, given, kept
+):
+    file = tmp_path / "given.toml"
     block = f"[block]\nmass = 100.0\nradius = 1.0\nslenderness = 0.25\nrestitution = {given}\n"
     file.write_text(block + ground + "[start]\ntilt = 0.1\n[run]\nduration = 2.0\n")
-    more = ("--output", "given") if command == "report" else ()
-    status, out, err = rocking(command, file, "--engine", ENGINE, *more, "--json", "-")
-    answer = json.loads(out)
-    assert status == int(command == "choose" and answer["chosen"] is None) and "Traceback" not in err
-    if command == "compare":
-        model, engine = answer["responses"]
-        assert model["outcome"] == engine["outcome"] == "rocks"
-        ratios = [impact["rate_after"] / impact["rate_before"] for impact in engine["impacts"][:2]]
+    status, out, err = rocking("compare", file, "--engine", engine, "--json", "-", "--plot", tmp_path / "c.png")
+    model, found = json.loads(out)["responses"]
+    assert status == 0 and model["outcome"] == "rocks" and (tmp_path / "c.png").read_bytes().startswith(PNG)
+    ratios = [impact["rate_after"] / impact["rate_before"] for impact in found["impacts"][:2]]
+    if kept:
         assert ratios == pytest.approx([given] * 2, rel=1e-3)
-        assert not engine["differences"] and "restitution given" in engine["warnings"][-1]["text"]
-    if command == "choose":
-        assert answer["criterion"] == "tilt"
-    if command == "report":
-        assert "is given; here it is left out" in (folder / "given/pages/runs.html").read_text()
-        rows = json.loads((folder / "given/restitution.json").read_text())["rows"]
-        assert all(row["rms"] < 1e-3 for row in rows if row["tier"] == "tuned")  # of (7): none is of the given one
-
-
-def test_a_variant_that_takes_no_restitution_costs_its_row_and_not_the_answer(rocking, folder, monkeypatch):
-    monkeypatch.chdir(folder)
-    file = folder / "given-to-defaults.toml"
-    block = "[block]\nmass = 100.0\nradius = 1.0\nslenderness = 0.25\nrestitution = 0.9\n"
-    file.write_text(block + "[start]\ntilt = 0.1\n[run]\nduration = 2.0\n")
-    pytest.importorskip("pymunk")
-    _, out, err = rocking("compare", file, "--engine", "pymunk", "--json", "-")
-    model, engine = json.loads(out)["responses"]
-    assert model["outcome"] == "rocks" and engine["outcome"] == "failed"
-    assert "block.restitution = 0.9" in engine["failure"]["message"] and "pymunk failed" in err
+        assert not found["differences"] and "restitution given" in found["warnings"][-1]["text"]
+    else:
+        assert f"block.restitution = {given}" in found["failure"]["message"] and f"{engine} failed" in err
 
 
 @pytest.mark.parametrize("start, said", [("", []), ("base_velocity = 0.2\n", ["model"])])

@@ -23,53 +23,50 @@ def coarse(monkeypatch):
 BEARINGS = '[bearings]\nlaw = "linear"\nka = 2e5\n'
 
 
-@pytest.mark.parametrize("bearings, name", [("", "least-stroke"), (BEARINGS, "softest")])
-def test_the_scene_it_writes_does_not_lift_and_stays_within_the_stroke(rocking, tmp_path, bearings, name):
-    file, found = tmp_path / "bust.toml", tmp_path / "found.json"
-    file.write_text(BUST.format(bearings=bearings))
+GROUND = """\ufeff[block]
+mass = 1551.83
+radius = 0.989
+slenderness = 0.2818
+[motion]  # and these
+synthetic = "duzce-like"
+"""
+
+
+@pytest.mark.parametrize(
+    "text, name, added",
+    [
+        (BUST.format(bearings=""), "least-stroke", ()),
+        (BUST.format(bearings=BEARINGS), "softest", ()),
+        (GROUND, "least-stroke", ("--base-mass", "400.123456789")),  # put on a base, and both are written
+    ],
+)
+def test_the_scene_it_writes_does_not_lift_and_stays_within_the_stroke(rocking, tmp_path, text, name, added):
+    file, found = tmp_path / "a bust.toml", tmp_path / "found.json"
+    file.write_text(text, encoding="utf-8")
     options = ("--write", name, "--json", found, "--plot", tmp_path / "b.svg")
-    status, out, err = rocking("design", file, "--stroke", "0.2", *options)
-    assert status == 0 and f"written into {file}" in out, err
-    assert (tmp_path / "b.svg").stat().st_size > 1000
-    scene, text, form = load_scene(file), file.read_text(), json.loads(found.read_text())
+    status, out, err = rocking("design", file, "--stroke", "0.2", *added, *options)
+    assert status == 0 and f"written into {file}" in out and (tmp_path / "b.svg").stat().st_size > 1000, err
+    scene, form = load_scene(file), json.loads(found.read_text())
     response, chosen = simulate(scene, history=False), form["chosen"][name]
-    assert response.outcome == "stands"
-    assert response.peak_base_displacement <= scene.bearings.x_max == 0.2
-    assert "# my own words" in text and "[motion]  # and these" in text
-    assert chosen["stroke"] == response.peak_base_displacement
-    assert chosen["bearings"]["ka"] == scene.bearings.ka and chosen["lifts"] == 0
-    assert np.shape(form["holds"]) == (len(form["dampings"]), len(form["periods"]))
-
-
-def test_a_block_on_the_ground_is_put_on_a_base_and_both_are_written(rocking, tmp_path):
-    block, motion = (
-        "\ufeff[block]\nmass = 1551.83\nradius = 0.989\nslenderness = 0.2818\n",
-        '[motion]\nsynthetic = "duzce-like"',
-    )
-    file = tmp_path / "a bust.toml"
-    file.write_text(block + motion, encoding="utf-8")
-    options = ("--stroke", "0.2", "--base-mass", "400.123456789")
-    status, out, err = rocking("design", file, *options, "--write", "least-stroke", "--json", tmp_path / "found.json")
-    assert status == 0 and "base: 400.123 kg" in out, err
-    scene, form = load_scene(file), json.loads((tmp_path / "found.json").read_text())
-    assert scene.base.mass == form["base_mass"] == 400.123
-    response, chosen = simulate(scene, history=False), form["chosen"]["least-stroke"]
-    assert response.outcome == "stands" and response.peak_base_displacement == chosen["stroke"] <= 0.2
+    assert response.outcome == "stands" and chosen["lifts"] == 0
+    assert chosen["stroke"] == response.peak_base_displacement <= scene.bearings.x_max == 0.2
     got = properties(scene.bearings, scene.total_mass, 0.2)
     assert (got.period, got.damping_equivalent) == pytest.approx((chosen["period"], chosen["damping"]), rel=1e-3)
-    assert motion in file.read_text()
-    status, _, err = rocking("design", file, *options)
-    assert status == 2 and "has a base, of 400.123 kg; leave it out" in err
+    assert "[motion]  # and these" in file.read_text() and ("# my own words" in text) != bool(added)
+    assert np.shape(form["holds"]) == (len(form["dampings"]), len(form["periods"]))
+    if added:
+        assert scene.base.mass == form["base_mass"] == 400.123 and "base: 400.123 kg" in out
+        status, _, err = rocking("design", file, "--stroke", "0.2", *added)
+        assert status == 2 and "has a base, of 400.123 kg; leave it out" in err
 
 
 def test_where_nothing_holds_it_says_what_comes_nearest_and_writes_nothing(rocking, tmp_path):
     file = tmp_path / "bust.toml"
     file.write_text(BUST.format(bearings=""))
     status, out, _ = rocking("design", file, "--stroke", "0.01")
-    assert status == 0 and "Nearest" in out and "widen, fix or lower the block" in " ".join(out.split())
+    assert status == 0 and "Nearest" in out
     status, _, err = rocking("design", file, "--stroke", "0.01", "--write", "softest")
-    assert status == 2 and "--write" in err
-    assert file.read_text() == BUST.format(bearings="")
+    assert status == 2 and "--write" in err and file.read_text() == BUST.format(bearings="")
 
 
 LIMITS = {  # {what is said to be exceeded: how far, of a run}

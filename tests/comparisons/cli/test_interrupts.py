@@ -11,12 +11,15 @@ import time
 import psutil
 import pytest
 
+from analytic import load_scene, simulate
 from comparisons.cli.interrupts import stoppable
 from comparisons.report.study import UNFINISHED
 from comparisons.running import study
+from comparisons.running.files import TemporaryFolder
 from comparisons.running.provenance import RESULTS
 from engines.guard import run_apart
 
+# On bearings without loss the block lifts again and again: minutes.
 ENDLESS = """
 [block]
 mass = 3172.05
@@ -35,96 +38,48 @@ duration = 1e7
 """
 
 
-STANDS = """
-[block]
-mass = 3172.05
-radius = 1.0884
-slenderness = 0.28
-[motion]
-pulse = "one-sine"
-amplitude = 1.0
-frequency = 1.0
-"""
-
-
-def endless(folder):
-    """A scene that takes minutes: on bearings without loss the block lifts again and again."""
-    path = folder / "scene.toml"
+@pytest.fixture
+def endless(tmp_path):
+    path = tmp_path / "scene.toml"
     path.write_text(ENDLESS)
     return path
 
 
-def started(*arguments, **how):
-    pipes = {"text": True, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
-    return subprocess.Popen([sys.executable, *map(str, arguments)], start_new_session=True, **pipes, **how)
-
-
 @pytest.mark.slow
-def test_the_time_limit_costs_the_run_alone(rocking, tmp_path):
-    scene = endless(tmp_path)
-    status, out, err = rocking("run", scene, "--time-limit", "1", "--json", "-")
+def test_the_time_limit_costs_the_run_alone(rocking, endless):
+    status, out, err = rocking("run", endless, "--time-limit", "1", "--json", "-")
     assert status == 1 and json.loads(out)["failure"]["reason"] == "the run did not end in time"
     assert "killed after the time limit of 1 s; --time-limit allows more" in err and err.count("\n") == 1
-
-
-def hears(process, number=signal.SIGINT):
-    """Seconds until a process that was told to stop has ended, and those it had started that live on."""
-    family = psutil.Process(process.pid).children(recursive=True)
-    os.killpg(process.pid, number)  # as a terminal does: to all of them
-    began = time.monotonic()
-    process.wait(60)
-    return time.monotonic() - began, psutil.wait_procs(family, timeout=5)[1]
-
-
-@pytest.mark.parametrize(
-    "command", [pytest.param("run", marks=pytest.mark.slow), pytest.param("compare", marks=pytest.mark.long)]
-)
-def test_ctrl_c_in_the_kernel(tmp_path, command):
-    scene = endless(tmp_path)
-    process = started("-m", "comparisons", command, scene, "--json", tmp_path / "r.json")
-    deadline = time.monotonic() + 100
-    while not psutil.Process(process.pid).children() and time.monotonic() < deadline:
-        time.sleep(0.05)
-    time.sleep(1.0)
-    seconds, alive = hears(process)
-    out, err = process.communicate()
-    assert (process.returncode, out, err) == (130, "", "Interrupted.\n")
-    assert seconds < 3 and not alive  # 0.2 s where the machine has nothing else to do
-    assert [path.name for path in tmp_path.iterdir()] == ["scene.toml"]
-
-
-KERNEL_HERE = """
-import sys
-from comparisons import cli
-from analytic import Block, Scene, Start, simulate
-from comparisons.running.files import TemporaryFolder
-import comparisons.commands.engines as stand_in
-def command():
-    folder = TemporaryFolder("sweep-")
-    print("begins", flush=True)
-    simulate(Scene(block=Block(mass=3172.05, radius=1.0884, slenderness=0.28), base={"mass": 212.0},
-                   bearings={"law": "linear", "count": 4, "ka": 2e4}, start=Start(base_displacement=0.2), duration=1e7))
-stand_in.command = command
-cli.main(["engines"])
-"""
 
 
 @pytest.mark.parametrize(
     "number, status, words",
     [
-        pytest.param(signal.SIGINT, 130, "Interrupted.\n", marks=pytest.mark.long),
-        pytest.param(signal.SIGTERM, 143, "Ended by SIGTERM.\n", marks=pytest.mark.slow),
-        pytest.param(signal.SIGHUP, 129, "Ended by SIGHUP.\n", marks=pytest.mark.long),
+        (signal.SIGINT, 130, b"Interrupted.\n"),
+        (signal.SIGTERM, 143, b"Ended by SIGTERM.\n"),
+        (signal.SIGHUP, 129, b"Ended by SIGHUP.\n"),
     ],
 )
-def test_signals_while_this_process_itself_is_in_the_kernel(tmp_path, number, status, words):
-    process = started("-c", KERNEL_HERE, env={**os.environ, "TMPDIR": str(tmp_path)})
-    assert process.stdout.readline() == "begins\n"
-    time.sleep(5.0)
-    assert process.poll() is None and list(tmp_path.iterdir())
-    seconds, _ = hears(process, number)
-    assert seconds < 3 and (process.returncode, process.stderr.read()) == (status, words)
-    assert not list(tmp_path.iterdir())  # no temporary folder is left
+def test_signals_while_this_process_itself_is_in_the_kernel(tmp_path, monkeypatch, endless, number, status, words):
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    simulate(load_scene("caryatid-isolated"))  # compiled
+    reads, tells = os.pipe()
+    child = os.fork()
+    if child == 0:
+        os.dup2(tells, 2)
+        with stoppable():
+            folder = TemporaryFolder("sweep-")
+            os.write(2, b"+")
+            simulate(load_scene(endless).with_(name=folder.name))
+        os._exit(0)
+    os.close(tells)
+    assert os.read(reads, 1) == b"+" and len([*tmp_path.iterdir()]) == 2
+    time.sleep(0.3)
+    os.kill(child, number)
+    began = time.monotonic()
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == status
+    assert time.monotonic() - began < 3 and os.read(reads, 1000) == words
+    assert [*tmp_path.iterdir()] == [endless]  # no temporary folder is left
 
 
 def test_a_hangup_that_is_ignored_as_by_nohup_stays_so():
@@ -138,15 +93,20 @@ def test_a_hangup_that_is_ignored_as_by_nohup_stays_so():
         signal.signal(signal.SIGHUP, before)
 
 
-def broken_off(store, *arguments):
-    """Errors of a command that was told to stop as soon as a run is in its store, and how many runs are there then."""
-    process, deadline = started("-m", "comparisons", *arguments), time.monotonic() + 120
-    while time.monotonic() < deadline and not (store.exists() and store.read_bytes()):
+def broken_off(begun, *arguments):
+    """Errors of a command that hears Ctrl-C, as from a terminal, when it has begun: begun(its process)."""
+    command, pipe = [sys.executable, "-m", "comparisons", *map(str, arguments)], subprocess.PIPE
+    process = subprocess.Popen(command, start_new_session=True, text=True, stdout=pipe, stderr=pipe)
+    deadline = time.monotonic() + 120
+    while time.monotonic() < deadline and not begun(psutil.Process(process.pid)):
         time.sleep(0.02)
-    seconds, alive = hears(process)
-    assert process.returncode == 130 and seconds < 3 and not alive
-    assert store.read_bytes().endswith(b"\n") and "Interrupt" not in store.read_text()
-    return process.stderr.read(), store.read_bytes().count(b"\n")
+    family = psutil.Process(process.pid).children(recursive=True)
+    os.killpg(process.pid, signal.SIGINT)
+    began = time.monotonic()
+    out, err = process.communicate(timeout=60)
+    assert (process.returncode, out) == (130, "") and time.monotonic() - began < 3 and "Traceback" not in err
+    assert not psutil.wait_procs(family, timeout=5)[1]  # none lives on
+    return err
 
 
 def kept(store, count):
@@ -155,33 +115,40 @@ def kept(store, count):
 
 
 @pytest.mark.slow
-def test_an_interrupted_study_says_what_is_kept(tmp_path):
-    store = tmp_path / "runs.jsonl"
-    err, count = broken_off(store, "study", "restitution", "--quick", "--output", tmp_path)
-    assert "Traceback" not in err and err.endswith(kept(store, count))
+def test_an_interrupted_run_leaves_nothing(endless):
+    assert broken_off(psutil.Process.children, "run", endless, "--json", endless.parent / "r.json") == "Interrupted.\n"
+    assert [*endless.parent.iterdir()] == [endless]
 
 
-@pytest.mark.long
-def test_an_interrupted_report_says_what_is_kept_and_goes_on_from_there(tmp_path):
+@pytest.mark.parametrize(
+    "command, place",
+    [
+        pytest.param("study restitution --quick", "", marks=pytest.mark.slow),
+        pytest.param("report free-rocking-rigid --engine exudyn --studies studies", UNFINISHED, marks=pytest.mark.long),
+    ],
+)
+def test_an_interrupted_study_or_report_says_what_is_kept_and_goes_on_from_there(
+    rocking, tmp_path, monkeypatch, command, place
+):
+    monkeypatch.chdir(tmp_path)
     shutil.copytree(RESULTS / "sensitivity", tmp_path / "studies" / "sensitivity")
-    store, one = tmp_path / "page" / UNFINISHED / "runs.jsonl", ("--engine", "exudyn")
-    (tmp_path / "stands.toml").write_text(STANDS)  # no run but those of the scene itself
-    words = ("report", tmp_path / "stands.toml", *one, "--output", tmp_path / "page", "--studies", tmp_path / "studies")
-    err, count = broken_off(store, *words)
-    assert err.endswith(kept(store, count))
-    again = started("-m", "comparisons", *words)
-    _, err = again.communicate()
-    assert again.returncode == 0 and f" {count} found in {UNFINISHED}/runs.jsonl" in err
-    assert not store.exists()  # now there is nothing to go on from, and nothing of it would be said
+    words, store = (*command.split(), "--output", tmp_path / "page"), tmp_path / "page" / place / "runs.jsonl"
+    err = broken_off(lambda _: store.exists() and store.read_bytes(), *words)
+    text = store.read_bytes()
+    count = text.count(b"\n")
+    assert err.endswith(kept(store, count)) and text.endswith(b"\n") and b"Interrupt" not in text
+    if place:
+        status, _, err = rocking(*words)
+        assert status == 0 and f" {count} found in {place}/runs.jsonl" in err
+        assert not store.exists()  # now there is nothing to go on from, and nothing of it would be said
 
 
 def test_nothing_is_said_of_runs_that_are_gone_or_not_yet_there(tmp_path, monkeypatch):
-    store = tmp_path / "runs.jsonl"
+    store, said = tmp_path / "runs.jsonl", []
     monkeypatch.setattr(study, "_stored", store)
-    said = []
     for text in ("", "{", "{}\n{", "{}\n{}\n"):  # a line that is not whole is no run
         store.write_text(text)
         said.append(study.kept())
+    assert said == ["", "", *(kept(store, count).removeprefix("Interrupted. ").rstrip() for count in (1, 2))]
     store.unlink()
-    said.append(study.kept())
-    assert said == ["", "", *(kept(store, count).removeprefix("Interrupted. ").rstrip() for count in (1, 2)), ""]
+    assert study.kept() == ""

@@ -68,6 +68,15 @@ MISTAKES = {
     f"{RIGID} --time-limit 0": "--time-limit",
     f"{RIGID} --directions 3": "--records",
     "margin caryatid-rigid --directions 3": "--records",
+    **{
+        f"{command} caryatid-rigid --records records --directions {number}": f"--directions = {number}: {words}"
+        for command in ("run", "margin", "report")
+        for number, words in ((10**9, "a run of each takes more than 1e+08 steps in all"), (0, "give 1 or more"))
+    },
+    **{
+        f"{command} --units g": "--units g: give the folder of the records with --records"
+        for command in (RIGID, "margin caryatid-rigid", "design caryatid-isolated --stroke 0.3")
+    },
     "margin free-rocking-rigid --span 901": "--span 901: give per cent, from 0.1 to 900",
     "margin free-rocking-rigid --tilt 0": "--tilt 0: give a share of the slenderness",
     "margin free-rocking-rigid --tilt 1.01": "--tilt 1.01",
@@ -154,7 +163,9 @@ def place(tmp_path, monkeypatch):
     """A folder with a scene and records; what would start long work is cut short: the words are under test here."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "rigid.toml").write_text("[block]\nmass=1.0\nradius=1.0\nslenderness=0.25\n[start]\ntilt=0.1\n")
-    (tmp_path / "own.csv").write_text("time [s];acc [m/s2]\n0.00;0.1\n0.01;0.4\n0.02;-0.2\n")
+    (tmp_path / "records").mkdir()
+    for peak, name in enumerate(("records/A000.csv", "records/A090.csv", "own.csv"), 2):
+        (tmp_path / name).write_text(f"time [s];acc [m/s2]\n0.00;0.1\n0.01;0.{peak}\n0.02;-0.2\n")
     (tmp_path / "plain.txt").write_text("0.1\n0.4\n-0.2\n")
     (tmp_path / "channels.v2").write_text(csmip(SAMPLES))
     for work in (
@@ -211,10 +222,7 @@ def test_a_mistake_is_one_message_that_names_it(rocking, place, command, words):
     assert sorted(place.iterdir()) == before
 
 
-@pytest.mark.parametrize(
-    "value",
-    ["1e400", "-1e400", "1e-400", "much", "NaN", "nan", "1" * 400, "1" * 5000, "[" * 50000, "{}", "null", '"1"', ""],
-)
+@pytest.mark.parametrize("value", ["1e400", "1e-400", "much", "nan", "1" * 5000, "[" * 50000, "null", '"1"', ""])
 @pytest.mark.parametrize("solver", ["analytic", *ENGINES])
 def test_absurd_settings_are_refused(rocking, solver, value):
     name = "tolerance"
@@ -224,7 +232,6 @@ def test_absurd_settings_are_refused(rocking, solver, value):
     assert (status, out) == (2, "") and told(status, err) and name in err
 
 
-@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes on this system")
 @pytest.mark.parametrize("kind", ["pipe", "/dev/zero", "folder"])
 @pytest.mark.parametrize("arguments", READERS, ids=" ".join)
 def test_a_pipe_a_device_and_a_folder_are_refused(rocking, place, arguments, kind):
@@ -319,7 +326,7 @@ def test_no_combination_of_bad_words_and_places_ends_in_a_traceback(rocking, pla
     """Seeded."""
     monkeypatch.setattr("engines.ENGINES", {})  # runs of the analytic model alone
     draw, seen = random.Random(20261121), set()
-    for _ in range(400):
+    for _ in range(200):
         command = draw.choice(COMMANDS)
         words = WORDS + {"design": DESIGN, "record": RECORD}.get(command[0] if command else "", ())
         if command[:2] == ["report", "--output"] or command[:1] == ["study"]:

@@ -167,24 +167,19 @@ def test_a_file_that_does_not_belong_to_the_others_is_refused(both, spoil, words
 
 
 @MADE_ONCE
-def test_a_folder_without_the_models_file_and_one_that_is_none_say_what_to_do(copy):
+def test_a_folder_that_is_no_result_or_is_one_itself_says_what_to_do(copy):
+    itself = r"--output .*made: is itself a result; give the folder that it lies in, .*runs$"
+    for work in (lambda: computed(copy, SECOND), lambda: check_all("made", copy, 1, 1)):
+        with pytest.raises(SettingError, match=itself):
+            work()
     (copy / f"{MODEL}.json").unlink()
-    with pytest.raises(ResultError, match="^made/analytic.json: missing; run the study again"):
-        read(copy)
-    with pytest.raises(ResultError, match="^none: no such result; run the study that writes it"):
-        read(copy.parent / "none")
-    with pytest.raises(ResultError, match="^runs: holds results, and is none; give one of its folders, such as made"):
-        read(copy.parent)
-
-
-@MADE_ONCE
-def test_a_result_is_not_taken_for_the_folder_that_it_lies_in(both):
-    with pytest.raises(
-        SettingError, match=r"--output .*made: is itself a result; give the folder that it lies in, .*runs$"
+    for folder, words in (
+        (copy, "^made/analytic.json: missing; run the study again"),
+        (copy.parent / "none", "^none: no such result; run the study that writes it"),
+        (copy.parent, "^runs: holds results, and is none; give one of its folders, such as made"),
     ):
-        computed(both, SECOND)
-    with pytest.raises(SettingError, match="is itself a result"):
-        check_all("made", both, 1, 1)
+        with pytest.raises(ResultError, match=words):
+            read(folder)
 
 
 @MADE_ONCE
@@ -213,31 +208,26 @@ def test_a_check_that_is_recorded_takes_the_place_of_all_before(both):
 
 @MADE_ONCE
 def test_a_result_is_asked_what_it_was_asked(one):
-    assert opened(MADE, one, False, {})[1:] == (False, {"mass": 2.0})
-    assert opened(MADE, one, False, {"mass": 2.0})[1:] == (False, {"mass": 2.0})
-    with pytest.raises(SettingError, match="--mass 3.0: .* was computed with 2.0; leave it out"):
-        opened(MADE, one, False, {"mass": 3.0})
-    with pytest.raises(SettingError, match="--quick: .* was computed in full; leave it out"):
-        opened(MADE, one, True, {})
-    with pytest.raises(ResultError, match="holds a result of made; give another --output"):
-        opened(Study("other", "", MADE.plan), one, False, {})
-    recorded = RESULTS / "recorded"
-    assert opened(get_study("recorded"), recorded, False, {"records": "mine"})[2] == {"records": "mine"}
+    for options in ({}, {"mass": 2.0}):
+        assert opened(MADE, one, False, options)[1:] == (False, {"mass": 2.0})
+    for study, quick, options, error, words in (
+        (MADE, False, {"mass": 3.0}, SettingError, "--mass 3.0: .* was computed with 2.0; leave it out"),
+        (MADE, True, {}, SettingError, "--quick: .* was computed in full; leave it out"),
+        (Study("other", "", MADE.plan), False, {}, ResultError, "holds a result of made; give another --output"),
+    ):
+        with pytest.raises(error, match=words):
+            opened(study, one, quick, options)
+    assert opened(get_study("recorded"), RESULTS / "recorded", False, {"records": "mine"})[2] == {"records": "mine"}
 
 
 @pytest.mark.parametrize("path", results_in(RESULTS), ids=lambda path: path.name)
 def test_every_stored_result_is_the_sum_of_its_files(path):
-    whole, names = read(path), [file.stem for file in path.glob("*.json") if file.stem != MODEL]
-    again = joined(
-        {
-            name: read_result(path / f"{name}.json") if name in names else part
-            for name, part in split(whole, names).items()
-        }
-        | {MODEL: read_result(path / f"{MODEL}.json")}
-    )
+    parts = {file.stem: read_result(file) for file in path.glob("*.json")}
+    whole = read(path)
+    again = joined(parts | split(whole, parts.keys() - {MODEL}) | {MODEL: parts[MODEL]})
     assert again.rows == whole.rows and again.settings == whole.settings and again.arrays.keys() == whole.arrays.keys()
-    for name, part in split(whole, names).items():
-        own = read_result(path / f"{name}.json")
+    for solver, part in split(whole, parts.keys() - {MODEL}).items():
+        own = parts[solver]
         assert (part.rows, part.settings, part.runs) == (own.rows, own.settings, own.runs)
         assert part.arrays.keys() == own.arrays.keys()
 

@@ -9,7 +9,6 @@ import sys
 import threading
 import time
 
-import psutil
 import pytest
 
 pytest.importorskip("distributed")
@@ -54,46 +53,20 @@ def test_a_crash_and_a_hang_cost_one_row_each_with_evidence(tmp_path, local):
     assert rows[5].failure["kind"] == "time limit" and "in hangs" in rows[5].failure["message"]
 
 
-def kill_again_and_again(executor, times, log, left):
-    """Kill a worker whenever some more runs were done; what its family left alive 10 s later goes to `left`."""
-    done = 0
-    for _ in range(times):
-        while log.exists() and len(log.read_text().split()) < done + 8 or not log.exists():
-            time.sleep(0.02)
-        done = len(log.read_text().split())
-        with contextlib.suppress(psutil.Error, TimeoutError):
-            victim = psutil.Process(min(executor._client.run(os.getpid).values()))
-            family = victim.children(recursive=True)
-            victim.kill()
-            left += psutil.wait_procs(family, timeout=10)[1]
-
-
-@pytest.mark.long
-def test_a_worker_killed_five_times_loses_nothing_and_leaves_nothing(tmp_path):
-    log, kills = tmp_path / "log", 5
-    count = 40 + 40 * kills
-    left = []
-    with Cluster("local:2", ["fake_solvers:counted"]) as executor:
-        killer = threading.Thread(target=kill_again_and_again, args=(executor, kills, log, left))
-        killer.start()
-        rows = sweep(fake_solvers.slow(log, count), tmp_path / "s.jsonl", executor=executor)
-        killer.join()
-    assert not left
-    assert [row.values["peak"] for row in rows] == [(1e-3 * i) ** 2 for i in range(count)]
-    assert (tmp_path / "s.jsonl").read_bytes().count(b"\n") == count
-
-
-def test_a_worker_with_other_code_or_versions_is_one_message_before_the_first_run():
-    mine = module._state(("analytic",))
-    module._check_same("tcp://a:1", dict(mine), mine)
-    for other, words in (
-        (mine | {"numpy": "1.0.0"}, r"worker tcp://a:1 differs: numpy 1\.0\.0 there, [\d.]+ here; install"),
-        (mine | {"analytic.newer": "0"}, "differs: the code of analytic.newer; install"),
-        (mine | {"analytic.kernel": "0"}, "differs: the code of analytic.kernel; install"),
+@pytest.mark.parametrize(
+    "other, words",
+    [
+        ({}, None),
+        ({"numpy": "1.0.0"}, r"worker a differs: numpy 1\.0\.0 there, [\d.]+ here; install"),
+        ({"analytic.newer": "0"}, "differs: the code of analytic.newer; install"),
+        ({"analytic.kernel": "0"}, "differs: the code of analytic.kernel; install"),
         (ModuleNotFoundError("no analytic"), "cannot load this project .ModuleNotFoundError: no analytic"),
-    ):
-        with pytest.raises(ClusterError, match=words):
-            module._check_same("tcp://a:1", other, mine)
+    ],
+)
+def test_a_worker_with_other_code_or_versions_is_one_message_before_the_first_run(monkeypatch, other, words):
+    state = other if isinstance(other, Exception) else module._state(("analytic",)) | other
+    with pytest.raises(ClusterError, match=words) if words else contextlib.nullcontext():
+        checked(monkeypatch, Workers({"a": state}, lost=(), gone_after=0))
 
 
 class Workers:
@@ -137,70 +110,61 @@ def free_port():
         return free.getsockname()[1]
 
 
-def test_an_address_that_is_none_is_one_message():
-    nobody = "no scheduler answers there .*; give host:port"
-    cases = {
-        "local:many": "give local:N",
-        "local:0": "give 1 to",
-        "nowhere": nobody,
-        f"127.0.0.1:{free_port()}": nobody,
-    }
-    for address, words in cases.items():
-        with pytest.raises(SettingError, match=words):
-            Cluster(address)
+@pytest.mark.parametrize(
+    "address, words",
+    [
+        ("local:many", "give local:N"),
+        ("local:0", "give 1 to"),
+        *((one, "no scheduler answers there .*; give host:port") for one in ("nowhere", "127.0.0.1:{}")),
+    ],
+)
+def test_an_address_that_is_none_is_one_message(address, words):
+    with pytest.raises(SettingError, match=words):
+        Cluster(address.format(free_port()))
 
 
-@contextlib.contextmanager
-def scheduler(folder, workers):
-    """(address, process) of a scheduler with so many workers, each a program of its own, as on a cluster."""
-    port = free_port()
-    worker = ("worker", f"127.0.0.1:{port}", "--nthreads", "1", "--death-timeout", "30")
-    options = dict(cwd=folder, env=fake_solvers.ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+@pytest.fixture
+def programs(tmp_path):
+    """(address, processes) of a scheduler and two workers, each a program of its own, as on a cluster."""
+    address = f"127.0.0.1:{free_port()}"
+    worker = ("worker", address, "--nthreads", "1", "--death-timeout", "30")
+    options = dict(cwd=tmp_path, env=fake_solvers.ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     started = [
         subprocess.Popen(
             [sys.executable, "-m", f"distributed.cli.dask_{name}", *arguments, "--no-dashboard"],
             start_new_session=True,
             **options,
         )
-        for name, *arguments in [("scheduler", "--host", "127.0.0.1", "--port", str(port)), *[worker] * workers]
+        for name, *arguments in (("scheduler", "--host", *address.replace(":", " --port ").split()), worker, worker)
     ]
-    try:
-        with Client(f"127.0.0.1:{port}", timeout=60, set_as_default=False) as client:
-            client.wait_for_workers(workers, timeout=60)
-        yield f"127.0.0.1:{port}", started[0]
-    finally:
-        for process in started:
-            os.killpg(process.pid, signal.SIGKILL)  # its family, too
-
-
-LONG_STUDY = """
-import sys
-from fake_solvers import slow, sweep
-from comparisons.running.cluster import Cluster, ClusterError
-try:
-    with Cluster(sys.argv[1], ["fake_solvers:counted"]) as executor:
-        sweep(slow(sys.argv[2], 120), sys.argv[3], executor)
-except ClusterError as error:
-    sys.exit(f"error: {error}")
-"""
+    with Client(address, timeout=60, set_as_default=False) as client:
+        client.wait_for_workers(2, timeout=60)
+    yield address, started
+    for process in started:
+        os.killpg(process.pid, signal.SIGKILL)  # its family, too
 
 
 @pytest.mark.long
-def test_a_scheduler_that_dies_ends_the_sweep_with_one_message_and_the_same_command_resumes(tmp_path):
-    log, store = tmp_path / "log", tmp_path / "s.jsonl"
-    with scheduler(tmp_path, 2) as (address, process):
-        command = [sys.executable, "-c", LONG_STUDY, address, log, store]
-        study = subprocess.Popen(command, env=fake_solvers.ENVIRONMENT, stderr=subprocess.PIPE, text=True)
-        while study.poll() is None and not (store.exists() and store.read_bytes().count(b"\n") >= 10):
-            time.sleep(0.02)
-        process.send_signal(signal.SIGKILL)
-        began = time.monotonic()
-        words = study.communicate(timeout=60)[1]
-        assert time.monotonic() - began < 10
-    assert study.returncode == 1 and words.count("\n") == 1 and "is gone; rows done so far are kept" in words, words
+def test_a_dead_worker_costs_nothing_a_dead_scheduler_ends_with_one_message_and_the_same_sweep_resumes(
+    tmp_path, programs, local
+):
+    (address, (scheduler, worker, _)), log, store = programs, tmp_path / "log", tmp_path / "s.jsonl"
+
+    def kill():
+        for process, rows in ((worker, 10), (scheduler, 40)):
+            while not (store.exists() and store.read_bytes().count(b"\n") >= rows):
+                time.sleep(0.02)
+            process.kill()
+
+    which, killer = fake_solvers.slow(log, 200), threading.Thread(target=kill)
+    killer.start()
+    with (
+        pytest.raises(ClusterError, match="is gone; rows done so far are kept"),
+        Cluster(address, ["fake_solvers:counted"]) as executor,
+    ):
+        sweep(which, store, executor)
+    killer.join()
     kept = store.read_bytes().count(b"\n")
-    assert 10 <= kept < 120
-    with scheduler(tmp_path, 1) as (address, _), Cluster(address, ["fake_solvers:counted"]) as executor:
-        rows = sweep(fake_solvers.slow(log, 120), store, executor)
-    assert [row.values["peak"] for row in rows] == [(1e-3 * i) ** 2 for i in range(120)]
-    assert sum(row.reused for row in rows) == kept
+    rows = sweep(which, store, local)
+    assert 40 <= kept < 200 and sum(row.reused for row in rows) == kept
+    assert [row.values["peak"] for row in rows] == [(1e-3 * i) ** 2 for i in range(200)]

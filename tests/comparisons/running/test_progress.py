@@ -28,33 +28,24 @@ def compiled(name, module):
     return njit(function)(1)
 
 
-@pytest.fixture
-def told(monkeypatch):
-    """What a bar is told, from the start on, on a terminal."""
-    found = []
+def test_functions_of_the_model_are_counted_as_they_are_compiled(monkeypatch):
+    told, known = [], Counted().known
 
     @contextlib.contextmanager
     def bar(text, functions):
-        found.append((text, functions))
-        yield lambda done, known: found.append((done, known))
+        told.append((text, functions))
+        yield lambda done, known: told.append((done, known))
 
     monkeypatch.setattr(progress, "PATIENCE", 0.0)
     monkeypatch.setattr(progress, "bar", bar)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    return found
-
-
-def test_functions_of_the_model_are_counted_as_they_are_compiled(told):
-    known = Counted().known
     with progress.compiling():
         while not told:
             time.sleep(0.01)  # the bar is shown from another thread
-        compiled("first", "analytic.made")
-        compiled("other", "somewhere.analytic")
-        compiled("second", "analytic.made")
-    assert told[0] == (progress.COMPILING, known) and told[1:] == [(0, known), *((k, max(k, known)) for k in (1, 2))]
+        for name, module in (("first", "analytic.made"), ("other", "somewhere.analytic"), ("second", "analytic.made")):
+            compiled(name, module)
     compiled("third", "analytic.made")  # nobody listens any more
-    assert len(told) == 4
+    assert told == [(progress.COMPILING, known), (0, known), *((k, max(k, known)) for k in (1, 2))]
 
 
 def test_the_bar_shows_the_count_and_goes_beyond_what_was_known(capsys, monkeypatch):

@@ -130,26 +130,31 @@ def test_a_change_ages_what_reaches_it_and_is_named(package, module, old, new, c
     assert [one.removeprefix("some_package.") for one in changes(kept)] == ([changed] if changed else [])
 
 
-def test_moving_a_definition_ages_nothing_and_one_in_its_place_does(package):
+MOVED = "def g():\n    return [late for late in range(2)]\n"
+OTHER = "\n\ndef h():\n    return STEP\n"
+
+
+@pytest.mark.parametrize(
+    "steps, changed",
+    [
+        ({"b": (MOVED, "from .late import g\n"), "late": ("", MOVED + "late = 1\n")}, []),  # moved
+        ({"b": (MOVED, "from .c import g\n"), "c": ("", MOVED.replace("2", "5"))}, ["some_package.c.g"]),
+        ({"b": ("STEP = 0.1\n", "from .c import STEP\n"), "c": ("", "STEP = 0.1\n")}, []),
+    ],
+)
+def test_moving_a_definition_ages_nothing_and_one_in_its_place_does(package, steps, changed):
     kept = kept_digests([ROOT])
-    moved = "def g():\n    return [late for late in range(2)]\n"
-    package("b", FILES["b"].replace(moved, "from .late import g\n"))
-    package("late", FILES["late"] + moved + "late = 1\n")
-    assert not changes(kept)
-    package("c", FILES["c"] + moved.replace("2", "5"))
-    package("b", FILES["b"].replace(moved, "from .c import g\n"))
-    assert changes(kept) == ["some_package.c.g"]
-    package("c", FILES["c"] + "STEP = 0.1\n")
-    package("b", FILES["b"].replace("STEP = 0.1\n", "from .c import STEP\n"))
-    assert not changes(kept)
+    for name, (old, new) in steps.items():
+        package(name, FILES[name].replace(old, new) if old else FILES[name] + new)
+    assert changes(kept) == changed
 
 
 def test_one_definition_in_place_of_another_that_is_there_too_is_a_change(package):
     """Files joined in silence: two constants of one name become one."""
-    package("c", FILES["c"] + "STEP = 0.3\n\ndef h():\n    return STEP\n")
+    package("c", FILES["c"] + "STEP = 0.3" + OTHER)
     package("a", FILES["a"].replace("import c, unread", "import c").replace('"two": c.x', '"two": c.h()'))
     kept = kept_digests([ROOT])
-    package("c", FILES["c"] + "from .b import STEP\n\ndef h():\n    return STEP\n")
+    package("c", FILES["c"] + "from .b import STEP" + OTHER)
     assert changes(kept) == ["some_package.c.h"]
 
 

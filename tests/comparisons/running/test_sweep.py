@@ -2,7 +2,6 @@
 
 import json
 import os
-import resource
 import signal
 import subprocess
 import sys
@@ -16,19 +15,12 @@ from answered import Here
 from fake_solvers import cases, results, scene, sweep
 
 from analytic import EngineNotInstalled
+from comparisons.running import cases as run_cases
 from comparisons.running.cases import Case
 from comparisons.running.executors import Processes
-from comparisons.running.sweep import Store, StoreError
+from comparisons.running.sweep import Store
 
 OURS = (str(Path(__file__).parents[2]), f"{Path.home()}/", sys.prefix)  # folders that no stored failure names
-
-
-def test_rows_come_in_the_order_of_the_cases_with_costs_apart(tmp_path):
-    rows = sweep(cases(), tmp_path / "s.jsonl")
-    assert [row.case.tag["i"] for row in rows] == list(range(10))
-    assert [row.values for row in rows] == [{"outcome": "stands", "peak": round(0.01 * i, 6) ** 2} for i in range(10)]
-    assert all(row.cost["cpu_seconds"] > 0 and "cpu_seconds" not in row.values for row in rows)
-    assert not any(row.reused or row.failed for row in rows)
 
 
 def test_one_and_two_workers_and_this_process_agree_in_any_order(tmp_path):
@@ -38,6 +30,10 @@ def test_one_and_two_workers_and_this_process_agree_in_any_order(tmp_path):
     one = sweep(which, tmp_path / "1.jsonl", workers=1, time_limit=20.0)
     two = sweep(which[::-1], tmp_path / "2.jsonl", workers=2, time_limit=20.0)
     assert results(one) == results(two)[::-1] == results(here) and not any(row.failed for row in here)
+    assert [row.values for row in here[:60]] == [
+        {"outcome": "stands", "peak": round(0.01 * i, 6) ** 2} for i in range(60)
+    ]
+    assert all(row.cost["cpu_seconds"] > 0 and "cpu_seconds" not in row.values for row in here)
 
 
 def test_rows_are_reused_and_equal_cases_run_once(tmp_path):
@@ -59,54 +55,46 @@ def test_a_key_follows_scene_solver_variant_settings_tag_and_measure():
 
 
 def test_a_key_follows_versions_and_source_code(tmp_path, monkeypatch):
-    import comparisons.running.cases as module
-
     monkeypatch.syspath_prepend(str(tmp_path))
     file = tmp_path / "changing_solver.py"
 
     def key(text):
         file.write_text(text)
         os.utime(file, ns=(time.time_ns(), time.time_ns()))
-        module.fingerprint.cache_clear()
+        run_cases.fingerprint.cache_clear()
         return Case(scene(0.1), "changing_solver:simulate").key(fake_solvers.tilt)
 
     first = key("def simulate(scene):\n    return 1\n")
     assert key('"""Better words."""\ndef simulate(scene):\n    return 1  # one\n') == first
     assert key("def simulate(scene):\n    return 2\n") != first
     assert key("def simulate(scene):\n    return 1\n") == first
-    monkeypatch.setattr(module, "version_of", lambda package: "0.0")
+    monkeypatch.setattr(run_cases, "version_of", lambda package: "0.0")
     assert key("def simulate(scene):\n    return 1\n") != first
 
 
-@pytest.mark.parametrize("solver, said", [("exits", "exit code 3"), ("segfaults", "SIGSEGV")])
-def test_a_crashing_worker_costs_one_row_with_evidence(tmp_path, solver, said):
-    rows = sweep(cases(solver, 40), tmp_path / "s.jsonl")
-    assert [row.case.tag["i"] for row in rows if row.failed] == [5]
+@pytest.mark.parametrize(
+    "solver, settings, kind, reason, message, again",
+    [
+        ("exits", {}, "crash", "exit code 3", "engine: assertion failed in contact", False),
+        ("segfaults", {}, "crash", "SIGSEGV", "in segfaults", False),
+        ("hangs", {"seconds": 2.0}, "time limit", "0.5 s", "in hangs", False),
+        *(("killed", {"number": int(one)}, "crash", one.name, "", True) for one in (signal.SIGKILL, signal.SIGHUP)),
+    ],
+)
+def test_what_ends_a_worker_costs_one_row_with_evidence(tmp_path, solver, settings, kind, reason, message, again):
+    which, store = cases(solver, 12, **settings), tmp_path / "s.jsonl"
+    limit = 0.5 if solver == "hangs" else 60.0
+    rows = sweep(which, store, time_limit=limit)
+    assert [row.case.tag["i"] for row in rows if row.failed] == [5] and rows[5].values == {"outcome": "failed"}
     failure = rows[5].failure
-    assert failure["kind"] == "crash" and said in failure["reason"] and rows[5].values == {"outcome": "failed"}
-    assert {"exits": "engine: assertion failed in contact", "segfaults": "in segfaults"}[solver] in failure["message"]
+    assert failure["kind"] == kind and reason in failure["reason"] and message in failure["message"]
     assert not any(folder in json.dumps(failure) for folder in OURS)
-    assert all(row.reused for row in sweep(cases(solver, 40), tmp_path / "s.jsonl"))
-
-
-def test_a_hanging_worker_costs_one_row_with_the_place_it_hung_at(tmp_path):
-    store, which = tmp_path / "s.jsonl", cases("hangs", 12, seconds=2.0)
-    rows = sweep(which, store, time_limit=0.5)
-    assert [row.case.tag["i"] for row in rows if row.failed] == [5]
-    assert rows[5].failure["kind"] == "time limit" and "0.5 s" in rows[5].failure["reason"]
-    assert "in hangs" in rows[5].failure["message"]
-    # A lower limit does not run it again; a higher one does, and that alone.
-    assert all(row.reused for row in sweep(which, store, time_limit=0.4))
-    rows = sweep(which, store, time_limit=20.0)
-    assert [row.case.tag["i"] for row in rows if not row.reused] == [5] and not rows[5].failed
-
-
-@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGHUP])
-def test_a_worker_killed_from_outside_is_a_failed_row_and_runs_again_next_time(tmp_path, number):
-    which = cases("killed", 1, number=int(number))
-    rows = sweep(which, tmp_path / "s.jsonl")
-    assert number.name in rows[0].failure["reason"]
-    assert not sweep(which, tmp_path / "s.jsonl")[0].reused
+    assert all(row.reused for row in sweep(which[:5], store, time_limit=0.8 * limit))
+    # a lower limit runs none again; a higher one what it had cut off, and that alone; what was killed from outside is
+    assert [row.reused for row in sweep(which[5:6], store, time_limit=0.8 * limit)] == [not again]
+    if kind == "time limit":
+        rows = sweep(which, store, time_limit=20.0)
+        assert [row.case.tag["i"] for row in rows if not row.reused] == [5] and not rows[5].failed
 
 
 def test_exceptions_and_failed_responses_become_failed_rows(tmp_path):
@@ -152,9 +140,7 @@ def test_workers_killed_while_idle_are_replaced(tmp_path):
 
 
 def test_workers_that_cannot_start_are_an_error_not_an_endless_loop(tmp_path, monkeypatch):
-    import comparisons.running.executors as module
-
-    monkeypatch.setattr(module, "_start_worker", os._exit)  # the initializer ends every worker
+    monkeypatch.setattr("comparisons.running.executors._start_worker", os._exit)  # the initializer ends every worker
     with pytest.raises(RuntimeError, match="end before they take up any run"):
         sweep(cases(count=3), tmp_path / "s.jsonl", workers=1)
 
@@ -183,60 +169,3 @@ def test_kill_9_then_resume_equals_an_uninterrupted_sweep(tmp_path):
     rows = sweep(fake_solvers.slow(log, 40), store)
     assert sum(row.reused for row in rows) == saved and len(log.read_text().split()) - begun == 40 - saved
     assert [row.values["peak"] for row in rows] == [(1e-3 * i) ** 2 for i in range(40)]
-
-
-def line(key, value):
-    return json.dumps({"key": key, "values": value})
-
-
-def rows(path, *lines):
-    """{key: values} of the rows in a file after these lines were appended."""
-    with Store(path) as store:
-        store.append(lines)
-        return {key: row["values"] for key, row in store.rows.items()}
-
-
-def test_rows_come_back_and_the_last_of_a_key_counts(tmp_path):
-    path = tmp_path / "new" / "s.jsonl"
-    assert rows(path, line("a", 1), line("b", 2)) == {"a": 1, "b": 2}
-    assert rows(path, line("a", 3)) == rows(path) == {"a": 3, "b": 2}
-
-
-@pytest.mark.parametrize("cut", [1, 5, 20])
-def test_a_torn_last_line_is_dropped_and_the_file_goes_on(tmp_path, cut):
-    path = tmp_path / "s.jsonl"
-    rows(path, line("a", 1), line("b", 2), line("c", 3))
-    path.write_bytes(path.read_bytes()[:-cut])
-    assert rows(path) == {"a": 1, "b": 2} and path.read_bytes().endswith(b"\n")
-    assert rows(path, line("d", 4)) == rows(path) == {"a": 1, "b": 2, "d": 4}
-
-
-@pytest.mark.parametrize(
-    "damage", [b"not json", b'{"values": 1}', b'{"key": []}', b"[1]", b"\x00\x00", b"\xff\xfe", b"[" * 100_000]
-)
-def test_a_damaged_whole_line_is_an_error_that_names_it(tmp_path, damage):
-    path = tmp_path / "s.jsonl"
-    path.write_bytes(b"\n".join([line("a", 1).encode(), damage, line("b", 2).encode(), b""]))
-    with pytest.raises(StoreError, match="s.jsonl, line 2: not a row of results"):
-        Store(path)
-
-
-def test_a_second_writer_is_refused_while_the_first_writes(tmp_path):
-    pytest.importorskip("fcntl")
-    with Store(tmp_path / "s.jsonl"), pytest.raises(StoreError, match="another sweep is writing to it"):
-        Store(tmp_path / "s.jsonl")
-    assert rows(tmp_path / "s.jsonl") == {}
-
-
-def test_on_a_full_disk_the_rows_so_far_are_kept_and_it_goes_on_when_there_is_room(tmp_path):
-    path, before = tmp_path / "s.jsonl", resource.getrlimit(resource.RLIMIT_FSIZE)
-    with Store(path) as store:
-        store.append([line("a", 1)])
-        resource.setrlimit(resource.RLIMIT_FSIZE, (path.stat().st_size + 9, before[1]))
-        try:
-            with pytest.raises(StoreError, match="the rows so far are kept: make room and run again"):
-                store.append([line("b", 2), line("c", 3)])
-        finally:
-            resource.setrlimit(resource.RLIMIT_FSIZE, before)
-        assert [*store.rows] == ["a"]
-    assert rows(path) == {"a": 1} and rows(path, line("b", 2)) == {"a": 1, "b": 2}
