@@ -10,6 +10,7 @@ import time
 
 import psutil
 import pytest
+from forks import fork
 
 from analytic import load_scene, simulate
 from comparisons.cli.interrupts import stoppable
@@ -64,7 +65,7 @@ def test_signals_while_this_process_itself_is_in_the_kernel(tmp_path, monkeypatc
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     simulate(load_scene("caryatid-isolated"))  # compiled
     reads, tells = os.pipe()
-    child = os.fork()
+    child = fork()
     if child == 0:
         os.dup2(tells, 2)
         with stoppable():

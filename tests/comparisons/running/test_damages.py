@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from bad_scenes import SCENE, write_scene
+from forks import fork
 
 from comparisons import cli
 from comparisons.lessons import export
@@ -115,7 +116,7 @@ def damaged(call, met, number, work):
     """(status, words) of some work in a process of its own, where the `number`-th call of a function of os is met by a
     damage, or no file may become longer."""
     reads, tells = os.pipe()
-    child = os.fork()
+    child = fork()
     if child == 0:
         signal.signal(signal.SIGINT, signal.default_int_handler)  # else ignored in the background
         sys.stdout = sys.stderr = os.fdopen(tells, "w", 1)
