@@ -249,6 +249,7 @@ print(json.dumps(found))
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("names", [SUBJECTS, OTHERS], ids="-".join)
 def test_only_assisted_variants_use_the_formula_of_the_restitution(tmp_path, names):
     """Of the engines here none; the fake one does, which shows that its use is seen."""

@@ -70,7 +70,6 @@ def test_a_seed_is_the_plans_where_it_takes_one_and_else_belongs_to_a_check(rock
         assert status == found[0] and (not status or err == found[1])
     assert read(tmp_path / "draws" / "draws").settings["seed"] == 3
     assert rocking("study", "stability", "--write")[::2] == (2, "Error: --write: belongs to --check\n")
-    assert "--seed" in rocking("study", "statues", "--help")[1]
 
 
 def test_an_engine_is_run_alone_with_the_options_of_the_result_that_is_there(rocking, monkeypatch, tmp_path):

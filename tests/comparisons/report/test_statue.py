@@ -116,6 +116,7 @@ def test_the_scenes_own_motion_counts_among_the_records_and_once(quick, tmp_path
         assert [row["overturns"] for row in rows if row["record"] != "other"] == [1] * bool(count)
 
 
+@pytest.mark.slow
 def test_one_that_rocks_gets_its_own_restitution_and_replaces_an_older_report(quick, tmp_path):
     (tmp_path / SCENES).write_text("of an older report")
     bust = ISOLATED.with_(name="bust", motion=PulseMotion("one-sine", 1.0, 6.0))

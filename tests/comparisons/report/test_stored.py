@@ -43,6 +43,7 @@ def test_every_stored_result_can_be_shown_without_any_engine(studies):
     assert {one.name for one in studies} == {path.name for path in results_in(RESULTS)}
 
 
+@pytest.mark.slow
 def test_the_readme_shows_and_says_what_the_stored_results_do(studies):
     first, readme = first_screen(studies), README.read_text(encoding="utf-8")
     made, words = gallery(first), headlines(first)

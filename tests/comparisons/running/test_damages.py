@@ -84,7 +84,7 @@ def exported(*words):
 WRITERS = {one.__name__: one for one in (page, result, check, several, runs, scene, run)}
 WRITERS |= {"sheet": exported("sheet"), "lesson": exported("lessons", "export")}
 DEAR = ("sheet", "lesson")
-SLOW = (*DEAR, "run", "scene")
+SLOW = (*DEAR, "run", "scene", "check", "several")
 
 
 def full():

@@ -44,6 +44,8 @@ from comparisons.studies.caryatid.variations import (
 )
 from engines import ENGINES, installed_engines
 
+pytestmark = pytest.mark.xdist_group("caryatid")  # its runs are made once
+
 STUDY = get_study("caryatid")
 
 

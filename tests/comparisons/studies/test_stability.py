@@ -41,6 +41,8 @@ from comparisons.studies.stability.study import (
 )
 from engines import get_engine, installed_engines
 
+pytestmark = pytest.mark.xdist_group("stability")  # its runs are made once
+
 STUDY = get_study("stability")
 
 CASES = hard_cases()

@@ -21,6 +21,8 @@ from comparisons.studies.statues.study import fates
 from engines import ENGINES, get_engine
 from engines.statue_range import outside
 
+pytestmark = pytest.mark.xdist_group("statues")  # its runs are made once
+
 NAMES = list(ENGINES)[:2]  # the subjects
 RECORDS = (synthetic_motion(seed=1).scaled(0.5), synthetic_motion(seed=2))
 STUDY = get_study("statues")
