@@ -37,7 +37,13 @@ def test_quick_commands_work_in_their_order_and_the_scene_file_is_the_one_they_w
 
 @pytest.mark.timeout(1400)
 @pytest.mark.parametrize(
-    "words", [pytest.param(words, marks=SLOW[words[0]], id=" ".join(words)) for words in COMMANDS if words[0] in SLOW]
+    "words",
+    [
+        # a report without a scene is test_report.py's
+        pytest.param(words, marks=pytest.mark.long if words == ["report"] else SLOW[words[0]], id=" ".join(words))
+        for words in COMMANDS
+        if words[0] in SLOW
+    ],
 )
 def test_a_command_that_takes_long_works_after_the_first(rocking, tmp_path, monkeypatch, words):
     monkeypatch.chdir(tmp_path)

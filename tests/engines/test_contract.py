@@ -486,7 +486,12 @@ def test_what_an_adapter_raises_names_its_line(monkeypatch, tmp_path, source, wo
     "old, new, words",
     [
         ('{"crude-engine": "0.1"}', "1 / 0", "crude_engine.versions fails"),
-        ("import math", "import no_such_package", BY.format(ENTRY, "crude-engine") + "it cannot be imported"),
+        pytest.param(
+            "import math",
+            "import no_such_package",
+            BY.format(ENTRY, "crude-engine") + "it cannot be imported",
+            marks=pytest.mark.long,
+        ),
     ],
 )
 def test_the_commands_name_a_broken_one_in_one_message(tmp_path, old, new, words):

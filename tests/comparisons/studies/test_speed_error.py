@@ -294,7 +294,7 @@ def test_what_a_recommended_level_gives_at_a_boundary_is_told_though_it_is_not_j
     assert {row["measure"] for row in levels_run(result)} == {"boundary_shift", "restitution", "peak_tilt"}
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_study_repeats_bit_for_bit(tmp_path, near):
     pytest.importorskip("pybullet")
     some = (("analytic", "kernel"), ("time-stepping", ""), ("pybullet", "fixed-step"))
