@@ -128,10 +128,8 @@ def held(scene, motions, points, stroke, tilt=0.0):
     return holds
 
 
-@pytest.mark.parametrize(
-    ("stroke", "tilt", "scale"),
-    [pytest.param(0.25, 0.0, 1.0, marks=pytest.mark.slow), pytest.param(0.3, 0.2, 1.5, marks=pytest.mark.long)],
-)
+@pytest.mark.long
+@pytest.mark.parametrize(("stroke", "tilt", "scale"), [(0.25, 0.0, 1.0), (0.3, 0.2, 1.5)])
 def test_the_region_is_that_of_single_runs_but_within_one_per_cent_of_its_edge(stroke, tilt, scale):
     motions = [synthetic_motion().scaled(scale), synthetic_motion(seed=7).scaled(scale)]
     scan = scan_bearings(SCENE, motions, stroke, tilt=tilt)

@@ -280,7 +280,7 @@ def test_interrupt_ends_the_run_within_a_second_and_is_no_failure(variant):
         signal.signal(signal.SIGINT, outside)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("variant, settings", [("native-contact", {"step": 1e-4}), ("compliant-corners", {})])
 def test_memory_does_not_grow_with_the_number_of_runs(variant, settings):
     """exudyn keeps a system alive that has a user function: its steps (400 bytes each) and the ground's segments."""

@@ -66,7 +66,7 @@ def but(*slow):
 
 
 APPLIES = pytest.param(FAKE_ENGINE, id="applies the impact")
-DECIDES = pytest.param(DECIDING, id="decides the impact", marks=pytest.mark.slow)
+DECIDES = pytest.param(DECIDING, id="decides the impact", marks=pytest.mark.long)
 
 
 @pytest.fixture(params=[APPLIES, DECIDES])
