@@ -353,6 +353,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.slow
 def test_an_engine_from_outside_is_one_of_the_engines_here_and_in_workers_which_greet_nobody(tmp_path):
     program = install_fake_engine(tmp_path) / "program.py"
     (tmp_path / "first.py").write_text("def impact(case, response):\n    return {'time': response.impacts[0].time}\n")

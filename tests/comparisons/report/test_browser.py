@@ -150,6 +150,7 @@ def can_be_read(page):
     return len(texts)
 
 
+@pytest.mark.slow
 def test_lettering_in_pictures_can_be_read(report, opened):
     assert can_be_read(opened(report, PHONE)) > 100
 
@@ -173,7 +174,12 @@ def test_every_page_is_as_wide_as_a_phone_or_the_paper_and_can_be_read_in_the_da
 @pytest.mark.slow
 def test_axe_finds_nothing_serious(pages, opened):
     axe = pytest.importorskip("axe_playwright_python.sync_playwright")
-    for number, file in enumerate(pages):
+    some = [
+        file
+        for file in pages
+        if file.stem == "report" or file.stem in ("runs", "restitution", "overturning", "statues", "caryatid-paper")
+    ]
+    for number, file in enumerate(some):
         contrast = {"color-contrast": {"enabled": file.stem in ("report", "restitution")}}  # dear; one style for all
         page = opened(file, scheme=("light", "dark")[number % 2])
         found = axe.Axe().run(page, options={"rules": contrast, "resultTypes": ["violations"]}).response["violations"]

@@ -34,6 +34,7 @@ def written(folder, text):
     return load_scene(folder / "scene.toml")
 
 
+@pytest.mark.slow
 def test_the_nearest_change_and_five_per_cent_of_the_motion_are_where_single_runs_are(tmp_path):
     scene = written(tmp_path, BRONZE.format(scale=CLIFF))
     found, own = statue_of(scene, {}), simulate(scene, history=False)
@@ -167,7 +168,7 @@ def fate(scene, motion, width=None):
     return simulate(scene.with_(block=block, motion=motion, duration=None), history=False).outcome
 
 
-COSTS = {"a block's file.toml": [pytest.mark.slow], "bust.toml": [pytest.mark.long]}
+COSTS = {"a block's file.toml": [pytest.mark.slow], "calm.toml": [pytest.mark.slow], "bust.toml": [pytest.mark.long]}
 
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=COSTS.get(name, [])) for name in CARDS])

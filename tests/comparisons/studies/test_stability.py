@@ -230,6 +230,7 @@ def tried(tmp_path_factory):
     return stored(place, "stability", answered(asked, by_runs(place))[-1])
 
 
+@pytest.mark.slow
 def test_cases_outside_the_range_are_counted_apart(tried):
     outside = {name: set(case["outside"]) for name, case in tried.settings["cases"].items() if case["outside"]}
     assert outside == {"inertia 1.0001, free rocking": {"inertia"}, "uplift 1.01": {"tilt"}}
