@@ -490,8 +490,9 @@ class Run(Equations):
                 ("uplift", Event(lambda t, y: abs(self.contact_acceleration(y, 0.0)) - limit(vertical(t)), direction=1))
             )
         if direction:
-            stops = self.law.unit.memory
-            found.append(("reversal", Event(lambda t, y: direction * y[3] if t > turned else 1.0, terminal=stops)))
+            stops = self.law.unit.memory  # else there may be several, each a peak
+            reversal = Event(lambda t, y: direction * y[3] if t > turned else 1.0, stops, -1 if stops else 0)
+            found.append(("reversal", reversal))
             ahead = self.law.unit.begin.py_func(direction, self.hysteretic_force(self.y), 1.0, self.law.constants)[2]
             self.corner = corner = direction * ahead
             if ahead < math.inf:

@@ -20,6 +20,7 @@ from analytic import (
     SettingError,
     Start,
     closed_form,
+    load_scene,
     simulate,
 )
 from analytic.caryatid import BASE, caryatid_block
@@ -380,3 +381,13 @@ def test_it_tends_to_the_march_in_scenes_of_each_kind(kind):
         for name, value in exact.items():
             errors = [abs(operator.attrgetter(name)(run) - value) for run in (coarse, fine)]
             assert errors[1] <= max(errors[0] / 3, 1e-5), (scene, name, errors)
+
+
+def test_every_turn_of_a_base_on_linear_bearings_is_a_peak():
+    """A law without memory ends no interval there, so that one holds several."""
+    scene = load_scene("caryatid-isolated").with_(
+        motion=PulseMotion("one-sine", 3.0, 4.0), bearings={"law": "linear", "count": 4, "ka": 2e4}, duration=3.0
+    )
+    model, twin = simulate(scene), simulate_twin(scene)
+    assert model.outcome == twin.outcome == "rocks"
+    assert twin.peak_base_displacement == pytest.approx(model.peak_base_displacement, rel=1e-7)
