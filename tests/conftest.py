@@ -14,9 +14,9 @@ from analytic.errors import EngineNotInstalled
 from comparisons import cli
 from engines import ENGINES
 
-# In CI the same scenes every time: a new counterexample is found where somebody can look at it.
-settings.register_profile("ci", derandomize=True)
-settings.load_profile("ci" if os.environ.get("CI") else "default")
+# The same scenes every time; others with HYPOTHESIS=explore, where somebody looks at a new counterexample.
+settings.register_profile("same", derandomize=True)
+settings.load_profile("default" if os.environ.get("HYPOTHESIS") == "explore" else "same")
 
 PROJECT = Path(__file__).parents[1]
 
