@@ -174,11 +174,8 @@ def test_every_page_is_as_wide_as_a_phone_or_the_paper_and_can_be_read_in_the_da
 @pytest.mark.slow
 def test_axe_finds_nothing_serious(pages, opened):
     axe = pytest.importorskip("axe_playwright_python.sync_playwright")
-    some = [
-        file
-        for file in pages
-        if file.stem == "report" or file.stem in ("runs", "restitution", "overturning", "statues", "caryatid-paper")
-    ]
+    kinds = ("report", "runs", "restitution", "overturning", "statues", "caryatid-paper")
+    some = [file for file in pages if file.stem in kinds]
     for number, file in enumerate(some):
         contrast = {"color-contrast": {"enabled": file.stem in ("report", "restitution")}}  # dear; one style for all
         page = opened(file, scheme=("light", "dark")[number % 2])
