@@ -5,13 +5,11 @@
 
 import math
 
-import numpy as np
-
 from . import layout as L
 from .compiled import inlined, inner
 from .events import direction_from_rest, find_fall, find_passage, find_turn, find_uplift, hop_deceleration
 from .laws import law_function
-from .polynomial import bound, bracketed_root, derivative, largest, value
+from .polynomial import bound, largest, value
 from .readings import read_contact, read_energy, read_lifting, write_history
 from .taylor import (
     LINEAR_GROUND,
@@ -199,17 +197,11 @@ def read_step(par, upright, body, step, options, arrays, written):
 
 @inlined
 def end_of_block(body, step, peak_tilt, P, work):
-    """(tilt, rate, peak tilt) at the end of the step; a peak inside it is located as a root of the rate."""
-    (s, _, rate), h, order, first = body, step.h, step.order, np.int64(0)
-    phi, w, event = P[L.PHI], P[L.W], P[L.EVENT]
-    tilt_end, rate_end = value(phi, order, h), value(w, order, h)
-    if s * rate >= 0 and s * rate_end < 0:
-        for k in range(order + 1):
-            event[k] = s * w[k]
-        peak_tilt = max(peak_tilt, abs(value(phi, order, bracketed_root(event, first, order, 0.0, h))))
-    elif w[1] * rate < 0 and w[1] * derivative(w, order, h) < 0 and bound(phi, order, h) > peak_tilt:
-        # the rate may have changed its sign twice
-        peak_tilt = largest(phi, s, order, h, peak_tilt, event, work)
+    """(tilt, rate, peak tilt) at the end of the step; of several peaks inside it the largest counts."""
+    h, order, phi = step.h, step.order, P[L.PHI]
+    tilt_end, rate_end = value(phi, order, h), value(P[L.W], order, h)
+    if bound(phi, order, h) > peak_tilt:
+        peak_tilt = largest(phi, body.s, order, h, peak_tilt, P[L.EVENT], work)
     return tilt_end, rate_end, max(peak_tilt, abs(tilt_end))
 
 

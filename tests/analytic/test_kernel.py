@@ -502,7 +502,6 @@ def test_constants_operations_defaults_closures_and_what_is_called_count(before,
     assert key_of(PLAIN.replace(before, after)) != key_of(PLAIN)
 
 
-@pytest.mark.xfail(strict=True, reason="of several turns within one step a smaller one may be located")
 def test_the_peak_of_tiny_swings_is_that_of_the_history():
     """Found by an invariant on drawn scenes: 2.7 % of a peak of 8e-4 of the slenderness, at the default tolerance."""
     block = Block(mass=1000.0, radius=0.3, slenderness=0.1759013689508464)
