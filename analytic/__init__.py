@@ -33,23 +33,23 @@ An own record (`analytic.records` has the formats), and a motion in place of it 
 >>> round(motion.peak / 9.81, 3)  # g
 0.515
 
-The history as arrays, for numpy or matplotlib; `comparisons.showing.plots.draw_histories` draws it:
+The history as arrays, for numpy or matplotlib; `comparisons.plotting.plots.draw_histories` draws it:
 
 >>> history = response.history
 >>> history.time.shape == history.tilt.shape == history.ground_acceleration.shape
 True
 """
 
-from ._cache import kernel_cache
 from .errors import EngineNotInstalled, SceneError, SettingError
+from .kernel.cache import kernel_cache
 from .motion import PulseMotion, SampledMotion
 from .records import read_record
+from .records.synthetic import synthetic_motion
 from .response import Caution, Difference, Energy, Failure, History, Impact, Response, State
-from .synthetic import synthetic_motion
 
 with kernel_cache():
-    from . import time_stepping  # noqa: F401 compiled, too
     from .batch import Outcomes, overturning_map, rocking_spectrum, simulate_many
+    from .checks import time_stepping  # noqa: F401 compiled, too
     from .scene import Base, Bearings, Block, Scene, Start
     from .scene_file import load_scene, shipped_scenes
     from .solver import simulate

@@ -10,22 +10,22 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
-from . import kernel, layout
-from .budget import STEPS, most_steps
-from .compiled import compiling
-from .decision import CAP_PERIODS, longest_duration, shortest_duration
-from .kernel import OWN, ROW, SIZE, row_of
+from .kernel import layout
+from .kernel import march as kernel
+from .kernel.compiled import compiling
+from .kernel.decision import CAP_PERIODS, longest_duration, shortest_duration
+from .kernel.layout import Parameters, Shaking
+from .kernel.march import OWN, ROW, SIZE, row_of
 from .laws import Constants
-from .layout import Parameters, Shaking
 from .motion import PulseMotion, SampledMotion
 from .scene import Block, Scene
 from .sliding import run as sliding
-from .solver import REST_RATE, TOLERANCE, ground, options, parameters
+from .solver import REST_RATE, STEPS, TOLERANCE, ground, most_steps, options, parameters
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from .layout import Contact, Ground, Options
+    from .kernel.layout import Contact, Ground, Options
     from .motion import Motion
 
 # Chunks per worker, so that a slow chunk does not leave the other cores idle.

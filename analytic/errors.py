@@ -1,8 +1,20 @@
-"""Errors that a user can correct; each message names place, value and remedy."""
+"""Errors that a user can correct; each message names place, value and remedy.
+
+Reading files named by users: only plain files of limited size, so that no read blocks.
+
+Types used in signatures, for a type checker.
+"""
 
 from __future__ import annotations
 
+import errno
+import os
+import stat
+from collections.abc import Callable
 from os import PathLike
+from typing import TypeVar
+
+import numpy as np
 
 KEY_LENGTH, VALUE_LENGTH, TEXT_LENGTH, FILE_LENGTH = 100, 120, 500, 400  # characters of the parts of a message
 MOST_LINES = 20  # mistakes listed in one message, so that it fits on a screen; further ones are counted
@@ -109,3 +121,40 @@ class EngineBroken(EngineNotInstalled):
 
 class SettingError(ValueError):
     """A solver setting that does not exist or is out of range."""
+
+
+KINDS = ((stat.S_ISFIFO, "a pipe"), (stat.S_ISSOCK, "a socket"), (stat.S_ISCHR, "a device"), (stat.S_ISBLK, "a device"))
+
+
+def read_plain(path: str | PathLike[str], limit: int) -> bytes:
+    """The bytes of the plain file at `path`.
+
+    Parameters
+    ----------
+    path : str or Path
+    limit : int
+        Largest size read [bytes].
+
+    Raises
+    ------
+    OSError
+        The file does not exist, is a folder, a pipe or a device, is too large, or the path is not valid; see its
+        ``strerror``.
+    """
+    try:
+        mode = os.stat(path).st_mode
+        # Opening a pipe waits for its writer, and opening a device may act on it, so that neither is opened.
+        kind = next((words for is_kind, words in KINDS if is_kind(mode)), None)
+        if kind:
+            raise OSError(errno.EINVAL, f"is {kind}, not a file: copy what it gives to a file")
+        with open(path, "rb") as file:
+            content = file.read(limit + 1)  # the stated size is not used: it is 0 for some system files
+    except (ValueError, UnicodeError) as error:  # a NUL in the path, or half a character
+        raise OSError(errno.EINVAL, "a path cannot contain such characters") from error
+    if len(content) > limit:
+        raise OSError(errno.EFBIG, f"holds more than {limit / 1e6:.3g} MB")
+    return content
+
+
+GroundFunction = Callable[[float], float]  # a_g(t) [m/s2] of one time [s]
+Values = TypeVar("Values", float, np.ndarray)  # a number or an array; the result has the type of the argument

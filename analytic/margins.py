@@ -22,15 +22,13 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 
 from .batch import Outcomes, simulate_many
-from .budget import STEPS_PER_SAMPLE, too_long
 from .errors import SceneError, SettingError
 from .laws import LAWS, NUMBERS
 from .motion import SampledMotion
-from .part import UNITS
 from .response import Caution
 from .rocking import restitution
-from .scene import KEYS, Scene
-from .solver import simulate
+from .scene import KEYS, SCENE_UNITS, Scene
+from .solver import STEPS_PER_SAMPLE, simulate, too_long
 
 if TYPE_CHECKING:
     from .response import Response
@@ -178,7 +176,7 @@ def _bearing(name):
         used = scene.bearings and name in ("ka", *LAWS[NUMBERS[scene.bearings.law]].needs)
         return getattr(scene.bearings, name) if used else None
 
-    unit = UNITS.get(f"bearings.{name}", "-")
+    unit = SCENE_UNITS.get(f"bearings.{name}", "-")
     return Quantity(unit, value, lambda scene, factor: scene.with_(bearings={name: factor * value(scene)}))
 
 

@@ -2,7 +2,7 @@
 
 An outcome is “stands” (never lifted), “slides” (slid on its support, never lifted), “rocks” (lifted, stayed upright),
 “overturns” or “failed” (with the reason). A run continues until its outcome is *decided*: the remaining energy can no
-longer overturn the block, or the block is certain to overturn (``analytic/decision.py`` derives the rule), and the
+longer overturn the block, or the block is certain to overturn (``analytic/kernel/decision.py`` says when), and the
 peaks are final. A run that a ``duration`` ends earlier is **undecided**: tables say “undecided (rocks so far)”, JSON
 has ``"decided": false``. A longer duration would not change a decided outcome. A base that oscillates below a block
 that will not lift again is followed for a hundred periods.
@@ -28,6 +28,8 @@ are no difference. In Python, ``simulate(scene, compare=False)`` skips the compa
 ``warnings`` (kind, quantity, value, limit, text) say that a result is outside the model (the block would jump, and the
 scene gives no ``friction``; the base exceeds ``x_max``), or that the record is unusual. Do not rely on an outcome with
 such a warning.
+
+Warnings on a scene: missing friction, a start beyond balance, a base beyond x_max, a block that slips off.
 """
 
 import dataclasses
@@ -35,9 +37,12 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from os import PathLike
-from typing import Any, Self, TextIO
+from typing import TYPE_CHECKING, Any, Self, TextIO
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from .scene import Scene
 
 OUTCOMES = ("stands", "slides", "rocks", "overturns", "failed")
 LEVEL = OUTCOMES[:2]  # of a block that never lifted
@@ -248,7 +253,7 @@ class Response:
     settings: dict
     versions: dict
     scene: str = ""  # name
-    decided: bool = True  # False: it ended before the outcome was certain; see analytic/decision.py
+    decided: bool = True  # False: it ended before the outcome was certain; see analytic/kernel/decision.py
     fall_time: float | None = None  # s, last passage of |tilt| = slenderness of a block that overturns; 0 without one
     warnings: tuple[Caution, ...] = ()  # the result is outside the model, or the record is unusual
     differences: tuple[Difference, ...] = ()  # of an engine's run from the analytic model
@@ -345,3 +350,43 @@ def _finite(value: Any) -> Any:
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value
+
+
+def scene_warnings(scene: "Scene") -> tuple[Caution, ...]:
+    """Warnings that precede any outcome of a scene: a base without bearings or friction, a start beyond balance."""
+    found, tilt, gamma = [], scene.start.tilt, scene.block.slenderness
+    if scene.base is not None and scene.bearings is None:
+        words = (
+            "No friction is modelled under the base, and it has no bearings: such a base exists in thought experiments "
+            "only. Leave it out if the pedestal is fixed to the ground."
+        )
+        found.append(Caution("model", words))
+    if abs(tilt) >= gamma:
+        words = (
+            f"The block starts at a tilt of {tilt:.4g} rad, past its balance at {gamma:.4g} rad: it falls unless "
+            "something brings it back."
+        )
+        found.append(Caution("limit", words, "start.tilt", tilt, gamma))
+    return tuple(found)
+
+
+def limit_warnings(scene: "Scene", peak_base_displacement: float, peak_slip: float = 0.0) -> tuple[Caution, ...]:
+    """Warnings if the peak base displacement [m] exceeds the bearings' x_max, or the peak slip [m] the half width.
+
+    peak_slip : 0 of a block that overturns, whose slip goes on in its fall.
+    """
+    found = []
+    limit = None if scene.bearings is None else scene.bearings.x_max
+    if limit is not None and peak_base_displacement > limit:
+        words = (
+            f"the base moves by {peak_base_displacement:.3g} m, beyond the x_max = {limit:.3g} m of its bearings: they "
+            "may tear or hit a stop, and the outcome is outside the model"
+        )
+        found.append(Caution("limit", words, "peak_base_displacement", peak_base_displacement, limit))
+    if peak_slip > scene.block.half_width:
+        words = (
+            f"the block slips by {peak_slip:.3g} m, beyond its half width of {scene.block.half_width:.3g} m: the "
+            "model's support has no edge, and from one as wide as the block it would fall"
+        )
+        found.append(Caution("limit", words, "peak_slip", peak_slip, scene.block.half_width))
+    return tuple(found)

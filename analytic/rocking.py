@@ -2,19 +2,133 @@
 
 The tilt phi is positive toward +x; s = sgn(phi) is the side of the pivot; x is the base displacement relative to the
 ground. Under a vertical ground acceleration a_v, upward, g is replaced by g + a_v: bearings are vertically rigid.
+
+The force of one bearing: elastic kb x, hysteretic z with |z| <= f0 by one of `laws`, and viscous.
+
+Design of bearings: ka, kb and alpha, Table 1(b), from target period, damping and displacement, Table 1(a).
 """
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
-from .bearing import BearingLaw
+import numpy as np
+from scipy.optimize import brentq, minimize_scalar
+
+from .errors import SettingError
+from .kernel.compiled import entry, inner
+from .laws import LAWS, NUMBERS, Constants, law_function
+from .scene import LEAST, MOST, Bearings
 
 if TYPE_CHECKING:
+    from .errors import Values
+    from .laws.law import Law
+    from .scene import Bearings
+
+_after_travel = law_function("after_travel")
+
+
+@inner
+def hysteretic_force(z: float, dx: float, law: float, c: Constants) -> float:
+    """Hysteretic force [N] after monotonic travel dx [m] from a point with hysteretic force z [N]."""
+    if dx == 0:
+        return z
+    return _after_travel(law, z, dx, c)
+
+
+@entry
+def _path(z: float, x: np.ndarray, law: int, c: Constants, forces: np.ndarray) -> None:
+    forces[0] = z
+    for i in range(1, len(x)):
+        z = hysteretic_force(z, x[i] - x[i - 1], float(law), c)
+        forces[i] = z
+
+
+# Engines call it at every step: passing numbers takes half the time of passing a record.
+@entry
+def _hysteretic(z: float, dx: float, law: int, *constants: float) -> float:
+    return hysteretic_force(z, dx, float(law), Constants(*constants))
+
+
+@dataclass(frozen=True)
+class BearingLaw:
+    """Constants of the law of one bearing, and its force.
+
+    Attributes
+    ----------
+    law : int
+        Index of the law in `LAWS`.
+    count : int
+        Number of bearings n_d.
+    damping : float
+        Viscous coefficient [N s/m].
+    kb : float
+        Elastic stiffness [N/m]; for a linear law it is the stiffness.
+    constants : Constants
+        dk = ka - kb [N/m] and f0, the limit of the hysteretic part [N], both 0 for a linear law; and the law's own
+        constants: for the algebraic law its exponent alpha, x0 [m] of eq. (13) and d0 = (1 + 2 x0)^(1 - alpha).
+    """
+
+    law: int
+    count: int
+    damping: float
+    kb: float
+    constants: Constants
+
+    @classmethod
+    @functools.lru_cache(maxsize=64)  # needed some forty times in a run of an engine
+    def of(cls, bearings: Bearings | None) -> Self:
+        """The law of a `Bearings` part; None gives no force."""
+        if bearings is None:
+            return cls(NUMBERS["linear"], 0, 0.0, 0.0, Constants(dk=0.0, f0=0.0))
+        number = NUMBERS[bearings.law]
+        values = LAWS[number].constants(bearings)
+        return cls(number, bearings.count, bearings.damping, values.pop("kb"), Constants(**values))
+
+    @property
+    def unit(self) -> Law:
+        """The `Law` itself."""
+        return LAWS[self.law]
+
+    @property
+    def dk(self) -> float:
+        """ka - kb [N/m]."""
+        return self.constants.dk
+
+    @property
+    def f0(self) -> float:
+        """Limit of the hysteretic part [N]."""
+        return self.constants.f0
+
+    def hysteretic(self, z: float, dx: float) -> float:
+        """z of one bearing [N] after monotonic travel dx [m] from z."""
+        return _hysteretic(z, dx, self.law, *self.constants)
+
+    def path(self, x: np.ndarray) -> np.ndarray:
+        """z [N] along displacements x [m], shape (n,), monotonic in between; x[0] is reached by `start`."""
+        forces = np.empty(len(x))
+        _path(self.start(float(x[0])), x, self.law, self.constants, forces)
+        return forces
+
+    def start(self, displacement: float) -> float:
+        """z of one bearing [N] after monotonic loading of the virgin bearing to `displacement` [m]."""
+        return self.hysteretic(0.0, displacement)
+
+    def force(self, x: Values, z: Values, v: Values | float = 0.0) -> Values:
+        """Force of all bearings together [N], positive against positive x: eqs (9), (11), plus the viscous part."""
+        return self.count * (self.kb * x + z + self.damping * v)
+
+    def work(self, z: float, dx: float) -> float:
+        """Integral of the hysteretic force of one bearing over monotonic travel dx [m] from z [J], exact."""
+        return 0.0 if dx == 0 else self.unit.work(z, dx, self.constants)
+
+
+if TYPE_CHECKING:
+    from .errors import Values
     from .scene import Scene
-    from .types import Values
 
 
 @dataclass(frozen=True)
@@ -185,3 +299,187 @@ def base_jump_length_as_printed(scene: Scene) -> float:
         * mt
         / (R**2 * math.cos(gamma) ** 2 * m * mt - block.inertia)
     )
+
+
+# The usual equivalent damping is W_D/(4 pi E_s). The paper's 30 % is W_D/(2 pi E_s), twice the usual value.
+DEFINITIONS = {"equivalent": 4 * math.pi, "paper": 2 * math.pi}
+# Exponents searched; Table 1(b) has 44.69.
+STEEPEST = 1e4
+# The design equations assume a loop on the limit curves; tolerated difference of the law's own loop.
+LOOP_AGREEMENT = 1e-3
+SETTLING_CYCLES = 50
+
+
+@dataclass(frozen=True)
+class BearingProperties:
+    """Properties of a set of bearings at the displacement x_max.
+
+    period : float
+        Secant period at x_max [s], 2 pi sqrt(M x_max/F(x_max)); with kb alone it would be `period_kb`.
+    damping_paper, damping_equivalent : float
+        W_D/(2 pi E_s), as in Table 1(a), and the usual W_D/(4 pi E_s), with E_s = k_sec x_max^2/2.
+    secant_stiffness, force : float
+        Of one bearing at x_max [N/m, N].
+    cycle_loss : float
+        W_D of one bearing [J], in a steady cycle of the law itself.
+    """
+
+    period: float
+    period_kb: float
+    damping_paper: float
+    damping_equivalent: float
+    secant_stiffness: float
+    force: float
+    cycle_loss: float
+
+
+def steady_cycle(law: BearingLaw, amplitude: float) -> tuple[float, float]:
+    """(loss [J], force [N] at +amplitude) of one bearing in the steady cycle between +-amplitude [m].
+
+    The loss is the integral of the hysteretic force along both branches, exact.
+    """
+    z = law.hysteretic(0.0, amplitude)
+    for _ in range(SETTLING_CYCLES):
+        low = law.hysteretic(z, -2 * amplitude)
+        z = law.hysteretic(low, 2 * amplitude)
+    return 2 * law.work(low, 2 * amplitude), law.kb * amplitude + z
+
+
+def properties(bearings: Bearings, mass: float, x_max: float) -> BearingProperties:
+    """`BearingProperties` of bearings under `mass` (block and base) [kg] at x_max [m]."""
+    law = BearingLaw.of(bearings)
+    loss, force = steady_cycle(law, x_max)
+    secant = force / x_max
+    energy = 0.5 * secant * x_max**2
+    kb_period = 2 * math.pi * math.sqrt(mass / (bearings.count * law.kb)) if law.kb else math.inf
+    return BearingProperties(
+        2 * math.pi * math.sqrt(mass / (bearings.count * secant)),
+        kb_period,
+        loss / (2 * math.pi * energy),
+        loss / (4 * math.pi * energy),
+        secant,
+        force,
+        loss,
+    )
+
+
+def _mismatch(alpha: float, loss: float, secant: float, x_max: float, ratio: float) -> tuple[float, float]:
+    """ka - kb from f0 and alpha minus ka - kb from kb and the ratio; f0 from the loss on the limit curves."""
+    f0 = loss / (4 * (x_max - 1 / (alpha - 2)))
+    return 2 * f0 * (alpha - 1) - (ratio - 1) * (secant - f0 / x_max), f0
+
+
+def _feasible(damping: float, divisor: float, secant: float, x_max: float, ratio: float) -> tuple[float, float]:
+    """(alpha of least mismatch, the mismatch there); a design exists where it is below 0."""
+    loss = damping * divisor * 0.5 * secant * x_max**2
+    low = math.log(1 / x_max * (1 + 1e-9))
+
+    def at(u):
+        return _mismatch(2 + math.exp(u), loss, secant, x_max, ratio)[0] / secant
+
+    best = minimize_scalar(at, bounds=(low, math.log(STEEPEST)), method="bounded")
+    return 2 + math.exp(best.x), best.fun
+
+
+def design_bearings(
+    mass: float,
+    period: float,
+    damping: float,
+    x_max: float,
+    *,
+    count: int = 4,
+    stiffness_ratio: float = 10.0,
+    definition: str = "equivalent",
+    delta_k: float = 1e-20,
+) -> Bearings:
+    """Bearings with a given secant period and damping at x_max.
+
+    Parameters
+    ----------
+    mass : float
+        Block and base together [kg].
+    period : float
+        Secant period at x_max [s].
+    damping : float
+        Equivalent damping at x_max, over critical damping; see `definition`.
+    x_max : float
+        Design displacement [m].
+    count : int
+        Number of bearings.
+    stiffness_ratio : float
+        ka/kb. The paper does not print it; its Table 1(b) has 10.
+    definition : str
+        "equivalent" for the usual W_D/(4 pi E_s), "paper" for the Caryatid paper's W_D/(2 pi E_s), twice as much.
+
+    Returns
+    -------
+    Bearings
+        With x_max.
+
+    Raises
+    ------
+    SettingError
+        A target is out of range or cannot be met; the message states the limit.
+    SceneError
+        The bearings that meet the targets are outside the range of a scene.
+    """
+    targets = {"mass": mass, "period": period, "damping": damping, "x_max": x_max, "delta_k": delta_k}
+    _check(targets, count, stiffness_ratio, definition)
+    divisor = DEFINITIONS[definition]
+    try:
+        secant = mass * (2 * math.pi / period) ** 2 / count
+        alpha, f0 = _exponent(damping, definition, divisor, secant, x_max, stiffness_ratio)
+    except (ArithmeticError, ValueError) as error:  # scipy's, where numbers overflow
+        if isinstance(error, SettingError):
+            raise
+        asked = ", ".join(f"{name} = {value:.4g}" for name, value in targets.items() if name != "delta_k")
+        ratio = f"stiffness_ratio = {stiffness_ratio:.4g}"
+        raise SettingError(f"{asked}, {ratio}: no bearings give that; change one of them") from None
+    kb = secant - f0 / x_max
+    bearings = Bearings(count=count, ka=stiffness_ratio * kb, kb=kb, alpha=alpha, delta_k=delta_k, x_max=x_max)
+    got = properties(bearings, mass, x_max)
+    got_damping = got.damping_paper if definition == "paper" else got.damping_equivalent
+    if abs(got.period / period - 1) > LOOP_AGREEMENT or abs(got_damping / damping - 1) > LOOP_AGREEMENT:
+        raise SettingError(
+            f"x_max = {x_max:.4g} m is too small for bearings with alpha = {alpha:.4g} to reach their "
+            f"limit curves (period {got.period:.4g} s, damping {got_damping:.4g} result); "
+            "raise x_max or stiffness_ratio"
+        )
+    return bearings
+
+
+def _check(targets, count, stiffness_ratio, definition):
+    """Refuse what is out of range."""
+    for name, number in targets.items():
+        if not (math.isfinite(number) and number > 0):
+            raise SettingError(f"{name} = {number!r}: give a finite number above 0")
+        if name != "delta_k" and not LEAST <= number <= MOST:  # so that products do not overflow
+            raise SettingError(f"{name} = {number!r}: give a number from {LEAST:g} to {MOST:g}")
+    if not 1 < stiffness_ratio <= MOST:
+        raise SettingError(f"stiffness_ratio = {stiffness_ratio!r}: ka/kb must be above 1, and at most {MOST:g}")
+    if count < 1:
+        raise SettingError(f"count = {count!r}: give at least one bearing")
+    if definition not in DEFINITIONS:
+        raise SettingError(f"definition = {definition!r}: choose one of {', '.join(DEFINITIONS)}")
+
+
+def _exponent(damping, definition, divisor, secant, x_max, ratio):
+    """(alpha, f0 [N]) that give the damping at x_max with the stiffness ratio; `SettingError` states the limit."""
+    turn, least = _feasible(damping, divisor, secant, x_max, ratio)
+    if least >= 0:
+        # damping -> 0 is always possible: with f0 -> 0 only the ratio term remains
+        widest = 8 / divisor  # damping of a rectangular loop, W_D = 4 F x, an upper bound
+        most = brentq(lambda d: _feasible(d, divisor, secant, x_max, ratio)[1], 1e-9, min(damping, widest))
+        raise SettingError(
+            f"damping = {damping:.4g} ({definition} definition) cannot be met at x_max = {x_max:.4g} m "
+            f"with ka/kb = {ratio:.4g}: the most is {most:.4g}; lower it, "
+            "or raise stiffness_ratio"
+        )
+    loss = damping * divisor * 0.5 * secant * x_max**2
+    if _mismatch(STEEPEST, loss, secant, x_max, ratio)[0] < 0:
+        raise SettingError(
+            f"damping = {damping:.4g} is so small that alpha would exceed {STEEPEST:g}; "
+            "raise it, or lower stiffness_ratio"
+        )
+    alpha = brentq(lambda a: _mismatch(a, loss, secant, x_max, ratio)[0], turn, STEEPEST, xtol=1e-12)
+    return alpha, _mismatch(alpha, loss, secant, x_max, ratio)[1]

@@ -1,19 +1,153 @@
-"""What is simulated: a rigid block, its base, the bearings, the ground motion. Frozen, SI units."""
+"""What is simulated: a rigid block, its base, the bearings, the ground motion. Frozen, SI units.
 
+Base class of the parts of a scene: frozen, checked by pydantic; all mistakes are reported in one `SceneError`.
+
+The Caryatid, its base and its bearings (text and Table 1 of the paper), used in most studies.
+
+Problems A and B: two scenes with reference solutions, for timing and comparing solvers.
+"""
+
+from __future__ import annotations
+
+import difflib
 import hashlib
 import json
 import math
-from typing import Annotated, Any, ClassVar, Literal, Self
+from collections.abc import Sequence
+from typing import Annotated, Any, ClassVar, Literal, Self, get_args
 
 from annotated_types import Ge, Gt, Le, Lt
-from pydantic import AfterValidator, model_validator
-from pydantic_core import PydanticCustomError
+from pydantic import AfterValidator, BaseModel, ConfigDict, ValidationError, model_validator
+from pydantic_core import ErrorDetails, PydanticCustomError
 from typing_extensions import TypeAliasType
 
 from .errors import SceneError
 from .laws import LAWS, NUMBERS
 from .motion import PulseMotion, SampledMotion, slowest_key
-from .part import Part
+
+SCENE_UNITS = {
+    "gravity": "m/s2",
+    "block.mass": "kg",
+    "block.radius": "m",
+    "block.slenderness": "rad",
+    "block.corner_inertia": "kg m2",
+    "base.mass": "kg",
+    "bearings.ka": "N/m",
+    "bearings.kb": "N/m",
+    "bearings.delta_k": "N/m",
+    "bearings.yield_force": "N",
+    "bearings.damping": "N s/m",
+    "bearings.x_max": "m",
+    "motion.amplitude": "m/s2",
+    "motion.frequency": "rad/s",
+    "motion.start": "s",
+    "motion.dt": "s",
+    "motion.vertical_phase": "rad",
+    "start.tilt": "rad",
+    "start.tilt_rate": "rad/s",
+    "start.base_displacement": "m",
+    "start.base_velocity": "m/s",
+    "run.duration": "s",
+}
+LIMITS = {
+    "greater_than": "above {:.6g}",
+    "greater_than_equal": "from {:.6g} on",
+    "less_than": "below {:.6g}",
+    "less_than_equal": "up to {:.6g}",
+}
+WANTED = {"string_type": 'text in "quotes"', "int_type": "a whole number", "int_from_float": "a whole number"}
+# Measured or target quantities that are not keys of a scene; `rocking new` computes the keys from them.
+MEASURED = {
+    **dict.fromkeys(("block.height", "block.width"), ("radius and slenderness", "--height ... --width ...")),
+    **dict.fromkeys(
+        ("block.depth", "block.density", "block.material"),
+        ("mass", "--height ... --width ... --depth ... --material ... (or --density ...)"),
+    ),
+    **dict.fromkeys(
+        ("bearings.period", "bearings.damping_ratio", "bearings.eta", "bearings.xi", "bearings.zeta"),
+        (
+            "ka, kb and alpha",
+            "--height ... --width ... --mass ... --base-mass ... --period ... --damping ... --xmax ...",
+        ),
+    ),
+}
+
+
+class Part(BaseModel):
+    """A part of a scene. `table` is its name in a scene file. Mistakes raise `SceneError`."""
+
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", strict=True, allow_inf_nan=False, arbitrary_types_allowed=True
+    )
+    table: ClassVar[str] = ""
+
+    def __init__(self, **values: Any) -> None:
+        try:
+            super().__init__(**values)
+        except ValidationError as error:
+            raise scene_error(error, type(self)) from None
+
+    # pydantic builds nested parts without it, so that their mistakes keep their full location
+    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
+
+def scene_error(error: ValidationError, part: type[Part]) -> SceneError:
+    """All mistakes that pydantic found in a `part`, one per key; unknown keys first, as they explain missing ones."""
+    found: dict[str, SceneError] = {}
+    for problem in sorted(error.errors(), key=lambda problem: problem["type"] != "extra_forbidden"):
+        mistake = _mistake(problem, part)
+        found.setdefault(mistake.key, mistake)
+    first, *others = found.values()
+    return first.with_others(*others)
+
+
+def _mistake(problem: ErrorDetails, part: type[Part]) -> SceneError:
+    """The error for one of the problems that pydantic found."""
+    kind, value, context = problem["type"], problem["input"], problem.get("ctx", {})
+    loc = [str(name) for name in problem["loc"]]
+    if kind.startswith("dataclass"):  # one of several classes; its name is last in the location
+        loc, kind = loc[:-1], "model_type"
+    key = ".".join([part.table, *loc] if part.table else loc)
+    unit = f" [{SCENE_UNITS[key]}]" if key in SCENE_UNITS else ""
+    if kind == "value_error":
+        raised = context["error"]
+        return raised if isinstance(raised, SceneError) else SceneError(key, None, str(raised), "change it")
+    if kind == "missing":
+        return missing(key)
+    if kind == "extra_forbidden":
+        return _unknown(key, loc, value, part)
+    if kind == "finite_number":
+        return SceneError(key, value, "not finite", f"give a finite number{unit}")
+    if kind == "literal_error":
+        return SceneError(key, value, "not known", f"choose {context['expected']}")
+    if kind in LIMITS:
+        words = LIMITS[kind].format(*context.values())
+        return SceneError(key, value, "out of range", f"give a number {words}{unit}")
+    wanted = f"a table: write [{key}]" if kind == "model_type" else WANTED.get(kind, "a number")
+    return SceneError(key, value, f"wrong type ({type(value).__name__})", f"give {wanted}{unit}")
+
+
+def missing(key: str) -> SceneError:
+    """The error for a missing table or key."""
+    if key in {table.table for table in Part.__subclasses__() if table.table}:
+        return SceneError(key, None, "missing", f"add a table [{key}]")
+    unit = f" [{SCENE_UNITS[key]}]" if key in SCENE_UNITS else ""
+    return SceneError(key, None, "missing", f"add {key.split('.')[-1]} = ...{unit}")
+
+
+def _unknown(key: str, loc: Sequence[str], value: object, part: type[Part]) -> SceneError:
+    if key in MEASURED:
+        instead, options = MEASURED[key]
+        return SceneError(key, value, "unknown key", f"give {instead}, which `rocking new FILE {options}` computes")
+    *tables, name = loc
+    for table in tables:
+        kinds = part.model_fields[table].annotation
+        part = next(kind for kind in (kinds, *get_args(kinds)) if isinstance(kind, type) and issubclass(kind, Part))
+    close = difflib.get_close_matches(name, part.model_fields, 1)  # a similar name, possibly of another quantity
+    hint = f"write {close[0]} if that is meant, else remove it" if close else "remove it"
+    hint += f", known are {', '.join(part.model_fields)}"
+    return SceneError(key, value, "unknown key", hint)
+
 
 # Largest phase [rad] between two adjacent doubles of the time; 1e7 s give 1/50 of it for the smallest blocks.
 RESOLUTION = 1e-4
@@ -253,3 +387,30 @@ class Scene(Part):
                 if value is not None or name in ("kb", "alpha")
             }
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+MASS, RADIUS = 3172.05, 1.0884  # kg, m
+BASE = Base(mass=212.0)
+BEARINGS = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
+
+
+def caryatid_block(slenderness: float) -> Block:
+    """A block of the Caryatid's mass and radius; slenderness [rad]."""
+    return Block(mass=MASS, radius=RADIUS, slenderness=slenderness)
+
+
+def benchmark_block() -> Block:
+    """The block of problems A and B: omega_r = 2.60 rad/s with g = 9.81 m/s2, slenderness 0.25, Housner's e."""
+    return Block(mass=1000.0, radius=0.75 * 9.81 / 2.60**2, slenderness=0.25)
+
+
+def problem_a(duration: float = 7.0) -> Scene:
+    """Problem A: free rocking on rigid ground from 0.9 slenderness."""
+    return Scene(name="problem A", block=benchmark_block(), start=Start(tilt=0.9 * 0.25), duration=duration)
+
+
+def problem_b(duration: float = 6.0) -> Scene:
+    """Problem B: the block at rest under one full sine of 1.2 g tan(slenderness) at 5.2 rad/s."""
+    block = benchmark_block()
+    pulse = PulseMotion("one-sine", 1.2 * 9.81 * math.tan(block.slenderness), 5.2)
+    return Scene(name="problem B", block=block, motion=pulse, duration=duration)

@@ -1,29 +1,109 @@
-"""``simulate(scene)``: the analytic model, by the compiled kernel."""
+"""``simulate(scene)``: the analytic model, by the compiled kernel.
+
+Limits of one run: steps, events, rows of the history; and the error for a scene that exceeds them.
+
+The rules of `decision.py` applied to the end state of another solver's run: whether that run may end.
+"""
 
 from __future__ import annotations
 
 import functools
 import math
 import time
+from collections.abc import Callable
 from dataclasses import astuple
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from . import kernel, layout
-from .bearing import BearingLaw
-from .budget import EVENTS, MOST_ROWS, MOST_STEPS, ROWS, most_steps, too_long
-from .compiled import compiling
-from .decision import longest_duration, peaks_are_final, run_warnings, shortest_duration, will_not_overturn
-from .errors import SettingError
-from .layout import Base, Body, Ground, Options, Parameters, Shaking
-from .motion import SampledMotion
-from .pulses import SERIES
+from .errors import SceneError, SettingError
+from .kernel import layout
+from .kernel import march as kernel
+from .kernel.compiled import compiling
+from .kernel.decision import (
+    CAP_PERIODS,
+    longest_duration,
+    motion_end,
+    peaks_are_final,
+    period,
+    run_warnings,
+    shortest_duration,
+    will_not_overturn,
+)
+from .kernel.events import NEARLY_ELASTIC
+from .kernel.layout import Base, Body, Ground, Options, Parameters, Shaking
+from .kernel.steps import LINEAR_GROUND, PULSE, QUIET, SHORT_ORDER
+from .motion import SERIES, SampledMotion, slowest_key
 from .response import Energy, Failure, History, Impact, Response, State
-from .rocking import RockingModel
+from .rocking import BearingLaw, RockingModel
 from .sliding.run import contact_of, is_needed
 from .sliding.run import slid as march
-from .taylor import LINEAR_GROUND, PULSE, QUIET, SHORT_ORDER
+
+if TYPE_CHECKING:
+    from .scene import Scene
+
+# Steps of a run until its outcome is decided, some seconds of CPU time: both Caryatid scenes take 6000, bearings of ten
+# thousand rocking frequencies five million. A longer given duration may take more, up to a minute or two.
+STEPS, MOST_STEPS = 5_000_000, 100_000_000
+STEPS_PER_SAMPLE = 10  # further steps for each sample of a record; one or two are usual
+EVENTS = 1_000_000  # impacts, uplifts or rests of a response
+ROWS, MOST_ROWS = 1_000_000, 10_000_000  # of a history: by default, and with a given interval
+USUAL_EXPONENT = 100.0  # of a bearing law: up to it, the yielding is no stiffer than the rest
+
+
+def most_steps(scene: Scene) -> int:
+    """Largest number of steps of a run of the scene."""
+    longer = 1.0
+    if scene.duration is not None:
+        longer = max(1.0, (scene.duration - motion_end(scene)) / (CAP_PERIODS * period(scene)))
+    samples = len(scene.motion.samples) if isinstance(scene.motion, SampledMotion) else 0
+    return int(min(STEPS * longer, MOST_STEPS)) + STEPS_PER_SAMPLE * samples
+
+
+def too_long(scene: Scene, spent: str) -> SceneError:
+    """The error for a run that has `spent` its limit; it names the part of the scene that is furthest from usual.
+
+    The bearings' frequency and decay rate are compared with omega_r, their exponent with 100, and the duration with a
+    hundred rocking periods.
+    """
+    _, key, value, problem, remedy = max(_parts(scene), key=lambda part: part[0])
+    return SceneError(key, value, f"{problem}: {spent}", remedy, scene.name or None)
+
+
+def _parts(scene: Scene) -> list[tuple[float, str, float, str, str]]:
+    """[(ratio to a usual value, key, value, problem, remedy)] of all causes of a long run."""
+    model, omega, turn = RockingModel.of(scene), scene.rocking_frequency, 2 * math.pi
+    found = [(0.0, "block.radius", scene.block.radius, f"the block rocks at {omega:.3g} rad/s", "give a larger one")]
+    if model.restitution > NEARLY_ELASTIC:
+        problem, remedy = "impacts lose almost no energy", "give a smaller one"
+        found.append((1.0, "block.restitution", model.restitution, problem, remedy))
+    if scene.duration is not None:
+        periods = scene.duration * omega / turn
+        found.append((periods / 100, "run.duration", scene.duration, f"{periods:.3g} rocking periods", "shorten it"))
+    if scene.motion is not None:
+        periods, key = scene.motion.end * omega / turn, slowest_key(scene.motion)
+        problem = f"the motion lasts {scene.motion.end:.3g} s, {periods:.3g} rocking periods"
+        remedy = "raise it" if key == "motion.frequency" else "lower it"
+        found.append((periods / 100, key, getattr(scene.motion, key.removeprefix("motion.")), problem, remedy))
+    return found + _bearing_parts(scene, model)
+
+
+def _bearing_parts(scene, model):
+    bearings, law, omega = scene.bearings, model.bearing, scene.rocking_frequency
+    if bearings is None:
+        return []
+    free = model.M - (model.m * model.R * math.cos(model.gamma)) ** 2 / model.J  # effective mass of the base [kg]
+    ringing, decay = math.sqrt(law.count * (law.kb + law.dk) / free), law.count * law.damping / free
+    problem = f"the base vibrates at {ringing:.3g} rad/s on such bearings"
+    found = [(ringing / omega, "bearings.ka", bearings.ka, problem, "lower it")]
+    if decay:
+        problem = f"such dampers stop the base within {1 / decay:.3g} s"
+        found.append((decay / omega, "bearings.damping", law.damping, problem, "lower it"))
+    if bearings.alpha is not None:
+        problem, remedy = "the law yields almost at a point", 'lower it, or give law = "bilinear"'
+        found.append((bearings.alpha / USUAL_EXPONENT, "bearings.alpha", bearings.alpha, problem, remedy))
+    return found
+
 
 if TYPE_CHECKING:
     from .motion import Motion
@@ -315,3 +395,85 @@ def _history(scene: Scene, table: np.ndarray, end: State, *slip: float) -> Histo
     columns = np.ascontiguousarray(table.T)
     shaking = np.zeros(len(table)) if scene.motion is None else scene.motion.acceleration(columns[0])
     return History(*columns[:6], shaking, columns[6] if slip else None)  # type: ignore[call-arg]  # of six
+
+
+if TYPE_CHECKING:
+    from .kernel.layout import Parameters
+    from .response import Response
+    from .scene import Scene
+
+
+def is_decided(scene: Scene, response: Response, *, contact_tilt: float = 0.0) -> bool:
+    """Whether the outcome of a run is certain at its end, by rules (a), (b) and (c).
+
+    Parameters
+    ----------
+    scene : Scene
+    response : Response
+    contact_tilt : float
+        Tilt [rad] up to which the solver's block counts as in full contact.
+
+    Returns
+    -------
+    bool
+        False for a failed run, and for one that ended before the ground motion.
+    """
+    return _at_end(scene, response, contact_tilt)[0]
+
+
+def is_finished(scene: Scene, response: Response, *, contact_tilt: float = 0.0) -> bool:
+    """Whether the outcome of a run is certain at its end and its peaks can no longer grow; see `is_decided`."""
+    decided, state = _at_end(scene, response, contact_tilt)
+    if not decided or state is None:
+        return decided
+    peaks = response.peak_tilt, response.peak_base_displacement, response.peak_base_acceleration
+    return bool(peaks_are_final(*state, peaks))
+
+
+def _at_end(scene: Scene, response: Response, contact_tilt: float) -> tuple[bool, tuple[Parameters, Body, Base] | None]:
+    """(decided, the kernel's parameters and state; None if the block has overturned or the run failed)."""
+    if response.outcome in ("overturns", "failed"):
+        return response.outcome == "overturns", None
+    par, end = parameters(scene), response.end
+    if scene.friction is not None:  # at rest the block slides where it does not lift
+        par = par._replace(slope=min(par.slope, scene.friction))
+    if end.time < motion_end(scene) * (1 - 1e-9):
+        return False, None
+    x, v, z = end.base_displacement, end.base_velocity, 0.0
+    if par.count:
+        z = end.bearing_force / par.count - par.kb * x - par.damping * v
+        z = min(max(z, -par.constants.f0), par.constants.f0)
+    body = Body(0.0, 0.0, 0.0)
+    if abs(end.tilt) > contact_tilt or contact_tilt == 0 and end.tilt_rate != 0:
+        body = Body(math.copysign(1.0, end.tilt if end.tilt != 0 else end.tilt_rate), end.tilt, end.tilt_rate)
+    state = par, body, Base(x, v, z)
+    return bool(will_not_overturn(*state, response.outcome == "rocks")), state
+
+
+def until_decided(
+    simulate: Callable[[Scene], Response],
+    scene: Scene,
+    *,
+    at_least: float = 0.0,
+    finished: Callable[[Scene, Response], bool] = is_finished,
+) -> Response:
+    """``simulate(scene)`` with increasing durations until the run has finished or the longest is reached.
+
+    Parameters
+    ----------
+    simulate : callable
+        From a scene with a duration to a `Response`.
+    scene : Scene
+        Without a duration.
+    at_least : float
+        First duration [s], if longer than `shortest_duration`.
+    finished : callable
+        (scene, response) -> whether the run may end here.
+    """
+    longest, begin = longest_duration(scene), motion_end(scene)
+    duration = min(max(shortest_duration(scene), at_least), longest)
+    while True:
+        response = simulate(scene.with_(duration=duration))
+        if response.outcome == "failed" or duration >= longest or finished(scene, response):
+            return response
+        duration = min(begin + 2 * (duration - begin), longest)

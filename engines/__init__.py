@@ -1,7 +1,7 @@
 """The same scene in multibody engines: ``get_engine("exudyn").simulate(scene)``.
 
 An engine is a package with an `engines.contract.Engine` called ``ENGINE``. The folders here are this project's own;
-other packages declare theirs (`engines.plugins`).
+other packages declare theirs (`engines.contract`).
 
 Each engine has one or more variants, of three kinds. ``defaults``: the engine as it comes, used as in a first script.
 ``tuned``: only the engine moves a body or sets a velocity; the adapter chooses what a skilled user could choose in any
@@ -27,8 +27,7 @@ from pkgutil import iter_modules
 
 from analytic.errors import EngineNotInstalled
 
-from .contract import EXTRA, Engine
-from .plugins import find_engines
+from .contract import EXTRA, Engine, find_engines
 from .simulating import Simulator
 
 # Engines are imported by name, not by statement, so that a result of one engine does not depend on the other engines.

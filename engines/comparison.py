@@ -18,7 +18,7 @@ A `Difference` is reported where a limit is exceeded:
   slides into the impact it may be below 0, and is compared by its size.
 - largest slip, of a block that stays upright in a scene with a friction: by more than `PEAK` of the model's, or
   `LEAST_SLIP` of R.
-- missing or extra impacts: impacts without a match (`engines.matching`), up to the first one that is `OUT_OF_PHASE`.
+- missing or extra impacts: impacts without a match (`engines.events`), up to the first one that is `OUT_OF_PHASE`.
 
 A run cannot be compared where the model does not hold (without a friction in the scene: N <= 0, or a friction demand
 that no contact provides), or does not reach an end. The model is also run with start, motion, slenderness and
@@ -26,12 +26,14 @@ restitution changed by `copies.CHANGE`. Where such a copy differs from the model
 scene is near an outcome boundary, for all engines alike; the stored value is "on an edge". There, an outcome that a
 copy has is not a difference. Neither is a number within the range of the copies with the run's outcome, widened by the
 limit. Impacts are compared up to the first one that the copies do not share.
+
+Near copies of a scene: runs of them show how sensitive a result is to small changes of the scene.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Self
 
@@ -40,13 +42,51 @@ import numpy as np
 from analytic import simulate
 from analytic.errors import SceneError
 from analytic.response import COMPARED, EDGE, JUDGED, LEVEL, UNCOMPARED, Difference
+from analytic.rocking import restitution
 
 from .checks import LEAST_SLIP
-from .copies import CHANGE, near_copies
-from .couple import FRICTION
-from .events import at_contact
-from .matching import COUNTED, LEAST_TILT, STILL, counts, impacts_of, matched, parting
+from .events import COUNTED, LEAST_TILT, STILL, at_contact, counts, impacts_of, matched, parting
+from .loads import FRICTION
 from .swings import Trace
+
+if TYPE_CHECKING:
+    from analytic import Scene
+
+CHANGE = 1e-4  # relative; errors of tuned engines are 1e-5 to 1e-4
+
+
+def near_copies(scene: Scene) -> Iterator[Scene]:
+    """The scene with its slenderness, restitution (or friction, if given), motion or start changed by +-`CHANGE`."""
+    for factor in (1 + CHANGE, 1 - CHANGE):
+        yield from _changed(scene, block={"slenderness": scene.block.slenderness * factor})
+    yield from changed_copies(scene, CHANGE).values()
+
+
+def changed_copies(scene: Scene, change: float) -> dict[str, Scene]:
+    """{name: scene} with restitution (or friction, if given), motion and start changed by +-change, relative."""
+    copies = {}
+    e, start = restitution(scene), scene.start
+    for sign, word in ((1, "up"), (-1, "down")):
+        factor = 1 + sign * change
+        if scene.friction is not None:  # a restitution that is given needs a corner that sticks
+            copies[f"friction {word}"] = scene.with_(friction=scene.friction * factor)
+        elif 0 < e * factor <= 1:
+            copies[f"restitution {word}"] = scene.with_(block={"restitution": e * factor})
+        if scene.motion is not None:
+            copies[f"motion {word}"] = scene.with_(motion=scene.motion.scaled(factor))
+        changed = {name: getattr(start, name) * factor for name in type(start).model_fields}
+        if changed != start.model_dump():
+            copies |= {f"start {word}": copy for copy in _changed(scene, start=changed)}
+    return copies
+
+
+def _changed(scene: Scene, **change: dict[str, float]) -> Iterator[Scene]:
+    """The changed scene; none where the change leaves the range of a scene."""
+    try:
+        yield scene.with_(**change)
+    except SceneError:
+        return
+
 
 if TYPE_CHECKING:
     from analytic import Response, Scene

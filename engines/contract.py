@@ -10,24 +10,37 @@ A package that offers an engine holds one `Engine`. The adapter, a module of its
 All else is the same for every engine and is done in `engines.simulating`: settings are checked, a scene without a
 duration runs until its outcome is decided, events and peaks are located outside the engine, and the response is
 compared with the analytic model.
+
+Rows of the table of agreement tolerances; each engine defines its own beside its adapter.
+
+Engines that other packages declare, by the entry point group `rocking.engines`; each entry is an `Engine`.
+
+Mistakes that are easily made in a script of a rocking block: each a few replacements of text in an engine's script.
+
+An engine's record names the module of its ``MISTAKES`` (`engines.contract.Engine.mistakes`), which stands beside the
+template of its script. What they cost is measured by ``rocking study mistakes``.
 """
 
 from __future__ import annotations
 
 import dataclasses
-from dataclasses import dataclass, field
+from collections.abc import Collection
+from dataclasses import dataclass, field, replace
 from importlib import import_module
+from importlib.metadata import entry_points
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from analytic.errors import EngineBroken, EngineNotInstalled
+from analytic.motion import SampledMotion
 
 if TYPE_CHECKING:
     from analytic.response import Caution, Failure
 
-    from .mistakes import Mistake
+    pass
     from .swings import Trace
-    from .tolerance_rows import ToleranceRow
+
+    pass
 
 # Kinds of a variant. "defaults": the engine as it comes, used as in a first script. "tuned": only the engine moves a
 # body or sets a velocity. "assisted": the adapter sets a velocity, a position or a constraint by the model's event.
@@ -61,7 +74,7 @@ class Variant:
         in Python and the names of a script of `engines.scripting`, for a block on bearings.
     takes_restitution : bool
         A scene may give the restitution: the adapter applies the impact (kind assisted), or a couple before each
-        landing (`engines.couple`).
+        landing (`engines.loads`).
     finer : tuple of dict
         Settings to try in turn where a run is not right; by default the levels finer than the default.
     varied : dict
@@ -180,7 +193,7 @@ class Engine:
     script : str or None
         ``package:file``: the template of a script of one scene, see `engines.scripting`.
     mistakes : str or None
-        Name of a module whose ``MISTAKES``, a tuple of `engines.mistakes.Mistake`, are made in that script.
+        Name of a module whose ``MISTAKES``, a tuple of `engines.contract.Mistake`, are made in that script.
     subject : bool
         The studies are about this engine; engines that are no subject are shown for comparison.
     origin : str
@@ -282,3 +295,139 @@ class Engine:
         except Exception as error:
             words = f"{self.adapter}.versions fails ({type(error).__name__}: {error})"
             raise EngineBroken(self.origin, words) from error
+
+
+# Sources of error that several engines share.
+STEP = "step; first order, by the phase of the impact in it"
+LARGE_STEP = "steps in flight and at rest"
+HELD = "what the contact gives at rest"
+READING = "steps, and their force and momentum as read between them"
+ROUNDING = "history committed once per accepted step; round-off"
+
+
+@dataclass(frozen=True)
+class ToleranceRow:
+    """The error of `quantity` over `scenes` is at most `bound`. `measured`: the worst value found when the bound was
+    set; `source`: the cause of the error.
+
+    Where the source is `ROUNDING`, the bound is a requirement, and the measured value is far below it.
+    """
+
+    quantity: str
+    scenes: str
+    bound: float
+    measured: float
+    source: str
+
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
+
+GROUP = "rocking.engines"
+RESERVED = ("analytic",)  # the model's name among the solvers
+
+
+def find_engines(taken: Collection[str]) -> tuple[dict[str, Engine], dict[str, EngineBroken]]:
+    """({name: `Engine`} of the engines declared here, {entry: `EngineBroken`} of those that cannot be used).
+
+    Parameters
+    ----------
+    taken : collection of str
+        Names that are already in use.
+    """
+    engines: dict[str, Engine] = {}
+    broken: dict[str, EngineBroken] = {}
+    for entry in sorted(entry_points(group=GROUP), key=lambda entry: (entry.name, _distribution(entry))):
+        origin = f"engine {entry.name!r}, declared as {entry.value} by the distribution {_distribution(entry)}"
+        try:
+            engine = _resolve(entry, origin, (*RESERVED, *taken, *engines))
+        except EngineBroken as error:
+            key = entry.name
+            if key in (*RESERVED, *taken, *engines, *broken):
+                key = f"{entry.name} of {_distribution(entry)}"
+            broken[key] = error
+        else:
+            engines[engine.name] = engine
+    return engines, broken
+
+
+def _resolve(entry: EntryPoint, origin: str, taken: Collection[str]) -> Engine:
+    try:
+        engine = entry.load()
+    except Exception as error:  # any error while another package is imported
+        raise EngineBroken(origin, f"it cannot be imported ({type(error).__name__}: {error})") from error
+    if not isinstance(engine, Engine):
+        raise EngineBroken(origin, f"it is a {type(engine).__name__}, no engines.contract.Engine")
+    if engine.name != entry.name:
+        raise EngineBroken(origin, f"it calls itself {engine.name!r}: entry and engine need one name")
+    if engine.name in taken:
+        raise EngineBroken(origin, "that name is taken")
+    return replace(engine, origin=origin)
+
+
+def _distribution(entry: EntryPoint) -> str:
+    return f"{entry.dist.name} {entry.dist.version}" if entry.dist else "of no name"
+
+
+if TYPE_CHECKING:
+    from analytic import Scene
+
+NO_MATTER = "no matter"  # changes that look like mistakes
+GROUPS = ("body", "contact", "steps", "forces", "motion", NO_MATTER)
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """A mistake, as data.
+
+    Parameters
+    ----------
+    key : str
+        Its name in results, a word or two.
+    done : str
+        What was done, as a user would say it.
+    group : str
+        What it concerns, one of `GROUPS`.
+    replacements : dict
+        {text of the script: what stands there instead}; each text occurs once.
+    needs : str
+        Part of a scene without which it cannot be made: "base", "bearings", "motion", or "record", a sampled motion;
+        several, separated by spaces; "" for none.
+
+    Raises
+    ------
+    ValueError
+        The group is unknown.
+    """
+
+    key: str
+    done: str
+    group: str
+    replacements: dict[str, str]
+    needs: str = ""
+
+    def __post_init__(self) -> None:
+        if self.group not in GROUPS:
+            raise ValueError(f"mistake {self.key}: group {self.group!r}; choose one of {', '.join(GROUPS)}")
+
+    def fits(self, scene: Scene) -> bool:
+        """Whether it can be made in a script of the scene."""
+        sampled = isinstance(scene.motion, SampledMotion) or None
+        return all((sampled if part == "record" else getattr(scene, part)) is not None for part in self.needs.split())
+
+    def made(self, script: str) -> str:
+        """The script with the mistake.
+
+        Raises
+        ------
+        ValueError
+            A text to be replaced does not occur exactly once.
+        """
+        for old, new in self.replacements.items():
+            if (count := script.count(old)) != 1:
+                raise ValueError(
+                    f"mistake {self.key}: its text {old!r} occurs {count} times in the script, and must occur once: "
+                    "take the text from the engine's template as it is now"
+                )
+            script = script.replace(old, new)
+        return script

@@ -1,4 +1,7 @@
-"""A run in a process of its own, so that of a hang, a crash or Ctrl-C only that run is lost."""
+"""A run in a process of its own, so that of a hang, a crash or Ctrl-C only that run is lost.
+
+Suppression of what a package prints when it is imported; other output passes.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,7 @@ import signal
 import sys
 import tempfile
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from multiprocessing import connection
 from multiprocessing.reduction import ForkingPickler
@@ -185,3 +188,27 @@ def _last_words(code: int | None) -> str:
         except ValueError:
             return f"killed by signal {-code}"
     return f"exit code {code}"
+
+
+@contextlib.contextmanager
+def without(greeting: bytes) -> Iterator[None]:
+    """Remove lines on standard error that begin with `greeting`, also those that compiled code prints.
+
+    For a few milliseconds only: other output of this process to standard error, from any thread, is delayed until then.
+    """
+    with contextlib.ExitStack() as closing:
+        try:
+            kept = os.dup(2)
+            closing.callback(os.close, kept)
+            held = closing.enter_context(tempfile.TemporaryFile())
+        except OSError:  # no standard error, or no disk space: the greeting is printed
+            yield
+            return
+        os.dup2(held.fileno(), 2)
+        try:
+            yield
+        finally:
+            os.dup2(kept, 2)
+            held.seek(0)
+            with contextlib.suppress(OSError):  # standard error is closed
+                os.write(2, b"".join(line for line in held if not line.startswith(greeting)))

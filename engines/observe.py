@@ -14,18 +14,25 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
-from analytic.decision import model_warnings
-from analytic.limits import limit_warnings
+from analytic.kernel.decision import model_warnings
 from analytic.motion import SampledMotion
-from analytic.response import Caution, Failure, History, Response, about_record
-from analytic.termination import is_decided
+from analytic.response import Caution, Failure, History, Response, about_record, limit_warnings
+from analytic.solver import is_decided
 
-from .checks import check_energy, check_place, slip_of, slips
-from .events import check_impacts, contact_measures, find_events
-from .matching import STILL
-from .momentum import check_impulse
+from .checks import check_energy, check_impulse, check_place, slip_of, slips
+from .events import (
+    STILL,
+    check_impacts,
+    contact_measures,
+    ended_early,
+    find_events,
+    finite_part,
+    last_state,
+    unstable_time,
+    upright_part,
+    upto_overturning,
+)
 from .swings import Trace, find_swings
-from .truncation import ended_early, finite_part, last_state, unstable_time, upright_part, upto_overturning
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -63,7 +70,7 @@ def observe(
         taken at the model's acceleration.
     warnings : iterable of Caution or str
         Warnings of the engine. Those of the motion's record, and of a run outside the model
-        (`analytic.decision.model_warnings`), are added.
+        (`analytic.kernel.decision.model_warnings`), are added.
     **run
         engine, variant, cpu_seconds, steps, settings, versions: copied to the response.
 

@@ -18,13 +18,12 @@ from typing import TYPE_CHECKING, Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 import analytic
-from analytic.bearing import BearingLaw
-from analytic.decision import motion_end, shortest_duration
 from analytic.errors import SceneError, SettingError
+from analytic.kernel.decision import motion_end, shortest_duration
 from analytic.motion import SampledMotion
+from analytic.rocking import BearingLaw
 
-from .couple import FRICTION, holding, share_of, unkept_friction
-from .scale import UNIT_RADIUS
+from .loads import FRICTION, UNIT_RADIUS, holding, share_of, unkept_friction
 
 if TYPE_CHECKING:
     from analytic import Scene

@@ -1,27 +1,146 @@
-"""From a scene and an engine to a response: the code that all engines share."""
+"""From a scene and an engine to a response: the code that all engines share.
+
+Choice of a variant and check of what is asked of it: its settings, and no given restitution.
+
+The statue range: scenes for which the tuned variants are tested. Nothing is promised outside it.
+"""
 
 from __future__ import annotations
 
 import dataclasses
+import math
 import traceback
 from collections.abc import Mapping
-from dataclasses import asdict, replace
+from dataclasses import asdict, fields, replace
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
 import analytic
-from analytic import termination
-from analytic.response import Caution, Failure
+from analytic import solver as termination
+from analytic.errors import SceneError, SettingError
+from analytic.response import LEVEL, Caution, Failure
+from analytic.rocking import BearingLaw
 from analytic.solver import compile_kernels
 
 from .comparison import Reference
 from .comparison import compare as compared
 from .contract import Engine, Run
-from .couple import holding
-from .settings import choose, refuse_restitution
-from .statue_range import outside
+from .loads import ALONE, holding, reached
 from .swings import find_swings
+
+if TYPE_CHECKING:
+    from analytic import Scene
+
+    from .contract import Engine
+
+
+def choose(engine: Engine, variant: str | None, changes: Mapping[str, Any]) -> tuple[str, Any]:
+    """(name, settings) of an engine's variant with fields replaced.
+
+    Parameters
+    ----------
+    engine : Engine
+    variant : str or None
+        None: the main one.
+    changes : dict
+        {field: number}
+
+    Raises
+    ------
+    SettingError
+        The variant or the setting is unknown, or a value is not a finite number above 0.
+    """
+    name, variants = engine.default_variant if variant is None else variant, engine.variants
+    if name not in variants:
+        raise SettingError(f"{engine.name} has no variant {name!r}: choose one of {', '.join(variants)}")
+    settings = variants[name].settings
+    known = [field.name for field in fields(settings)]
+    for key, value in changes.items():
+        if key not in known:
+            raise SettingError(f"{engine.name} {name} has no setting {key!r}: its settings are {', '.join(known)}")
+        if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value < math.inf:
+            raise SettingError(f"{engine.name} {name}: {key} = {value!r} is not a positive number")
+    return name, replace(settings, **{key: float(value) for key, value in changes.items()})
+
+
+def refuse_restitution(engine: Engine, scene: Scene) -> None:
+    """Raise `SceneError` where a scene gives the restitution and the engine computes the impact itself."""
+    if scene.block.restitution is not None:
+        able = [
+            name
+            for name, variant in engine.variants.items()
+            if variant.takes_restitution and (variant.applies_impact or reached(scene))
+        ]
+        raise SceneError(
+            "block.restitution",
+            scene.block.restitution,
+            "a contact engine computes the impact itself",
+            f"leave it out, use the variant {able[0]}, {ALONE}" if able else f"leave it out, {ALONE}",
+        )
+
+
+if TYPE_CHECKING:
+    from analytic import Response, Scene
+
+ROUNDING = 1e-9  # tolerance of a computed value at a limit
+# {quantity: (lowest value, highest value, in words)}
+RANGE = {
+    "slenderness": (0.1, 0.5, "slenderness {low:g} to {high:g} rad"),
+    "inertia": (1.2, 2.0, "inertia about a corner {low:g} to {high:g} m R²"),
+    "radius": (0.1, 10.0, "R {low:g} to {high:g} m"),
+    "base_mass": (0.05, math.inf, "rigid ground or a base of at least {low:g} block masses"),
+    "period": (0.3, 5.0, "bearings of {low:g} to {high:g} s"),
+    "damping": (0.0, 1.0, "damping up to critical"),
+    "tilt": (0.01, math.inf, "a peak tilt of at least {low:g} slendernesses"),
+}
+NAMES = {"base_mass": "base mass over block mass", "tilt": "peak tilt over slenderness"}  # where not the key
+
+
+def in_words() -> str:
+    """The limits, in one line."""
+    return ", ".join(map(_words, RANGE))
+
+
+def outside(scene: Scene, response: Response) -> tuple[Caution, ...]:
+    """A warning for each quantity of the scene, and for the run's peak tilt, that lies outside the range."""
+    found = []
+    for name, value in _values(scene, response).items():
+        low, high, _ = RANGE[name]
+        if not low * (1 - ROUNDING) <= value <= high * (1 + ROUNDING):
+            words = (
+                f"{NAMES.get(name, name)} {value:.3g} is outside the range in which engines are tested "
+                f"({_words(name)}): nothing is promised there"
+            )
+            found.append(Caution("engine", words, name, value, low if value < low else high))
+    return tuple(found)
+
+
+def _words(name: str) -> str:
+    """The limits of a quantity."""
+    low, high, words = RANGE[name]
+    return words.format(low=low, high=high)
+
+
+def _values(scene: Scene, response: Response) -> dict[str, float]:
+    """{quantity of `RANGE`: its value}, of those that the scene has; a block that never lifts has no tilt.
+
+    Period and viscous damping are those of block and base on the stiffness after yielding.
+    """
+    block, base = scene.block, scene.base
+    inertia = block.inertia / (block.mass * block.radius**2)
+    found = {"slenderness": block.slenderness, "inertia": inertia, "radius": block.radius}
+    if base is not None:
+        found["base_mass"] = base.mass / block.mass
+    if scene.bearings is not None:
+        law = BearingLaw.of(scene.bearings)
+        omega = math.sqrt(law.count * law.kb / scene.total_mass)
+        found["period"] = 2 * math.pi / omega if omega else math.inf
+        found["damping"] = law.count * law.damping / (2 * omega * scene.total_mass) if omega else 0.0
+    if response.outcome not in LEVEL:  # an engine that stands has a tilt of rounding
+        found["tilt"] = response.peak_tilt_ratio
+    return found
+
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -105,7 +224,7 @@ class Simulator(Engine):
         """(response, trace or None) of `simulate`, without the comparison.
 
         A scene without a duration is first run to the end of the analytic model's run, where most engines end, too. If
-        the engine's own end state is not decided there, it runs longer (`analytic.termination.until_decided`).
+        the engine's own end state is not decided there, it runs longer (`analytic.solver.until_decided`).
         """
         return self._traced(scene, variant, history, settings, self._model(scene))
 
@@ -151,7 +270,7 @@ class Simulator(Engine):
         return (Caution("engine", words, "restitution", e),)
 
     def _once(self, scene: Scene, name: str, chosen: Any, history: bool) -> tuple[Response, Trace | None]:
-        from .observe import failed_response, observe  # here, as it loads scipy: .3 s at every start
+        from .observe import failed_response, observe
 
         run = self.run(scene, name, chosen)
         on = self._run_on(scene, name, chosen, run)
@@ -196,7 +315,7 @@ def _place(error: Exception, adapter: ModuleType) -> str:
 
 def _beyond(scene: Scene, on: Run) -> tuple[Trace | None, tuple[Caution, ...]]:
     """(finite part of the trace, warnings) of a run that went on beyond the scene's end."""
-    from .truncation import finite_part  # as above
+    from .events import finite_part
 
     trace, failure = finite_part(on.trace, on.failure) if on.trace else (None, on.failure)
     if trace is not None and failure is None:

@@ -20,8 +20,8 @@ from analytic.rocking import RockingModel
 
 if TYPE_CHECKING:
     from analytic import Scene
-    from analytic.bearing import BearingLaw
-    from analytic.types import Values
+    from analytic.errors import Values
+    from analytic.rocking import BearingLaw
 
 # Extrapolation of one step of an engine to tilt = 0: classical Runge-Kutta steps, and corrections of the end time.
 # 4 steps over 1/60 s leave 1e-11 rad/s; each correction cubes the error of the end time. A fast base on its bearings
@@ -71,7 +71,7 @@ class Trace:
         The engine's own motors and dampers are left on. A motion that does not match the bearing force is then a
         warning, not a failure.
     early : float
-        Time [s] before a landing in which a couple acts (`engines.couple`); flight before it counts as clean.
+        Time [s] before a landing in which a couple acts (`engines.loads`); flight before it counts as clean.
 
     Raises
     ------

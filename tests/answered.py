@@ -4,10 +4,9 @@ import dataclasses
 import json
 
 from analytic import simulate
-from comparisons.running.executors import Done, Executor, lines_of
-from comparisons.running.plan import Batch, Computed
-from comparisons.running.provenance import digest_of, write_result
-from comparisons.running.sweep import Row, run_sweep
+from comparisons.execution.plan import Batch, Computed
+from comparisons.execution.provenance import digest_of, write_result
+from comparisons.execution.sweep import Done, Executor, Row, lines_of, run_sweep
 from comparisons.studies.rows import read_study
 
 

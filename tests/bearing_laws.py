@@ -1,7 +1,7 @@
 """The laws of a bearing for tests that go through them all, matched in ka, kb and f0."""
 
-from analytic.bearing import BearingLaw
 from analytic.laws import LAWS
+from analytic.rocking import BearingLaw
 from analytic.scene import Bearings
 
 NAMES = [law.name for law in LAWS]

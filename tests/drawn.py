@@ -21,8 +21,8 @@ from unittest.mock import patch
 
 import numpy as np
 
+from comparisons.execution.provenance import Result
 from comparisons.report.write import write_page
-from comparisons.running.provenance import Result
 from engines import ENGINES
 
 FOLDER = Path(__file__).parent / "comparisons" / "report"

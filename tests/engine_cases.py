@@ -5,8 +5,8 @@ import pytest
 
 import analytic
 from analytic import Base, PulseMotion, SampledMotion, Scene, Start
-from analytic.caryatid import caryatid_block
 from analytic.rocking import RockingModel, restitution
+from analytic.scene import caryatid_block
 from engines import get_engine
 
 PULSE = PulseMotion("one-sine", 6.0, 4.0)

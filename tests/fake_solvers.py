@@ -6,9 +6,8 @@ import time
 from pathlib import Path
 
 from analytic import Block, Failure, Response, Scene, Start, State
-from comparisons.running.cases import Case
-from comparisons.running.executors import Processes
-from comparisons.running.sweep import run_sweep
+from comparisons.execution.cases import Case
+from comparisons.execution.sweep import Processes, run_sweep
 
 # Of new processes that import this and the project.
 ENVIRONMENT = {

@@ -4,8 +4,8 @@ import fake_solvers
 import numpy as np
 
 from analytic import Block, Scene, Start
-from comparisons.running.cases import Case
-from comparisons.running.plan import Batch, Computed, Study
+from comparisons.execution.cases import Case
+from comparisons.execution.plan import Batch, Computed, Study
 from engines import ENGINES
 
 STARTS = (0.05, 0.1)

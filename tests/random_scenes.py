@@ -1,4 +1,4 @@
-"""Random valid scenes, extremes included; `comparisons.ensembles.statues` draws others within the range of a statue."""
+"""Random valid scenes, extremes included; `comparisons.ensembles` draws others within the range of a statue."""
 
 import math
 
@@ -6,8 +6,8 @@ import numpy as np
 from bearing_laws import to_law
 
 from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start
-from analytic.bearing import BearingLaw
-from analytic.pulses import PULSES
+from analytic.motion import PULSES
+from analytic.rocking import BearingLaw
 
 LAWS = ("algebraic", "linear", "bouc-wen")
 

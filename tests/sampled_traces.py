@@ -3,8 +3,8 @@
 import numpy as np
 
 from analytic import SampledMotion, Scene, Start, simulate
-from analytic.caryatid import BASE, BEARINGS
-from analytic.caryatid import caryatid_block as block
+from analytic.scene import BASE, BEARINGS
+from analytic.scene import caryatid_block as block
 from engines.observe import observe
 from engines.swings import Trace
 

@@ -10,12 +10,19 @@ from typing import get_type_hints
 import pytest
 from test_readme import PARTS
 
-from analytic import part
+from analytic import scene as part
 
 ADDRESS, PRIVATE = " at 0x", "FieldInfo"  # of an object of this process; how pydantic keeps a constraint
 SCENE_PARTS = [one for one in part.Part.__subclasses__() if not one.__name__.startswith("_")]
-QUICK = ("analytic", "analytic.batch", "analytic.new_scene", "analytic.records", "engines", "comparisons.showing.plots")
-LONGER = ("comparisons.advice.choose", "comparisons.measuring.tolerances", "comparisons.report.study")
+QUICK = (
+    "analytic",
+    "analytic.batch",
+    "analytic.scene_file",
+    "analytic.records",
+    "engines",
+    "comparisons.plotting.plots",
+)
+LONGER = ("comparisons.advice.choose", "comparisons.metrics.agreement", "comparisons.report.runs")
 
 
 @pytest.mark.parametrize("module", [*QUICK, *(pytest.param(name, marks=pytest.mark.slow) for name in LONGER)])

@@ -12,7 +12,7 @@ from hypothesis import HealthCheck, Phase, assume, given, settings
 from hypothesis import strategies as st
 
 from analytic import Base, Block, PulseMotion, Scene, simulate
-from analytic.twin import simulate_twin
+from analytic.checks.twin import simulate_twin
 from engines import get_engine
 
 GRAVITY = 9.81

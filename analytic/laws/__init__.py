@@ -7,7 +7,7 @@ from collections import namedtuple
 from types import ModuleType
 from typing import Any
 
-from ..compiled import chosen
+from ..kernel.compiled import chosen
 from . import algebraic, bilinear, bouc_wen, linear  # noqa: F401 a law named here is in LAWS
 from .law import Law
 

@@ -10,8 +10,8 @@ import math
 
 import numpy as np
 
-from ..compiled import inlined, inner
-from ..polynomial import INVERSE
+from ..kernel.compiled import inlined, inner
+from ..kernel.polynomial import INVERSE
 from .law import Constants, Given, Law
 
 

@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..compiled import inlined, inner
+from ..kernel.compiled import inlined, inner
 from .law import Constants, Given, Law
 
 

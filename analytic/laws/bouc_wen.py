@@ -7,8 +7,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..compiled import inlined, inner
-from ..polynomial import INVERSE
+from ..kernel.compiled import inlined, inner
+from ..kernel.polynomial import INVERSE
 from . import algebraic
 from .law import Constants, Law
 

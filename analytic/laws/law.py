@@ -10,8 +10,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ..compiled import inner
-from ..polynomial import value
+from ..kernel.compiled import inner
+from ..kernel.polynomial import value
 
 Constants = Any  # `laws.Constants`, with the constants of all laws
 

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ..compiled import inlined, inner
+from ..kernel.compiled import inlined, inner
 from .law import Constants, Given, Law
 
 

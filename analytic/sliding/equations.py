@@ -16,11 +16,10 @@ H = -sigma mu N; flight H = N = 0. sigma is the direction of slip.
 
 import math
 
-from .. import layout as L
-from ..compiled import inner
-from ..events import TOUCH, find_fall, find_passage, find_turn
-from ..laws import law_function
-from ..layout import (
+from ..kernel import layout as L
+from ..kernel.compiled import inner
+from ..kernel.events import TOUCH, find_fall, find_passage, find_turn
+from ..kernel.layout import (
     CLIMB,
     CONE,
     DRIFT,
@@ -40,8 +39,9 @@ from ..layout import (
     Block,
     H,
     N,
-)  # fmt: skip
-from ..polynomial import INVERSE, first_root
+)
+from ..kernel.polynomial import INVERSE, first_root
+from ..laws import law_function
 
 _bearing_term = law_function("term")
 

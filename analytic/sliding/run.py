@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .. import layout as L
-from ..compiled import compiling
-from ..decision import longest_duration
 from ..errors import SceneError
+from ..kernel import layout as L
+from ..kernel.compiled import compiling
+from ..kernel.decision import longest_duration
 from ..response import Sliding
 from ..rocking import momentum_restitution
 from .march import arrays, march
 
 if TYPE_CHECKING:
-    from ..layout import Ground, Options, Parameters
+    from ..kernel.layout import Ground, Options, Parameters
     from ..scene import Scene
 
 # The kernel reads the demand at points of each step, and it may exceed them in between: with a friction above its

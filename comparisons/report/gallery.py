@@ -12,14 +12,12 @@ from xml.etree import ElementTree
 
 from engines import ENGINES
 
-from ..running.age import by_engine, checked, date_of, held
-from ..running.by_solver import results_in
-from ..running.files import write, write_all
-from ..running.provenance import PROJECT_FOLDER, RESULTS, Result
-from ..showing.charts import alone
+from ..execution.by_solver import by_engine, checked, date_of, held, results_in
+from ..execution.files import write, write_all
+from ..execution.provenance import PROJECT_FOLDER, RESULTS, Result
+from ..plotting.charts import alone
 from ..studies.rows import read_study
-from .answer import Stored, commit_of, judgements_of, setups_of, stored_studies, variants_of
-from .first import screen
+from .answer import Stored, commit_of, judgements_of, screen, setups_of, stored_studies, variants_of
 
 GALLERY, README = Path(__file__).with_name("gallery"), PROJECT_FOLDER / "README.md"
 RESULTS_README = RESULTS / "README.md"

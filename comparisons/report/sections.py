@@ -6,10 +6,11 @@ from typing import Any
 from analytic.records import G
 from analytic.response import UNCOMPARED, Difference
 
-from ..running.provenance import Result
-from ..showing.charts import figure
-from ..showing.parts import NAME, Column, Section, Table, across, grouped, number, table
-from ..showing.wording import TRUSTED, USABLE, differing, outcomes, trust
+from ..execution.provenance import Result
+from ..plotting.charts import figure
+from ..plotting.parts import Section, Table, across, grouped, table
+from ..plotting.wording import TRUSTED, USABLE, differing, outcomes, trust
+from ..schemas.columns import NAME, Column, number
 from . import figures
 from .figures import ANALYTIC, pairs
 

@@ -12,16 +12,18 @@ from typing import TYPE_CHECKING, Any
 
 from markupsafe import Markup
 
-from engines.statue_range import RANGE, in_words
+from engines.simulating import RANGE, in_words
 
-from ..measuring.statistics import wilson
-from ..running.age import age
-from ..running.files import write_all
-from ..running.provenance import PACKAGES, RESULTS, read_result
-from ..showing import diagrams, modes
-from ..showing.parts import NAME, SIGNS, Section, Table, percent
-from ..showing.wording import TRUSTED, USABLE
-from . import equations
+from ..execution.by_solver import age
+from ..execution.files import write_all
+from ..execution.provenance import PACKAGES, RESULTS, read_result
+from ..metrics.statistics import wilson
+from ..plotting import diagrams
+from ..plotting import diagrams as modes
+from ..plotting.parts import SIGNS, Section, Table
+from ..plotting.wording import TRUSTED, USABLE
+from ..schemas.columns import NAME, percent
+from . import detail as equations
 from .answer import (
     Stored,
     commit_of,
@@ -29,20 +31,20 @@ from .answer import (
     not_to_do,
     origin_of,
     own_restitution,
+    screen,
     setups_of,
     stored_studies,
+    summary,
     variants_of,
 )
 from .detail import assets, detail, environment
 from .figures import animation
-from .first import screen
 from .runs import RESTITUTION, SCENES
 from .sections import earthquake, restitution_section, scene_sections
 from .statue import card_of
-from .summary import summary
 
 if TYPE_CHECKING:
-    from ..running.provenance import Result
+    from ..execution.provenance import Result
 
 PAGE, PAGES = "report.html", "pages"
 HERE = Path(__file__).parent

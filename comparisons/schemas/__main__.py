@@ -3,13 +3,12 @@
 import json
 from typing import Any
 
-from ..advice import Choice
-from ..running.files import write_all
-from ..running.provenance import PROJECT_FOLDER
+from ..advice.criteria import Choice
+from ..execution.files import write_all
+from ..execution.provenance import PROJECT_FOLDER
+from . import schema_of
 from .advice import BearingSearch, Design, Margins
-from .form import schema_of
-from .runs import Comparison, New, Record, Report, Run, Sheet, Verification
-from .study import StudyResult
+from .runs import Comparison, New, Record, Report, Run, Sheet, StudyResult, Verification
 
 FOLDER = PROJECT_FOLDER / "comparisons" / "schemas"
 FORMS = (Choice, Comparison, Design, Margins, New, Record, Report, Run, Sheet, StudyResult, BearingSearch, Verification)

@@ -7,10 +7,9 @@ from pydantic import Field, create_model
 from pydantic.fields import FieldInfo
 
 from analytic import margins
-from analytic.part import UNITS
-from analytic.scene import Bearings
+from analytic.scene import SCENE_UNITS, Bearings
 
-from .form import Form, Part
+from . import Form, Part
 from .runs import MotionRead, MotionRun, Warned
 
 LimitState = Literal[*margins.LIMIT_STATES]  # type: ignore[valid-type]  # the words of `analytic.margins`
@@ -97,7 +96,7 @@ class Margins(Form):
 def _constant(name: str, given: FieldInfo) -> tuple[Any, Any]:
     """A key of a scene's bearings as a field: (type, description)."""
     plain = {"law": str, "count": int}.get(name, float)
-    unit = UNITS.get(f"{Bearings.table}.{name}")
+    unit = SCENE_UNITS.get(f"{Bearings.table}.{name}")
     return (plain if given.default is not None else plain | None), Field(description=unit)
 
 

@@ -1,19 +1,281 @@
-"""The sheet as files: a page a problem in Markdown and HTML, the record, and a table of all reference answers."""
+"""The scenes of the sheet, what is asked of each, and the reference answers.
 
+The sheet as files: a page a problem in Markdown and HTML, the record, and a table of all reference answers.
+"""
+
+import functools
+import math
 import re
+from collections.abc import Iterable
+from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from markdown_it import MarkdownIt
 from markupsafe import Markup
 
-from analytic import SampledMotion
+from analytic import (
+    Base,
+    Bearings,
+    Block,
+    PulseMotion,
+    Response,
+    SampledMotion,
+    Scene,
+    Start,
+    simulate,
+    synthetic_motion,
+)
 
-from ..running.files import write_all
-from ..showing.parts import templates
-from ..showing.wording import indexed
-from .problems import DAMPING, PERIOD, PROBLEMS, SCALES, TOLERANCE, UNITS, VERSION, Problem, record
+from ..execution.files import write_all
+from ..plotting.parts import templates
+from ..plotting.wording import indexed
+
+VERSION = 1  # of the scenes and quantities: answers to another sheet are answers to other questions
+TIGHTEST = 1e-16  # tolerance of the model's run
+HISTORY_STEP = 1e-3  # s, of which every time asked for is a multiple
+DIGITS = 12  # of an answer; it is known to 1e-10 of its scale
+TOLERANCE = 1e-3  # of the scale: by so much may another code's answer differ
+RECORD_SAMPLES = 1601  # of the synthetic motion: its first 8 s
+DAMPING = 0.15  # of the linear bearings, as a share of critical damping
+PERIOD = 2.0  # s, of the linear bearings under block and base
+# By kind of quantity: its unit, and its scale in symbols.
+UNITS = {"time": "s", "angle": "rad", "rate": "rad/s", "length": "m", "speed": "m/s", "force": "N", "outcome": "a word"}
+SCALES = {
+    "time": "1/ω_r",
+    "angle": "γ",
+    "rate": "γ ω_r",
+    "length": "R γ",
+    "speed": "R γ ω_r",
+    "force": "(m + m_b) g γ",
+    "outcome": "–",
+}
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One number, or word, that is asked for.
+
+    kind: "time", "angle", "rate", "length", "speed", "force" or "outcome". source: what of a run it is: an attribute
+    of an `Impact`, of a `State`, or of the `Response`, of whose uplifts and rests the first. index: which impact, from
+    1 on, or the time [s] of the state.
+    """
+
+    name: str
+    kind: str
+    words: str
+    source: str
+    index: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """One page of the sheet; `scene` has a duration, up to which its quantities are asked."""
+
+    name: str
+    title: str
+    story: str
+    scene: Scene
+    quantities: tuple[Quantity, ...]
+
+    @functools.cached_property
+    def answers(self) -> dict[str, float | str]:
+        """{quantity: reference answer, in its unit}: those of the analytic model, to `DIGITS` digits."""
+        response = simulate(self.scene, tolerance=TIGHTEST, output_step=HISTORY_STEP)
+        return {one.name: _shown(one, response) for one in self.quantities}
+
+    def tolerance(self, quantity: Quantity) -> float | None:
+        """By how much another code's answer may differ, in the quantity's unit: `TOLERANCE` of its scale, which
+        `SCALES` says in symbols; None for a word."""
+        block, omega = self.scene.block, self.scene.rocking_frequency
+        scales = {
+            "time": 1 / omega,
+            "angle": block.slenderness,
+            "rate": block.slenderness * omega,
+            "length": block.radius * block.slenderness,
+            "speed": block.radius * block.slenderness * omega,
+            "force": self.scene.total_mass * self.scene.gravity * block.slenderness,
+        }
+        return TOLERANCE * scales[quantity.kind] if quantity.kind in scales else None
+
+
+def _shown(quantity: Quantity, response: Response) -> float | str:
+    """What a run with a history shows of a quantity: a word, or a number to `DIGITS` digits."""
+    found: Any
+    if quantity.source in STATE:
+        time, values = (getattr(response.history, name) for name in ("time", quantity.source))
+        found = np.interp(quantity.index, time, values)
+    elif quantity.source in IMPACT:
+        found = getattr(response.impacts[int(quantity.index) - 1], quantity.source)
+    else:
+        found = getattr(response, quantity.source)
+        found = found[0] if isinstance(found, tuple) else found  # of uplifts and rests, the first
+    return found if isinstance(found, str) else float(f"{found:.{DIGITS}g}")
+
+
+# By source: name, kind and words, of the impact of a number or the state at a time [s].
+IMPACT = {
+    "time": ("impact_time_{:g}", "time", "time of impact {:g}"),
+    "rate_before": ("rate_before_{:g}", "rate", "φ′ just before impact {:g}"),
+    "rate_after": ("rate_after_{:g}", "rate", "φ′ just after impact {:g}"),
+    "base_velocity_jump": ("base_velocity_jump_{:g}", "speed", "x′ just after impact {:g} less x′ just before it"),
+}
+STATE = {
+    "tilt": ("tilt_at_{:g}", "angle", "φ at t = {:g} s"),
+    "tilt_rate": ("tilt_rate_at_{:g}", "rate", "φ′ at t = {:g} s"),
+    "base_displacement": ("displacement_at_{:g}", "length", "x at t = {:g} s"),
+    "bearing_force": ("force_at_{:g}", "force", "force F of all bearings together at t = {:g} s"),
+}
+OTHERS = {
+    "outcome": Quantity(
+        "outcome", "outcome", "stands (φ stays 0), rocks, or overturns (|φ| reaches π/2 within the duration)", "outcome"
+    ),
+    "peak_tilt": Quantity("peak_tilt", "angle", "largest |φ| within the duration", "peak_tilt"),
+    "peak_displacement": Quantity(
+        "peak_displacement",
+        "length",
+        "largest |x| within the duration; of a block that overturns, up to the last time of |φ| = γ",
+        "peak_base_displacement",
+    ),
+    "uplift": Quantity("uplift_time", "time", "time at which the block first lifts", "uplifts"),
+    "rest": Quantity(
+        "rest_time", "time", "limit of the times of the impacts of the first free rocking: it then rests", "rests"
+    ),
+    "overturning": Quantity("overturning_time", "time", "time at which |φ| = π/2", "overturning_time"),
+}
+
+
+def asked(indices: Iterable[float], *sources: str) -> list[Quantity]:
+    """The impacts of these numbers, or the states at these times [s], each by these of `IMPACT` or `STATE`."""
+    rows = {source: (IMPACT | STATE)[source] for source in sources}
+    return [
+        Quantity(name.format(index), kind, words.format(index), source, index)
+        for index in indices
+        for source, (name, kind, words) in rows.items()
+    ]
+
+
+def _block(slenderness: float) -> Block:
+    return Block(mass=1000.0, radius=1.2, slenderness=slenderness)
+
+
+def record() -> SampledMotion:
+    """The ground motion of the problem "record": the first 8 s of the synthetic one."""
+    motion = synthetic_motion()
+    return SampledMotion(motion.dt, motion.samples[:RECORD_SAMPLES], "record.csv")
+
+
+BASE = Base(mass=300.0)
+RUBBER = Bearings(count=4, ka=2.4e4, kb=2.4e3, alpha=40.0)
+OMEGA = 2 * math.pi / PERIOD  # rad/s
+SPRINGS = Bearings(law="linear", count=4, ka=1300 * OMEGA**2 / 4, damping=2 * DAMPING * OMEGA * 1300 / 4)
+
+
+def _pulse(name, words, amplitude):
+    """The two sides of the amplitude 3.21708 m/s2, beyond which the block overturns after one impact."""
+    below = name == "pulse-below"
+    return Problem(
+        name,
+        f"One sine, {words}",
+        "The block stands on rigid ground, which moves by one sine.",
+        Scene(block=_block(0.25), motion=PulseMotion("one-sine", amplitude, 6.0), duration=4.0),
+        (
+            OTHERS["outcome"],
+            OTHERS["uplift"],
+            *asked((1,), "time", "rate_before", "rate_after"),
+            OTHERS["peak_tilt" if below else "overturning"],
+            *asked((0.5, 1.0, 2.0), "tilt"),
+        ),
+    )
+
+
+PROBLEMS = (
+    Problem(
+        "free-rigid",
+        "Free rocking on rigid ground",
+        "The block is tilted, released from rest, and rocks on rigid ground that does not move.",
+        Scene(block=_block(0.25), start=Start(tilt=0.2), duration=4.0),
+        (
+            OTHERS["outcome"],
+            *asked((1, 2, 3), "time", "rate_before", "rate_after"),
+            *asked((1.5, 2.5, 4.0), "tilt", "tilt_rate"),
+        ),
+    ),
+    Problem(
+        "free-sliding",
+        "Free rocking on a base that slides",
+        "The block is tilted and released from rest. Its base slides on the ground without friction; the ground does "
+        "not move.",
+        Scene(block=_block(0.2), base=BASE, start=Start(tilt=0.15), duration=4.0),
+        (
+            OTHERS["outcome"],
+            *asked((1, 2, 3), "time", "rate_before", "rate_after", "base_velocity_jump"),
+            *asked((1.0, 2.0), "tilt", "base_displacement"),
+        ),
+    ),
+    Problem(
+        "isolated-standing",
+        "A block that stands on bearings",
+        "Block and base start at rest on hysteretic bearings. The ground moves by one sine, and the block is too "
+        "stocky to lift.",
+        Scene(block=_block(0.35), base=BASE, bearings=RUBBER, motion=PulseMotion("one-sine", -3.0, 6.0), duration=4.0),
+        (
+            OTHERS["outcome"],
+            OTHERS["peak_displacement"],
+            *asked((0.75, 1.25, 1.5, 2.0, 2.25), "base_displacement", "bearing_force"),
+        ),
+    ),
+    Problem(
+        "isolated-rocking",
+        "A block that rocks on bearings",
+        "Block and base start at rest on hysteretic bearings. The ground moves by one sine, and the block lifts.",
+        Scene(block=_block(0.17), base=BASE, bearings=RUBBER, motion=PulseMotion("one-sine", -3.0, 8.0), duration=4.0),
+        (
+            OTHERS["outcome"],
+            OTHERS["uplift"],
+            *asked((1, 2), "time", "rate_before", "rate_after", "base_velocity_jump"),
+            OTHERS["peak_tilt"],
+            OTHERS["peak_displacement"],
+            *asked((0.5, 1.25), "tilt", "base_displacement", "bearing_force"),
+        ),
+    ),
+    _pulse("pulse-below", "overturning is near", 3.14),
+    _pulse("pulse-above", "the amplitude is 5 % larger", 3.3),
+    Problem(
+        "record",
+        "A recorded motion, linear bearings with a damper",
+        "Block and base start at rest on linear springs with viscous dampers. The ground acceleration is that of "
+        "the file inputs/record.csv, linear between its samples.",
+        Scene(block=_block(0.18), base=BASE, bearings=SPRINGS, motion=record(), duration=6.0),
+        (
+            OTHERS["outcome"],
+            OTHERS["uplift"],
+            *asked((1,), "time", "rate_before", "rate_after", "base_velocity_jump"),
+            OTHERS["peak_displacement"],
+            *asked((3.0, 4.0, 5.0, 6.0), "tilt", "base_displacement", "bearing_force"),
+        ),
+    ),
+    Problem(
+        "hard",
+        "Rest, and uplift again",
+        "The block is tilted and released on rigid ground. Ever faster and weaker impacts bring it to rest in finite "
+        "time, after infinitely many of them. From t = 2 s on the ground moves by one sine, and it lifts again.",
+        Scene(
+            block=_block(0.45), start=Start(tilt=0.1), motion=PulseMotion("one-sine", 6.0, 6.5, start=2.0), duration=6.0
+        ),
+        (
+            OTHERS["outcome"],
+            *asked((1, 2, 3), "time"),
+            OTHERS["rest"],
+            OTHERS["uplift"],
+            OTHERS["peak_tilt"],
+            *asked((2.4, 3.0), "tilt", "tilt_rate"),
+        ),
+    ),
+)
+
 
 TEMPLATES = templates(Path(__file__).parent / "templates")
 TITLE = "Rocking blocks: reference problems for other codes"

@@ -1,33 +1,36 @@
-"""The studies: each asks one question of many runs, and is one `comparisons.running.plan.Study`.
+"""The studies: each asks one question of many runs, and is one `comparisons.execution.plan.Study`.
 
-A study is two files in a folder of its name, as `restitution`, and a line of `QUESTIONS`; another file only for another
-noun (its cases).
+A study is a folder of its name with two files, ``study.py`` and ``page.py``, and a line of `QUESTIONS`. A further file
+holds a further noun, such as its cases.
 
-``study.py`` computes and imports nothing that shows: a ``plan(request)`` that yields a `Batch` of cases with their
-``measure`` and returns `Computed`, plain rows and settings (`comparisons.running.plan`); where `Study` has them other
-than usual, also ``problems``, ``WHOLE``. All rows of all studies say
-``engine``, ``variant`` and ``part`` (what the row is), ``level`` for a value of the accuracy parameter, ``lost`` for
-missed impacts; settings list ``variants``, each with engine, variant, ``tier`` (its kind), parameter, default and
-levels. `comparisons.studies.vocabulary` explains every column, `comparisons.studies.rows` says which of them a row has.
+``study.py`` computes, and imports nothing that shows. It declares the columns of its rows, ``COLUMNS``, and by ``part``
+(what a row is) which of them a row has, ``PARTS``; see `comparisons.schemas.columns`, `comparisons.studies.rows`. Its
+``plan(request)`` yields a `Batch` of cases with their ``measure``, and returns `Computed`: plain rows and settings. It
+may also have ``problems`` and ``WHOLE``, see `Study`. All rows have ``engine`` and ``variant``; ``level`` is a value of
+the accuracy parameter. Settings list ``variants``, each with engine, variant, ``tier`` (its kind), parameter, default
+and levels.
 
-``page.py`` shows: one function from a `Result` to a `comparisons.showing.parts.Page`. The report's first page takes
+    COLUMNS = SHARED | declared(number_of("rms", "error of restitution, rms", "over impacts"), ...)
+    PARTS = {"summary": "engine variant ground slenderness rms? failed runs"}
+
+``page.py`` shows: one function from a `Result` to a `comparisons.plotting.parts.Page`. The report's first page takes
 title, lead and first, the study's own page all of it; nothing is told or drawn twice.
 
-    ERROR = Column("error of restitution, rms [-]", "rms")  # a column of tables and an axis of figures
+    ERROR, GAMMA = COLUMNS["rms"], COLUMNS["slenderness"]  # columns of tables and axes of figures
 
     def page(result):
         rows = where(result.rows, part="summary")
         return Page(
             "One impact: 6 of 13 variants reproduce restitution to within 0.001",
             ("What the question is, in two sentences.",),
-            first=(lines(rows, SLENDERNESS, ERROR, "What to look at.", panel="ground", log="y"),
+            first=(lines(rows, GAMMA, ERROR, "What to look at.", panel="ground", log="y"),
                    table("Least error first", rows, NAME, ERROR, Column("failed", "{failed} of {runs}"))),
-            more=(Head("Base mass"), shades(rows, BASE, SLENDERNESS, ERROR, "...", bounds=(1e-3, 1e-2), panel=NAME.of)),
+            more=(Head("Base mass"), shades(rows, BASE, GAMMA, ERROR, "...", bounds=(1e-3, 1e-2), panel=NAME.of)),
             how=("What was run, and how it is measured.",),
         )
 
-The layer: `comparisons.showing.parts` (where, grouped, Column, table), `comparisons.showing.figures` (lines, shades,
-beside); what they cannot draw is a `comparisons.showing.charts.Chart`. The page is imported only where it is shown.
+The layer: `comparisons.plotting.parts` (where, grouped, table), `comparisons.plotting.figures` (lines, shades,
+beside); what they cannot draw is a `comparisons.plotting.charts.Chart`. The page is imported only where it is shown.
 
 Other packages declare theirs in the entry point group `rocking.studies`; an entry resolves to a `Study` of its name.
 """
@@ -41,7 +44,7 @@ from typing import TYPE_CHECKING
 from analytic.errors import SettingError
 
 if TYPE_CHECKING:  # loads engines: not where only the names are asked for
-    from ..running.plan import Study
+    from ..execution.plan import Study
 
 GROUP = "rocking.studies"
 PACKAGE = "comparisons.studies"
@@ -70,8 +73,9 @@ QUESTIONS = {
 }
 BUILT_IN = tuple(QUESTIONS)
 TOLERANCES = "tolerances"  # a result that is shown as a study's, and computed by rocking verify
+STUDIES = (*BUILT_IN, TOLERANCES)
 # What a study.py may have beside its plan: {its name there: the field of `Study`}.
-OWN = {"problems": "problems", "WHOLE": "whole"}
+OWN = {"COLUMNS": "columns", "PARTS": "parts", "problems": "problems", "WHOLE": "whole"}
 
 
 class StudyBroken(SettingError):
@@ -93,7 +97,7 @@ def get_study(name: str) -> Study:
     StudyBroken
         Another package declares it, and it cannot be used.
     """
-    from ..running.plan import Study
+    from ..execution.plan import Study
 
     if name in QUESTIONS:
         package = f"{PACKAGE}.{name.replace('-', '_')}"
@@ -101,7 +105,9 @@ def get_study(name: str) -> Study:
         own = {field: getattr(found, given) for given, field in OWN.items() if hasattr(found, given)}
         return Study(name, QUESTIONS[name], found.plan, f"{package}.page", **own)
     if name == TOLERANCES:
-        return Study(name, "", _verified, f"{PACKAGE}.{name}")
+        shown_by = f"{PACKAGE}.{name}"
+        found = import_module(shown_by)
+        return Study(name, "", _verified, shown_by, columns=found.COLUMNS, parts=found.PARTS)
     entries = list(entry_points(group=GROUP, name=name))
     if not entries:
         raise KeyError(f"unknown study {name!r}: choose one of {', '.join(study_names())}")
@@ -113,7 +119,7 @@ def get_study(name: str) -> Study:
     except Exception as error:  # whatever another package raises as it is imported
         raise StudyBroken(f"{who}: it cannot be imported ({type(error).__name__}: {error})") from error
     if not isinstance(study, Study) or study.name != name:
-        raise StudyBroken(f"{who}: it is no comparisons.running.plan.Study called {name!r}")
+        raise StudyBroken(f"{who}: it is no comparisons.execution.plan.Study called {name!r}")
     return study
 
 

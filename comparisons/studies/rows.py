@@ -1,7 +1,13 @@
-"""What a row of each study has: its columns by `part`, and a result read whose rows are so.
+"""The columns that several studies' rows have, and results read whose rows are as their study declares.
 
-A new column needs a line in `comparisons.studies.vocabulary` alone: a row may then have it. One that a page cannot do
-without also stands here, and a result without it is refused.
+A study declares in its ``study.py`` the columns of its rows, ``COLUMNS``, and by ``part`` which of them a row has,
+``PARTS``. What is not known, or does not exist, is null.
+
+    columns = columns_of("restitution")
+    frame = pandas.DataFrame(read_result("restitution.json").rows)  # or any other table library
+    print(columns["rms"].head, columns["rms"].declaration)  # name with unit; meaning, unit and type
+
+Nothing here is part of what a result depends on.
 """
 
 import shlex
@@ -12,119 +18,80 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from ..running.by_solver import MODEL, engine_of, read
-from ..running.provenance import Result, ResultError
-from ..running.readable import readable
-from .vocabulary import columns_of
+from ..execution.by_solver import MODEL, engine_of, read
+from ..execution.files import readable
+from ..execution.provenance import Result, ResultError
+from ..schemas.columns import Column, declared, flag_of, list_of, number_of, table_of, whole_of, word_of
+from . import STUDIES, get_study
+
+SHARED = declared(
+    word_of("part", "part", "what the row is of, among the study's rows"),
+    word_of("scene", "scene", "name of the scene, described in the settings"),
+    word_of("engine", "solver", 'engine, or "analytic", "twin", "time-stepping", or the name of another integrator'),
+    word_of("variant", "variant", "variant of the engine; empty where there is one only"),
+    word_of("tier", "kind", "kind of the variant: defaults, tuned or assisted"),
+    number_of("level", "level", "value of the variant's accuracy parameter", "of the parameter, see settings"),
+    word_of("ground", "ground", "what the block stands on: rigid ground, or a base"),
+    number_of("slenderness", "slenderness γ", "of the block, atan(width/height)", "rad", digits=None),
+    whole_of("runs", "runs judged", "runs that the row sums up"),
+    whole_of("failed", "failed", "of the runs, those that failed"),
+    whole_of(
+        "lost",
+        "missed impacts",
+        "missed impacts: strong impacts of the analytic model that the run, or the runs, do not have",
+    ),
+    table_of("failure", "failure", "why the run failed: kind, reason, message; null where it did not"),
+    word_of("kind", "kind", 'of a failure: "solver", "exception", "time limit", "crash" or "undecided"'),
+    word_of("reason", "reason", "why the run failed, or the value does not exist, in words"),
+    word_of("message", "message", "of a failure: the engine's own words and the evidence"),
+    whole_of("exit_code", "exit code", "of a failure: of the process that crashed"),
+    number_of("time_limit", "time limit", "of a failure: the time limit it reached", "s"),
+    table_of(
+        "last_state",
+        "last state",
+        "of a failure: the last finite state; time [s], tilt [rad], displacement [m], their rates",
+    ),
+    number_of("p_value", "p (McNemar)", "of McNemar's exact test that outcomes change both ways alike", digits=3),
+    whole_of("both_stand", "both stand", "runs that stand in the model and in the engine"),
+    whole_of("both_overturn", "both overturn", "runs that overturn in both"),
+    whole_of("only_a", "only the analytic model overturns", "runs that overturn in the analytic model alone"),
+    whole_of("only_b", "only the engine overturns", "runs that overturn in the engine alone"),
+    word_of("comparable", "comparable", '"yes", or why no engine is compared in this scene'),
+    word_of("class", "class", '"right", "differs", "failed" or "left out"'),
+    list_of("differences", "differences", "in what the run differs from the model, in words"),
+    list_of("quantities", "quantities", "in what the run differs from the model, by name"),
+    word_of("outcome", "engine", "of the run: stands, slides, rocks, overturns or failed"),
+    number_of("cpu_seconds", "CPU time of a run", "CPU time of one run: median over the processes", "s"),
+)
+
+
+# Of an engine's overturning boundary, and of the model's.
+BOUNDARY = declared(
+    word_of("shape", "shape", "of the pulse"),
+    number_of("frequency", "frequency", "of the pulse over omega_r"),
+    number_of("amplitude", "amplitude", "of the pulse over g tan(slenderness)"),
+    flag_of("rises", "rises", "whether overturning lies above the boundary"),
+    whole_of("mode", "mode", "impacts before overturning"),
+    number_of("low", "low", "amplitude half way to the boundary below"),
+    number_of("high", "high", "amplitude half way to the boundary above"),
+    number_of("min_normal", "min normal", "least N/(m g) of the analytic model; below 0 it holds the corner down"),
+    number_of("room", "room", "relative distance to the nearer of low and high"),
+    number_of("shift", "shift", "of the engine's boundary from the model's, relative"),
+    number_of("half_width", "half width", "of the bracket in which that boundary lies, relative"),
+)
+# Fields of the rows of boundaries by part; see `Study.parts`.
+PULSE = "engine variant level ground shape frequency amplitude"
+EDGE = "ground shape frequency amplitude rises mode low high min_normal"
+BOUNDARY_ROW = f"{PULSE} rises mode room shift? half_width? reason? runs"
+SOUGHT = f"{PULSE} min_normal kind reason message"  # of a boundary, by a run that failed
 
 SHOWN = 80  # characters of a wrong value
 NOTHING = ("failure", "why_not")  # a row that has one of these says why it has no numbers
-ERRORS = """runs failed impacts lost bias? rms? worst? rms_state? worst_state? jump_rms? jump_worst? jump_8?
-    jump_8_printed? time_rms? cpu_per_second? steps_per_second?"""
-PULSE = "engine variant level ground shape frequency amplitude"
-EDGE = "ground shape frequency amplitude rises mode low high min_normal"
-BOUNDARY = f"{PULSE} rises mode room shift? half_width? reason? runs"
-SOUGHT = f"{PULSE} min_normal kind reason message"  # of a boundary, by a run that failed
-CHANGED = "runs outcomes_changed? low? high?"
-CASE = "case engine variant level? set cpu_seconds? result outcome | outside errors until? impacts steps"
-RUN = """engine variant? outcome failure? | scene overturning_time? unstable_time? peak_tilt? peak_tilt_ratio?
-    peak_base_displacement? friction_demand? min_normal_ratio? end steps settings versions decided warnings differences
-    comparable impact_count"""
-# study: part ("" where rows have none): columns of each of its rows; "?": null may stand there. Those behind "|" a row
-# without numbers (`NOTHING`) need not have.
-ROWS = {
-    "restitution": {
-        "cell": f"engine variant level ratio? slenderness {ERRORS}",
-        "summary": f"scope engine variant ground level {ERRORS}",
-        "order": "engine variant ground order?",
-        "bearings": """engine variant factor of? runs failed rms_state? jump_rms? jump_worst? time_rms? cpu_per_second?
-            impacts lost worst_state?""",
-        "experiment": f"engine variant experiment ratio? value {ERRORS}",
-        "phase": "engine variant step runs bias rms explained? least most",
-        "flight damping": "engine variant friction? level slenderness friction_needed predicted measured",
-        "failure": "engine variant reason count message tag",
-        "why": "engine variant ground failure? | tier best placed error cause? words? parts steps energy_lost frames",
-    },
-    "overturning": {
-        "edge": EDGE,
-        "shift": BOUNDARY,
-        "refinement": BOUNDARY,
-        "confusion": """engine variant level ground region both_stand both_overturn only_a only_b kappa? kappa_low?
-            kappa_high?""",
-        "scan": "engine variant level runs failed both_stand both_overturn only_a only_b interval",
-        "disagreement": f"{PULSE} min_normal analytic_overturns distance?",
-        "failure": SOUGHT,
-    },
-    "recorded": {
-        "scene": """engine variant record component configuration slenderness intensity scale outcome tilt displacement
-            comparable horizon""",
-        "run": """engine variant tier record component configuration class comparable horizon model_outcome model_tilt
-            model_displacement outcome | differences quantities tilt displacement own_horizon tilt_error?
-            displacement_error? own_tilt_error? own_displacement_error?""",
-        "absent": "engine variant reason",
-    },
-    "fragility": {
-        "fit": """scene state measure size exceeded points median? dispersion? median_interval? dispersion_interval?
-            p_value? reason?""",
-        "check": "scene engine variant runs undecided failed",
-        "run": "scene engine variant seed comparable class quantities? model_overturns overturns?",
-        "cost": "scene engine variant runs cpu_per_run?",
-        "effect": """scene engine variant state left_out measure both_stand both_overturn only_a only_b p_value
-            difference detectable_difference? median_shift? median_interval? dispersion_shift? dispersion_interval?
-            detectable_shift? reason? p_holm""",
-        "failure": "scene engine variant seed kind reason message",
-    },
-    "shake-table": {
-        "score": """engine variant specimen forecast judged size right low high misses false_alarms brier?
-            brier_interval?""",
-        "fit": """engine variant specimen change slenderness centre spread alone_right neighbours size right brier
-            brier_interval misses false_alarms""",
-        "paired": """engine variant specimen forecast beside difference interval more_right more_interval disagree
-            right""",
-        "engine": """engine variant tier specimen size failed both_stand both_overturn only_a only_b p_value?
-            records_a records_b p_records? near on_edge equal interval right? low? high? misses? false_alarms?
-            model_right? tilt?""",
-        "failure": "engine variant specimen test kind reason message",
-        "absent": "engine variant reason",
-    },
-    "sensitivity": {
-        "change": f"scene engine variant change? failed to_overturning? p_value? tilt? displacement? {CHANGED}",
-        "vertical": f"scene faster ratio lifts_off {CHANGED}",
-    },
-    "statues": {
-        "cell": """engine variant support motion friction runs failed undecided moves lacking slides falls_without saved
-            overturned""",
-        "scene": "engine variant index support motion friction slenderness raised outcome comparable slip tilt",
-        "run": "engine variant tier index friction? class comparable | differences quantities",
-        "drawn edge": f"{EDGE} slenderness radius base_mass? law? period?",
-        "drawn shift": BOUNDARY,
-        "failure": SOUGHT,
-    },
-    "stability": {"default settings": CASE, "finer settings": CASE},
-    "speed-error": {
-        "work-precision": """scene engine variant model law? parameter? level? outcome? failure? timings errors lost?
-            repeatable | cpu_seconds cpu_low cpu_high simulated steps? step? cpu_per_second cpu_per_step?
-            boundary_shifts? settings"""
-    },
-    "caryatid": {
-        "value": "where quantity engine? paper study difference? status note",
-        "misprint": "where printed corrected measure value_corrected value_printed",
-        "equation": "number what status check value",
-        "run": f"scene {RUN}",
-        "rocking spectrum": f"period {RUN}",
-        "displacement spectrum": f"period damping {RUN}",
-        "equivalent": "definition damping period displacement nonlinear",
-        "claim": "claim intervals evaluations?",
-        "vulnerable": "slenderness step period",
-        "benefit": """motion cells 'both stay upright' 'only the isolated one does' 'only the free-standing one does'
-            'both overturn' 'only the isolated one does, within 0.30 m' 'isolated lifts' 'beyond x_max'""",
-    },
-    "tolerances": {"tolerance": "quantity engine variant scenes bound? unit measured? source found? holds? failure?"},
-    "mistakes": {
-        "run": """engine variant scene mistake? done? group? expected outcome reason? error? energy? graph?
-            displacement? steps?"""
-    },
-}
+
+
+def columns_of(kind: str) -> Mapping[str, Column]:
+    """{field: its column} of the rows of a study; of another package's that declares none, those that all share."""
+    return get_study(kind).columns or SHARED
 
 
 def read_study(path: str | PathLike[str], name: str | None = None) -> Result:
@@ -140,7 +107,7 @@ def read_study(path: str | PathLike[str], name: str | None = None) -> Result:
     if name not in (None, result.kind):
         raise ResultError(f"{file}: a result of {result.kind}; give one that rocking study {name} wrote")
     place: Counter[str] = Counter()
-    for row in result.rows if result.kind in ROWS else ():
+    for row in result.rows if result.kind in STUDIES else ():
         who = engine_of(row)
         solver = who if who in result.provenance.get("engines", ()) else MODEL
         place[solver] += 1
@@ -152,27 +119,32 @@ def read_study(path: str | PathLike[str], name: str | None = None) -> Result:
 
 def wrong_with(row: Mapping[str, Any], kind: str) -> str | None:
     """What is wrong with a row of the study `kind`, in words; None if nothing is."""
-    known, part = columns_of(kind), row.get("part", "")
-    if part not in list(ROWS[kind]):
-        return f"part = {_shown(part)} is none of {', '.join(ROWS[kind])}"
-    always, numbers = _columns(kind, part)
+    study, part = _study(kind), row.get("part", "")
+    if part not in list(study.parts):
+        return f"part = {_shown(part)} is none of {', '.join(study.parts)}"
+    always, numbers = fields_of(study.parts[part])
     for name, null in (always if any(row.get(name) for name in NOTHING) else always | numbers).items():
         if name not in row:
             return f"column {name!r} is missing"
         if row[name] is None and not null:
             return f"column {name!r} is null"
     for name, value in row.items():
-        if name not in known:
+        if name not in study.columns:
             return f"column {name!r} = {_shown(value)} is none of this study"
-        if value is not None and not known[name].holds(value):
-            return f"column {name!r} = {_shown(value)} is no {known[name].type}"
+        declaration = study.columns[name].declaration
+        if value is not None and declaration and not declaration.holds(value):
+            return f"column {name!r} = {_shown(value)} is no {declaration.type}"
     return None
 
 
+_study = cache(get_study)
+
+
 @cache
-def _columns(kind, part):
-    """The columns of a part, {name: whether null may stand there}: those of each row, those of a row with numbers."""
-    words = shlex.split(ROWS[kind][part])
+def fields_of(part: str) -> list[dict[str, bool]]:
+    """Of a part as `Study.parts` writes it [{field: whether null may stand there} of every row, of rows with
+    numbers]."""
+    words = shlex.split(part)
     bar = words.index("|") if "|" in words else len(words)
     return [{word.removesuffix("?"): word.endswith("?") for word in some} for some in (words[:bar], words[bar + 1 :])]
 

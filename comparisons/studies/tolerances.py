@@ -1,7 +1,23 @@
 """What is shown of the tolerances, a result of no study: ``rocking verify --output DIR`` measures and writes it."""
 
-from ..running.provenance import Result
-from ..showing.parts import NAME, Column, Page, table, where
+from ..execution.provenance import Result
+from ..plotting.parts import Page, table, where
+from ..schemas.columns import NAME, Column, declared, flag_of, number_of, word_of
+from .rows import SHARED
+
+# What its rows have; see `comparisons.studies.rows`.
+COLUMNS = SHARED | declared(
+    word_of("quantity", "quantity", "whose error is bounded"),
+    word_of("scenes", "scenes", "on which it is measured"),
+    number_of("bound", "tolerance", "largest error allowed; null: none is stated", "see unit"),
+    word_of("unit", "unit", "of error and bound"),
+    number_of("measured", "measured when set", "error when the bound was set", "see unit", digits=3),
+    number_of("found", "found", "error now", "see unit"),
+    flag_of("holds", "holds", "whether the error now is within the bound; null: no bound is stated"),
+    word_of("source", "where the error comes from", "where the error comes from"),
+    word_of("failure", "failure", "why nothing was found; null where something was"),
+)
+PARTS = {"tolerance": "quantity engine variant scenes bound? unit measured? source found? holds? failure?"}
 
 
 def page(result: Result) -> Page:
@@ -17,14 +33,14 @@ def page(result: Result) -> Page:
                 "Tolerances and what is measured",
                 result.rows,
                 NAME,
-                Column("quantity", "quantity"),
+                COLUMNS["quantity"],
                 Column("scenes", lambda row: row["scenes"].replace("omega_r", "ωᵣ")),
-                Column("tolerance", "bound"),
-                Column("measured when set", "measured", digits=3),
+                COLUMNS["bound"],
+                COLUMNS["measured"],
                 Column("measured now", lambda row: row["failure"] or row["found"], digits=3),
-                Column("unit", "unit"),
+                COLUMNS["unit"],
                 Column("holds", lambda row: {True: "yes", False: "no"}.get(row["holds"], "no bound stated")),
-                Column("where the error comes from", "source"),
+                COLUMNS["source"],
             ),
         ),
     )

@@ -15,18 +15,15 @@ import exudyn as exu
 
 from analytic.motion import vertical_acceleration
 
-from ..couple import Couple
-from .model import Anchor, Twist
-from .phases import Phases
-from .scene import build, standing_until
-from .sizing import CompliantCorners, scaled
-from .stepping import step_through
+from ..loads import Couple
+from .scene import Anchor, CompliantCorners, Twist, build, scaled, standing_until
+from .stepping import Phases, step_through
 
 if TYPE_CHECKING:
     from analytic import Scene
 
     from ..contract import Run
-    from .model import Model
+    from .scene import Model
 
 Real = exu.symbolic.Real
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from analytic import Scene
 
     from ..contract import Run
-    from .model import Model
+    from .scene import Model
 
 
 @dataclass(frozen=True)

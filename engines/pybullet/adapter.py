@@ -1,4 +1,22 @@
-"""PyBullet's variants: Bullet computes contact and impact. Tested with PyBullet 3.2.7."""
+"""PyBullet's variants: Bullet computes contact and impact. Tested with PyBullet 3.2.7.
+
+Import of PyBullet without the line that it prints.
+
+Links and joints in Bullet without its default damping and motors.
+
+A scene built in Bullet, and read back to check the values that Bullet uses.
+
+The pitfalls named in the comments were observed with PyBullet 3.2.7.
+
+The scene as in a first script for PyBullet, with the API's defaults.
+
+They include damping of .04 on every body, a motor of 1 N s per step in the base's joint, friction of .5 times .5, and
+contact parameters for games.
+
+Bullet's calls in each variant, for `engines.contract.Variant.calls`.
+
+Chosen numbers of impact-aware and their meaning, for `engines.contract.Variant.constants`.
+"""
 
 from __future__ import annotations
 
@@ -7,18 +25,367 @@ from dataclasses import replace
 from importlib.metadata import version
 from typing import TYPE_CHECKING
 
+import numpy  # noqa: F401 imported before PyBullet, which would load it slowly
 import numpy as np
 
 from analytic.response import Caution, Failure
 
 from ..contract import Run, Variant
-from ..leapfrog import raw_trace_of
-from ..stepping import GIVEN, MEAN_LOADS, RULED, SAMPLED, FirstScript, FixedStep, ImpactAware, Settings, run_of
-from . import calls
-from .constants import CONSTANTS
-from .first_script import MOST_VELOCITY, FreeBox
-from .imported import pybullet
-from .scene import FRICTION, BulletBodies
+from ..guard import without
+from ..loads import placement
+from ..loop import CONSTANTS as STEPS
+from ..loop import (
+    GIVEN,
+    GROWTH,
+    MEAN_LOADS,
+    NEAR,
+    RULED,
+    SAMPLED,
+    SHARE,
+    SLOW,
+    SMALLEST_STEP,
+    FirstScript,
+    FixedStep,
+    ImpactAware,
+    Settings,
+    State,
+    raw_trace_of,
+    require,
+    run_of,
+)
+
+with without(b"pybullet build time"):
+    import pybullet
+
+__all__ = ["pybullet"]
+
+
+def chain(client: int, links: list[tuple], fixed: int = -1, **options: int) -> int:
+    """A multibody of links (mass, shape, position, joint, axis, parent) on a fixed body of shape `fixed`, by default of
+    none, at the origin."""
+    masses, shapes, positions, joints, axes, parents = (list(column) for column in zip(*links, strict=True))
+    count = len(links)
+    return pybullet.createMultiBody(
+        0,
+        fixed,
+        linkMasses=masses,
+        linkCollisionShapeIndices=shapes,
+        linkVisualShapeIndices=[-1] * count,
+        linkPositions=positions,
+        linkOrientations=[[0, 0, 0, 1]] * count,
+        linkInertialFramePositions=[[0, 0, 0]] * count,
+        linkInertialFrameOrientations=[[0, 0, 0, 1]] * count,
+        linkParentIndices=parents,
+        linkJointTypes=joints,
+        linkJointAxis=axes,
+        physicsClientId=client,
+        **options,
+    )
+
+
+def without_losses(client: int, body: int, links: int, friction: float, **limits: float) -> None:
+    """Remove Bullet's damping of .04 1/s and motors of 1 N s per step from a body and its links; set their friction.
+
+    A call that sets damping or velocity limits forces linkIndex to -1, so that friction is set in a separate call.
+    """
+    for link in range(-1, links):
+        pybullet.changeDynamics(body, link, linearDamping=0.0, angularDamping=0.0, physicsClientId=client, **limits)
+        pybullet.changeDynamics(body, link, lateralFriction=friction, physicsClientId=client)
+    if links:
+        motors = pybullet.VELOCITY_CONTROL
+        pybullet.setJointMotorControlArray(body, range(links), motors, forces=[0.0] * links, physicsClientId=client)
+
+
+if TYPE_CHECKING:
+    from analytic import Scene
+
+# Coefficient of friction of the block where the scene gives none: it prevents sliding. Bullet multiplies the frictions
+# of two bodies and limits the product to 10 without a message.
+FRICTION = 10.0
+
+# contactERP, the share of a penetration that a step removes, is not set, as these corners do not penetrate. With 0 to
+# .9 per step e is the same to 2e-9 at every level. It matters for the contact of a box.
+
+# The block has a sphere at each bottom corner for contact, radius over R (1e-9 gives the same e to 1e-6). Of a box,
+# Bullet uses only the lowest corners: on a box it missed weak impacts (e off by .3), on a plane it did not stand still
+# (tilt 8e-6 of gamma at rest at 1 ms, slenderness .45; spheres: 8e-11).
+CORNER_RADIUS = 1e-6
+
+# Relative residual of the sequential impulses of a step, rocking on one corner and standing on two; see `iterations`.
+# With too few iterations e is .99998 instead of .64 (J_O = 1.05 m R^2), and a standing block rocks (10: at 9e-5 of
+# gamma under shaking of .9 of the uplift threshold, gamma .1). With the direct solver (Dantzig) the block stands, too,
+# but its friction is wrong on two corners: under a horizontal load the block and its base separate. The default
+# solverResidualThreshold does not end the iterations early.
+ROCKING_REST, STANDING_REST, MOST_ITERATIONS = 1e-6, 1e-4, 20_000
+
+TILT, BASE = 2, 3  # the links of the block and of its base
+MOST_VELOCITY = 1e9  # m/s and rad/s: Bullet's limit for joints; its default is 100
+
+
+def iterations(scene: Scene, corners: int) -> int:
+    """Iterations of the contact solver to a residual of ROCKING_REST (one corner) or STANDING_REST (two).
+
+    Sequential impulses are the Gauss-Seidel method, normal impulses first. Its convergence rate is an eigenvalue, near
+    1 for J_O near m R^2, and 1 - 3 tan^2 gamma for slender blocks on two corners. The forces on a light base are shared
+    by friction, which takes more iterations. A formula without the base takes a third more CPU time; 50 for all leave
+    peak tilts off by up to 4e-4 and let a slender block rock that stands.
+    """
+    block = scene.block
+    b, h, light = block.half_width, block.half_height, scene.base.mass if scene.base else math.inf
+    mobility = np.diag([1 / block.mass, 1 / block.mass, 1 / block.centre_inertia, 1 / light])
+    across = (b,) if corners == 1 else (-b, b)
+    directions = np.array([[0, 1, -x, 0] for x in across] + [[1, 0, -h, -1] for _ in across])
+    delassus = directions @ mobility @ directions.T
+    lower = np.tril(delassus)
+    rates = np.abs(np.linalg.eigvals(np.linalg.solve(lower, lower - delassus)))
+    rate = rates[rates < 1 - 1e-9].max()  # 1: distribution of the friction between the corners, irrelevant
+    rest = (ROCKING_REST, STANDING_REST)[corners - 1]
+    needed = math.log(rest * min(1.0, light / block.mass)) / math.log(rate) if rate > 0 else 1.0
+    return min(max(math.ceil(needed), 1), MOST_ITERATIONS)
+
+
+class BulletBodies:
+    """The planar chain of a scene in a fresh client.
+
+    The block is on massless x-prismatic, z-prismatic and y-revolute joints, and has two contact corners. The base is a
+    plane on an x-prismatic joint of the same multibody, so that one call reads both; rigid ground is its fixed plane.
+
+    Raises
+    ------
+    Mismatch
+        Bullet reports other values than it was given.
+    """
+
+    def __init__(self, client: int, scene: Scene) -> None:
+        block, base, start = scene.block, scene.base, scene.start
+        b, h, r = block.half_width, block.half_height, CORNER_RADIUS * block.radius
+        corners = pybullet.createCollisionShapeArray(
+            [pybullet.GEOM_SPHERE] * 2,
+            radii=[r] * 2,
+            collisionFramePositions=[[-b, 0, r - h], [b, 0, r - h]],
+            physicsClientId=client,
+        )
+        plane = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=client)
+        sliding, turning = pybullet.JOINT_PRISMATIC, pybullet.JOINT_REVOLUTE
+        # link: mass, shape, position, joint, axis, parent
+        links = [
+            (0.0, -1, [0, 0, h], sliding, [1, 0, 0], 0),
+            (0.0, -1, [0, 0, 0], sliding, [0, 0, 1], 1),
+            (block.mass, corners, [0, 0, 0], turning, [0, 1, 0], 2),
+        ]
+        if base is not None:
+            links.append((base.mass, plane, [0, 0, 0], sliding, [1, 0, 0], 0))
+        flags = pybullet.URDF_USE_SELF_COLLISION
+        body = chain(client, links, plane if base is None else -1, flags=flags)
+        rough = math.sqrt(FRICTION if scene.friction is None else min(scene.friction, FRICTION))
+        without_losses(client, body, len(links), rough, maxJointVelocity=MOST_VELOCITY)
+        # About the centre. Setting it without the mass in the same call can set the mass to 0, with NaN in the first
+        # step.
+        pybullet.changeDynamics(
+            body, TILT, mass=block.mass, localInertiaDiagonal=[block.centre_inertia] * 3, physicsClientId=client
+        )
+        x, z, vx, vz = placement(scene)
+        states = [(x, vx), (z, vz), (start.tilt, start.tilt_rate), (start.base_displacement, start.base_velocity)]
+        self.client, self.body, self.joints = client, body, range(len(links))
+        for joint in self.joints:
+            pybullet.resetJointState(body, joint, *states[joint], physicsClientId=client)
+        self.mass, self.loaded = base.mass if base else 0.0, scene.bearings is not None
+        self.sweeps = iterations(scene, 1), iterations(scene, 2)
+        self.fall = scene.gravity / (4 * b)
+        self.tilt, self.rate, self.used = start.tilt, start.tilt_rate, (0.0, 0)
+        self._check(scene, rough, links, states)
+
+    def _check(self, scene: Scene, rough: float, links: list[tuple], states: list[tuple[float, float]]) -> None:
+        """Compare what Bullet reports with what the scene needs; raises `Mismatch` naming what differs."""
+        told = [pybullet.getDynamicsInfo(self.body, link, self.client) for link in (-1, *self.joints)]
+        joints = [pybullet.getJointInfo(self.body, joint, self.client) for joint in self.joints]
+        now = pybullet.getJointStates(self.body, self.joints, self.client)
+        require(
+            [
+                ("masses", [one[0] for one in told], [0.0, *(link[0] for link in links)]),
+                ("friction", [one[1] for one in told], rough),
+                ("restitution", [one[5] for one in told], 0.0),
+                ("block: inertia", told[TILT + 1][2], scene.block.centre_inertia),
+                ("joints: types", [one[2] for one in joints], [link[3] for link in links]),
+                ("joints: damping and friction", [one[6:8] for one in joints], 0.0),
+                ("start", [one[:2] for one in now], states[: len(links)]),
+            ]
+        )
+
+    def step(self, step: float, before: float, across: float, up: float, impulse: float) -> State:
+        """A step: see `engines.loop.Bodies`.
+
+        Few iterations suffice while only one corner may be loaded. More are used while both may be: where the higher
+        one can reach contact within the step by its velocity or by free fall. Many in every step take up to six times
+        the CPU time.
+        """
+        client = self.client
+        sweeps = self.sweeps[abs(self.tilt) < step * (self.fall * step + abs(self.rate))]
+        if (step, sweeps) != self.used:  # a call takes a tenth of a step's time
+            self.used = step, sweeps
+            pybullet.setPhysicsEngineParameter(
+                fixedTimeStep=step, numSolverIterations=sweeps, contactSlop=0.0, physicsClientId=client
+            )
+        pybullet.setGravity(across / step, 0.0, up / step, client)
+        if self.loaded:  # a force on the link equals one on its joint, and takes half the time
+            force = impulse / step, 0.0, 0.0
+            pybullet.applyExternalForce(self.body, BASE, force, (0.0, 0.0, 0.0), pybullet.LINK_FRAME, client)
+        pybullet.stepSimulation(client)
+        (x, vx, _, _), (z, vz, _, _), (tilt, rate, _, _), *base = pybullet.getJointStates(
+            self.body, self.joints, client
+        )
+        self.tilt, self.rate = tilt, rate
+        b, v = base[0][:2] if base else (0.0, 0.0)
+        return tilt, rate, x, z, vx, vz, b, v
+
+    def twist(self, moment: float) -> None:
+        """See `engines.loop.Bodies`; Bullet forgets it after the step."""
+        pybullet.applyExternalTorque(self.body, TILT, (0.0, moment, 0.0), pybullet.LINK_FRAME, self.client)
+
+    def weigh(self, added: float) -> None:
+        """See `engines.loop.Bodies`."""
+        pybullet.changeDynamics(self.body, BASE, mass=self.mass + added, physicsClientId=self.client)
+
+
+if TYPE_CHECKING:
+    from analytic import Scene
+
+THICKNESS = 1.0  # m, of the slab
+# Gap [m] below which Bullet keeps contact points: its own default. It is global to the process and not returned by the
+# getter, so that it is set in every client.
+BREAKING_THRESHOLD = 0.02
+DEFAULT_MOST_VELOCITY = 100.0  # m/s and rad/s: Bullet's default limit of joints, applied without a message
+
+
+class FreeBox:
+    """A free 3-D box on a slab, which is fixed or, where the scene has a base, on one joint."""
+
+    def __init__(self, client: int, scene: Scene, step: float) -> None:
+        block = scene.block
+        b, h = block.half_width, block.half_height
+        pybullet.setTimeStep(step, client)
+        pybullet.setPhysicsEngineParameter(contactBreakingThreshold=BREAKING_THRESHOLD, physicsClientId=client)
+        pybullet.setGravity(0, 0, -scene.gravity, client)
+        half = [20 * block.radius, 20 * block.radius, THICKNESS / 2]
+        flat = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=half, physicsClientId=client)
+        below = [0, 0, -THICKNESS / 2]
+        if scene.base is None:
+            slab = pybullet.createMultiBody(0, flat, -1, below, physicsClientId=client)
+        else:
+            slab = chain(client, [(scene.base.mass, flat, below, pybullet.JOINT_PRISMATIC, [1, 0, 0], 0)])
+            pybullet.resetJointState(
+                slab, 0, scene.start.base_displacement, scene.start.base_velocity, physicsClientId=client
+            )
+        box = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=[b, b, h], physicsClientId=client)
+        x, z, vx, vz = placement(scene)
+        turn = pybullet.getQuaternionFromEuler([0, scene.start.tilt, 0])
+        body = pybullet.createMultiBody(block.mass, box, -1, [x, 0, z + h], turn, physicsClientId=client)
+        if scene.friction is not None:  # Bullet multiplies the two
+            pybullet.changeDynamics(body, -1, lateralFriction=math.sqrt(scene.friction), physicsClientId=client)
+            pybullet.changeDynamics(
+                slab, -1 if scene.base is None else 0, lateralFriction=math.sqrt(scene.friction), physicsClientId=client
+            )
+        pybullet.resetBaseVelocity(body, [vx, 0, vz], [0, scene.start.tilt_rate, 0], physicsClientId=client)
+        self.client, self.body, self.slab, self.high = client, body, slab, h
+        self.on_base, self.loaded = scene.base is not None, scene.bearings is not None
+
+    def step(self, step: float, before: float, across: float, up: float, impulse: float) -> State:
+        """A step: see `engines.loop.Bodies`."""
+        client, frame = self.client, pybullet.LINK_FRAME
+        pybullet.setGravity(across / step, 0, up / step, client)
+        if self.loaded:
+            force = [impulse / step, 0, 0]
+            pybullet.applyExternalForce(self.slab, 0, force, [0, 0, 0], frame, physicsClientId=client)
+        pybullet.stepSimulation(client)
+        (x, _, z), turn = pybullet.getBasePositionAndOrientation(self.body, client)
+        (vx, _, vz), (_, rate, _) = pybullet.getBaseVelocity(self.body, client)
+        base, v = pybullet.getJointState(self.slab, 0, client)[:2] if self.on_base else (0.0, 0.0)
+        return 2 * math.atan2(turn[1], turn[3]), rate, x, z - self.high, vx, vz, base, v
+
+    def weigh(self, added: float) -> None:
+        """Not needed in a first script."""
+
+
+CHAIN = {
+    f"r = {CORNER_RADIUS:g} * R": "m",
+    "createCollisionShapeArray([GEOM_SPHERE] * 2, radii=[r] * 2, "
+    "collisionFramePositions=[[-b, 0, r - h], [b, 0, r - h]])": "a sphere at each lower corner; a box misses impacts",
+    "createCollisionShape(GEOM_PLANE)": "the top of the base, or the ground",
+    "createMultiBody(0, -1, linkMasses=[0, 0, m, mb], linkPositions=[[0, 0, h], [0, 0, 0], [0, 0, 0], [0, 0, 0]], "
+    "linkParentIndices=[0, 1, 2, 0], "
+    "linkJointTypes=[JOINT_PRISMATIC, JOINT_PRISMATIC, JOINT_REVOLUTE, JOINT_PRISMATIC], "
+    "linkJointAxis=[[1, 0, 0], [0, 0, 1], [0, 1, 0], [1, 0, 0]], flags=URDF_USE_SELF_COLLISION)": "links: x, z, tilt "
+    "of the block, x of the base, in one body; without the flag the block falls through",
+    f"changeDynamics(body, link, linearDamping=0, angularDamping=0, maxJointVelocity={MOST_VELOCITY:g})": "of link "
+    "-1 to 3; by default .04 1/s, and 100 m/s at most",
+    f"changeDynamics(body, link, lateralFriction=sqrt({FRICTION:g}))": "in a call of its own; Bullet multiplies two "
+    f"bodies', and takes {FRICTION:g} at most; sqrt(mu) of a scene that gives mu",
+    "setJointMotorControlArray(body, range(4), VELOCITY_CONTROL, forces=[0] * 4)": "by default each joint has a motor "
+    "that brakes",
+    "changeDynamics(body, 2, mass=m, localInertiaDiagonal=[J - m * R**2] * 3)": "about the centre; by default that of "
+    "the spheres; the mass must stand in the same call",
+    "resetJointState(body, link, value, rate)": "the start, of links 0 to 3",
+}
+EACH_STEP = {
+    "setPhysicsEngineParameter(fixedTimeStep=step, numSolverIterations=sweeps, contactSlop=0)": "where they change; "
+    f"sweeps: to a residual of {ROCKING_REST:g} on one corner, {STANDING_REST:g} where both may touch",
+    "kick = (step + before) / (2 * step)": "velocities are half a step early: loads act from one to the next",
+    "setGravity(-a * kick, 0, -g * kick)": "a: the ground's mean acceleration over that time",
+    "applyExternalForce(body, 3, [-force * kick, 0, 0], [0, 0, 0], LINK_FRAME)": "of the bearings, for one step only",
+    "stepSimulation()": "",
+}
+
+
+def impact_aware(settings: ImpactAware) -> dict[str, str]:
+    """Calls of impact-aware."""
+    largest, smallest = settings.largest_step, SMALLEST_STEP * (settings.largest_step / settings.balanced_step) ** 2
+    return {
+        **CHAIN,
+        f"last = max(before, {smallest:g} * scale)": "s",
+        f"most = min({1 + GROWTH:g} * last, {largest:g} * scale)": "s; shorter on stiff bearings",
+        f"near = {NEAR:g} * g * last**2": "m",
+        f"slow = {SLOW:g} * g * last": "m/s",
+        f"landing = [{SHARE:g} * gap / closing for gap, closing in corners if gap > 0 < closing and (gap > near or "
+        "closing > slow)]": "s, of corners on their way to a landing, by gap and closing speed of both",
+        f"step = max(min([most] + landing), {smallest:g} * scale)": "before each call of stepSimulation",
+        **EACH_STEP,
+    }
+
+
+def fixed_step(settings: FixedStep) -> dict[str, str]:
+    """Calls of fixed-step."""
+    return {**CHAIN, f"step = {settings.step:g} * scale": "s; the one before is 0 at the start", **EACH_STEP}
+
+
+def first_script(settings: FirstScript) -> dict[str, str]:
+    """Calls of first-script."""
+    return {
+        f"step = {settings.step:g}": "s",
+        "setTimeStep(step)": "",
+        f"setPhysicsEngineParameter(contactBreakingThreshold={BREAKING_THRESHOLD:g})": "the default",
+        f"createCollisionShape(GEOM_BOX, halfExtents=[20 * R, 20 * R, {THICKNESS / 2:g}])": "of the base",
+        f"createMultiBody(0, -1, linkMasses=[mb], linkPositions=[[0, 0, {-THICKNESS / 2:g}]], linkParentIndices=[0], "
+        "linkJointTypes=[JOINT_PRISMATIC], linkJointAxis=[[1, 0, 0]])": "the base",
+        "resetJointState(slab, 0, value, rate)": "its start",
+        "createCollisionShape(GEOM_BOX, halfExtents=[b, b, h])": "of the block",
+        "createMultiBody(m, box, -1, place, turn)": "the block, free",
+        "resetBaseVelocity(body, speed, spin)": "its start",
+        "setGravity(-a, 0, -g)": "a: the ground's acceleration where the step begins",
+        "applyExternalForce(slab, 0, [-force, 0, 0], [0, 0, 0], LINK_FRAME)": "of the bearings, for one step only",
+        "stepSimulation()": "",
+    }
+
+
+HERE = "engines.pybullet.adapter"
+CONSTANTS = {
+    **STEPS,
+    f"{HERE}:FRICTION": "coefficient where the scene gives none",
+    f"{HERE}:CORNER_RADIUS": "radius of the corners' spheres, over R",
+    f"{HERE}:ROCKING_REST": "relative residual of the contact solver's impulses on one corner",
+    f"{HERE}:STANDING_REST": "the same on two corners",
+    f"{HERE}:MOST_ITERATIONS": "iterations of the contact solver, at most",
+}
+
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -43,7 +410,7 @@ VARIANTS = {
         takes_restitution=True,
         computes="motion, contact, impact and rest",
         imposes=f"a plane, by joints; {RULED}; {GIVEN}",
-        calls=calls.impact_aware(TUNED),
+        calls=impact_aware(TUNED),
         faults=CREEPS,
     ),
     "fixed-step": Variant(
@@ -54,7 +421,7 @@ VARIANTS = {
         free_block="engines.pybullet.free_block:simulate",
         computes="motion, contact, impact and rest",
         imposes=f"a plane, by joints; {MEAN_LOADS}",
-        calls=calls.fixed_step(FIXED),
+        calls=fixed_step(FIXED),
     ),
     "first-script": Variant(  # default damping: e off by .01 to .5 at every step
         PLAIN,
@@ -65,7 +432,7 @@ VARIANTS = {
         flight_damping=0.04,  # the default of a multibody
         computes="motion, contact, impact and rest",
         imposes=SAMPLED,
-        calls=calls.first_script(PLAIN),
+        calls=first_script(PLAIN),
     ),
 }
 
@@ -106,7 +473,7 @@ def _limited(ran: Run) -> Run:
     if ran.trace is None or ran.failure:
         return ran
     fastest = max(np.abs(ran.trace.tilt_rate).max(), np.abs(ran.trace.base_velocity).max())
-    if fastest <= 0.1 * MOST_VELOCITY:
+    if fastest <= 0.1 * DEFAULT_MOST_VELOCITY:
         return ran
-    words = f"{fastest:.3g} m/s or rad/s; its limit: {MOST_VELOCITY:g}"
+    words = f"{fastest:.3g} m/s or rad/s; its limit: {DEFAULT_MOST_VELOCITY:g}"
     return replace(ran, failure=Failure("Bullet limits velocities", words))

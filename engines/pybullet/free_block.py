@@ -7,16 +7,11 @@ softness.
 from typing import Any
 
 from analytic import Response, Scene
-from analytic.termination import until_decided
+from analytic.solver import until_decided
 
-from ..leapfrog import trace_of
+from ..loop import FirstScript, run_of, trace_of
 from ..observe import failed_response, observe
-from ..stepping import FirstScript, run_of
-from .adapter import versions
-from .first_script import FreeBox
-from .imported import pybullet
-from .links import without_losses
-from .scene import FRICTION, iterations
+from .adapter import FRICTION, FreeBox, iterations, pybullet, versions, without_losses
 
 # contactERP of a box on a slab: penetration decays at this rate per second at any step. With a fixed share of .08 per
 # step the base velocity jump is off by 2 to 5 % at any step.

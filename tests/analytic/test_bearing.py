@@ -22,11 +22,10 @@ from analytic import (
     simulate_many,
     synthetic_motion,
 )
-from analytic.bearing import BearingLaw
 from analytic.bearing_scan import DAMPING_STEP, PERIOD_STEP, first_stroke, scan_bearings
-from analytic.design import design_bearings, properties, steady_cycle
-from analytic.twin import simulate_twin
-from comparisons.running.provenance import commit_seed
+from analytic.checks.twin import simulate_twin
+from analytic.rocking import BearingLaw, design_bearings, properties, steady_cycle
+from comparisons.execution.provenance import commit_seed
 
 KA, KB, ALPHA = 6.22e4, 6.22e3, 44.69
 PAPER = BearingLaw.of(Bearings(ka=KA, kb=KB, alpha=ALPHA))

@@ -22,8 +22,9 @@ from analytic import (
     simulate,
     simulate_many,
 )
-from analytic.bearing import BearingLaw
-from analytic.decision import (
+from analytic.checks.time_stepping import simulate_time_stepping
+from analytic.checks.twin import simulate_twin
+from analytic.kernel.decision import (
     PEAK_TOLERANCE,
     longest_duration,
     model_warnings,
@@ -32,13 +33,11 @@ from analytic.decision import (
     shortest_duration,
     will_not_overturn,
 )
-from analytic.events import settle
-from analytic.layout import Base as State
-from analytic.layout import Body
-from analytic.solver import parameters
-from analytic.termination import is_decided
-from analytic.time_stepping import simulate_time_stepping
-from analytic.twin import simulate_twin
+from analytic.kernel.events import settle
+from analytic.kernel.layout import Base as State
+from analytic.kernel.layout import Body
+from analytic.rocking import BearingLaw
+from analytic.solver import is_decided, parameters
 
 G = 9.81
 BLOCK = Block(mass=1500.0, radius=1.0, slenderness=0.12)

@@ -25,21 +25,20 @@ from analytic import (
     SettingError,
     Start,
     batch,
-    closed_form,
-    kernel,
     overturning_map,
     rocking_spectrum,
     simulate,
     simulate_many,
 )
-from analytic._cache import digest
-from analytic.caryatid import BASE, caryatid_block
-from analytic.caryatid import BEARINGS as LRB
-from analytic.compiled import compiling, entry, inner
-from analytic.kernel import run
-from analytic.layout import END_TILT, END_Z, ROWS, TOTALS
-from analytic.linear_oscillator import displacement_spectrum
-from analytic.problems import problem_a, problem_b
+from analytic.bearing_scan import displacement_spectrum
+from analytic.checks import closed_form
+from analytic.kernel import march as kernel
+from analytic.kernel.cache import digest
+from analytic.kernel.compiled import compiling, entry, inner
+from analytic.kernel.layout import END_TILT, END_Z, ROWS, TOTALS
+from analytic.kernel.march import run
+from analytic.scene import BASE, caryatid_block, problem_a, problem_b
+from analytic.scene import BEARINGS as LRB
 from analytic.solver import ground, options, parameters
 
 P = 2.6
@@ -374,7 +373,7 @@ def test_a_rocking_spectrum_runs_until_decided_and_is_that_of_full_runs():
     assert not short.decided[~short.overturns].any()
 
 
-# Inner functions are compiled as `analytic.compiled` says: numba has no public option for one part of it.
+# Inner functions are compiled as `analytic.kernel.compiled` says: numba has no public option for one part of it.
 
 
 def native(function):

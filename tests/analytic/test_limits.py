@@ -16,18 +16,18 @@ from analytic import (
     SceneError,
     SettingError,
     Start,
-    budget,
     load_scene,
     shipped_scenes,
     simulate,
     simulate_many,
 )
-from analytic.caryatid import BASE, BEARINGS, caryatid_block
-from analytic.limits import scene_warnings
+from analytic import solver as budget
+from analytic.checks.time_stepping import simulate_time_stepping
+from analytic.checks.twin import simulate_twin
 from analytic.margins import margins
+from analytic.response import scene_warnings
 from analytic.rocking import RockingModel
-from analytic.time_stepping import simulate_time_stepping
-from analytic.twin import simulate_twin
+from analytic.scene import BASE, BEARINGS, caryatid_block
 from engines import get_engine
 
 TABLE_1 = {"count": 4, "ka": 6.22e4, "kb": 6.22e3, "alpha": 44.69}

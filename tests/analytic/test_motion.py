@@ -10,12 +10,11 @@ import numpy as np
 import pytest
 
 from analytic import PulseMotion, SampledMotion, SceneError, load_scene, simulate
-from analytic.caryatid import BASE, BEARINGS, caryatid_block
-from analytic.motion import paired
-from analytic.pulses import PULSES
+from analytic.motion import PULSES, paired
 from analytic.records import G
+from analytic.records.synthetic import DECIMALS, DT, pulse_acceleration, synthetic_motion
+from analytic.scene import BASE, BEARINGS, caryatid_block
 from analytic.solver import ground
-from analytic.synthetic import DECIMALS, DT, pulse_acceleration, synthetic_motion
 
 
 def test_sampled_motion_is_linear_between_samples_and_zero_outside():

@@ -14,16 +14,16 @@ from rough_motions import rough
 
 from analytic import Base, Bearings, Block, Caution, PulseMotion, SampledMotion, Scene, Start, overturning_map, simulate
 from analytic.batch import simulate_many
-from analytic.caryatid import BASE, caryatid_block
-from analytic.caryatid import BEARINGS as LRB
-from analytic.decision import RIGID_BEARINGS
+from analytic.checks.time_stepping import simulate_time_stepping
+from analytic.checks.twin import simulate_twin
+from analytic.kernel.decision import RIGID_BEARINGS
+from analytic.kernel.polynomial import MAX_ORDER, SCRATCH, first_root
 from analytic.motion import paired
-from analytic.polynomial import MAX_ORDER, SCRATCH, first_root
 from analytic.records import read_record
+from analytic.records.synthetic import synthetic_motion
 from analytic.rocking import RockingModel
-from analytic.synthetic import synthetic_motion
-from analytic.time_stepping import simulate_time_stepping
-from analytic.twin import simulate_twin
+from analytic.scene import BASE, caryatid_block
+from analytic.scene import BEARINGS as LRB
 
 IMBALANCE_LIMIT = 1e-6  # of the largest energy in the run
 # Energies below this share of what it takes to tip the block are rounding (a pulse that just touches the threshold).

@@ -21,9 +21,9 @@ from analytic import (
     load_scene,
     shipped_scenes,
 )
-from analytic.design import design_bearings
-from analytic.new_scene import DAMPING, MATERIALS, PERIOD, block_from, derived, scene_text, with_bearings
-from analytic.synthetic import synthetic_motion
+from analytic.records.synthetic import synthetic_motion
+from analytic.rocking import design_bearings
+from analytic.scene_file import DAMPING, MATERIALS, PERIOD, block_from, derived, scene_text, with_bearings
 
 
 def test_full_file(tmp_path):

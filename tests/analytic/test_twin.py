@@ -19,17 +19,16 @@ from analytic import (
     SceneError,
     SettingError,
     Start,
-    closed_form,
     load_scene,
     simulate,
 )
-from analytic.caryatid import BASE, caryatid_block
-from analytic.caryatid import BEARINGS as LRB
-from analytic.problems import problem_a, problem_b
+from analytic.checks import closed_form
+from analytic.checks.time_stepping import simulate_time_stepping
+from analytic.checks.twin import segments, simulate_twin
 from analytic.records import read_record
 from analytic.rocking import momentum_restitution
-from analytic.time_stepping import simulate_time_stepping
-from analytic.twin import segments, simulate_twin
+from analytic.scene import BASE, caryatid_block, problem_a, problem_b
+from analytic.scene import BEARINGS as LRB
 
 P, GAMMA = 2.60, 0.25
 HOUSNER = 1 - 1.5 * math.sin(GAMMA) ** 2
@@ -95,7 +94,7 @@ def test_rest_limit_is_the_same_whenever_impacts_are_declared_accumulated():
 
 
 def test_restitution_of_one_fails_instead_of_bouncing_for_ever(monkeypatch):
-    monkeypatch.setattr("analytic.twin.IMPACT_LIMIT", 100)
+    monkeypatch.setattr("analytic.checks.twin.IMPACT_LIMIT", 100)
     run = simulate_twin(problem_a().with_(block={"restitution": 1.0}, start=Start(tilt=1e-9)))
     assert run.outcome == "failed" and "pile up" in run.failure.reason
     assert run.failure.last_state.time < 7
@@ -113,7 +112,7 @@ def test_event_that_scipy_cannot_find_is_a_failure_with_scipys_words(monkeypatch
 
     scene = Scene(block=SLENDER, base=BASE, bearings=LRB, start=Start(tilt=0.1), duration=3.0)
     whole = simulate_twin(scene, method="LSODA", rtol=1e-8)
-    monkeypatch.setattr("analytic.twin.solve_ivp", third_call_raises)
+    monkeypatch.setattr("analytic.checks.twin.solve_ivp", third_call_raises)
     run = simulate_twin(scene, method="LSODA", rtol=1e-8)
     assert whole.outcome == "rocks" and run.outcome == "failed"
     assert (run.failure.reason, run.to_json()["failure"]["message"]) == ("scipy could not find an event", words)

@@ -31,15 +31,18 @@ from scipy.optimize import brentq
 
 from analytic import Caution, load_scene, margins, read_record, simulate
 from analytic.bearing_scan import scan_bearings
-from analytic.design import design_bearings
+from analytic.rocking import design_bearings
 from comparisons import cli
 from comparisons.advice import criteria
-from comparisons.measuring import agreement, horizon, tolerances
-from comparisons.running import check, study
+from comparisons.execution import study
+from comparisons.execution import study as check
+from comparisons.metrics import agreement
+from comparisons.metrics import agreement as tolerances
+from comparisons.metrics import errors as horizon
 from comparisons.schemas.__main__ import schemas
 from engines import ENGINES
+from engines.comparison import near_copies
 from engines.contract import Engine
-from engines.copies import near_copies
 
 pytestmark = pytest.mark.xdist_group("fields")  # the documents are made once
 FORMS = {schema["title"]: schema for schema in schemas().values()}
@@ -138,19 +141,18 @@ WRONG = {
 # What takes the place of what runs elsewhere, of what the code is and of what the machine has; and coarser scans.
 REPLACED = {
     "engines.guard.run_apart": lambda function, *arguments, **_: (function(*arguments), None),
-    "comparisons.running.study.Processes": lambda *_: Here(),
-    "comparisons.running.check.Processes": lambda *_: Here(),
-    "comparisons.running.study.source_digests": lambda *_: {},
-    "comparisons.running.cases.source_digests": lambda *_: {},
-    "comparisons.running.study.digests_of_all": lambda *_: {},
-    "comparisons.running.provenance.kept_digests": lambda *_: {},
-    "comparisons.running.by_solver.kept_digests": lambda roots: {one: one[::-1] for one in roots},
-    "comparisons.running.cases.version_of": lambda _: "1",
-    "comparisons.running.run_sample.SIZE": 1,
+    "comparisons.execution.study.Processes": lambda *_: Here(),
+    "comparisons.execution.study.source_digests": lambda *_: {},
+    "comparisons.execution.cases.source_digests": lambda *_: {},
+    "comparisons.execution.study.digests_of_all": lambda *_: {},
+    "comparisons.execution.provenance.kept_digests": lambda *_: {},
+    "comparisons.execution.by_solver.kept_digests": lambda roots: {one: one[::-1] for one in roots},
+    "comparisons.execution.cases.version_of": lambda _: "1",
+    "comparisons.execution.study.SIZE": 1,
     "comparisons.report.write.write_page": lambda folder, *_: Path(folder) / "report.html",
     "comparisons.report.statue.STEP": 0.1,
-    "comparisons.report.next_step.STEP": 0.2,
-    "comparisons.commands.margin.STEPS": 20,
+    "comparisons.report.statue.PLATE_STEP": 0.2,
+    "comparisons.commands.advice.STEPS": 20,
     "analytic.margins.STEP": 0.0125,
     "analytic.bearing_scan.PERIOD_STEP": 0.4,
     "analytic.bearing_scan.DAMPING_STEP": 0.05,

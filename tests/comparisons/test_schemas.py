@@ -10,8 +10,8 @@ import jsonschema
 import pytest
 from pydantic import BaseModel
 
+from comparisons.schemas import schema_of
 from comparisons.schemas.__main__ import FOLDER, FORMS, schemas
-from comparisons.schemas.form import schema_of
 
 
 def test_every_form_has_its_schema_written_down_under_its_version_and_every_schema_its_form():

@@ -9,11 +9,10 @@ import pytest
 from engine_cases import scene
 
 from analytic import PulseMotion, Start
-from analytic.bearing import BearingLaw
-from analytic.caryatid import BEARINGS
+from analytic.rocking import BearingLaw
+from analytic.scene import BEARINGS
 from engines import get_engine
-from engines.ground_velocity import ground_velocity
-from engines.scale import size_scale
+from engines.loads import ground_velocity, size_scale
 
 MOTION = PulseMotion("one-sine", 2.0, 9.0)
 START = Start(tilt=1e-3, base_velocity=0.1)
@@ -88,7 +87,7 @@ KEPT = "setPhysicsEngineParameter"  # whose values hold until it is called again
 @pytest.fixture
 def made(monkeypatch):
     """Calls that change something in Bullet, and at each step the joints' states before it."""
-    from engines.pybullet.imported import pybullet
+    from engines.pybullet.adapter import pybullet
 
     found = []
 
@@ -118,8 +117,8 @@ def each_step(made, rows):
 
 @pytest.mark.parametrize("variant", ["impact-aware", "fixed-step", "first-script"])
 def test_bullet_is_called_as_its_record_says(made, monkeypatch, variant):
-    from engines import stepping
-    from engines.pybullet.imported import pybullet
+    from engines import loop as stepping
+    from engines.pybullet.adapter import pybullet
 
     march, ran = stepping.march, []
     monkeypatch.setattr(stepping, "march", lambda *given: ran.append(march(*given)) or ran[-1])

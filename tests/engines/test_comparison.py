@@ -11,8 +11,8 @@ from analytic.errors import SceneError
 from analytic.response import COMPARED, EDGE
 from engines import get_engine
 from engines.comparison import FRICTION, Reference, compare, outcome_of
-from engines.matching import STILL
-from engines.statue_range import RANGE, outside
+from engines.events import STILL
+from engines.simulating import RANGE, outside
 
 BLOCK = Block(mass=3172.05, radius=1.0884, slenderness=0.28)
 FREE = Scene(block=BLOCK, start=Start(tilt=0.14))

@@ -27,15 +27,13 @@ from installed_package import FAKE_ENGINE, install, install_fake_engine
 import engines
 from analytic import SceneError, SettingError, Start, load_scene
 from analytic import simulate as exact
-from analytic.caryatid import BEARINGS
 from analytic.errors import EngineBroken, EngineNotInstalled
 from analytic.response import History
 from analytic.rocking import momentum_restitution
+from analytic.scene import BEARINGS
 from engines import ENGINES, get_engine, guard
-from engines.contract import KINDS, Engine
-from engines.greeting import without
-from engines.guard import OUT_OF_TIME, check_time_limit, raised, run_apart
-from engines.plugins import find_engines
+from engines.contract import KINDS, Engine, find_engines
+from engines.guard import OUT_OF_TIME, check_time_limit, raised, run_apart, without
 from engines.simulating import Simulator
 
 # What an engine's record holds, and what it refuses.
@@ -308,7 +306,7 @@ def test_what_else_is_printed_comes_whole_also_where_an_error_is_raised(capfd):
 
 
 def test_without_a_standard_error_it_is_as_usual():
-    program = "import os\nfrom engines.greeting import without\nos.close(2)\nwith without(b'x'):\n    y = 1\nassert y"
+    program = "import os\nfrom engines.guard import without\nos.close(2)\nwith without(b'x'):\n    y = 1\nassert y"
     assert subprocess.run([sys.executable, "-c", program], capture_output=True, timeout=60).returncode == 0
 
 
@@ -333,9 +331,9 @@ def unloaded():
 PROGRAM = """
 from pathlib import Path
 from analytic import Block, Scene, Start, simulate
-from comparisons.running.cases import Case
-from comparisons.running.executors import Processes
-from comparisons.running.sweep import run_sweep
+from comparisons.execution.cases import Case
+from comparisons.execution.sweep import Processes
+from comparisons.execution.sweep import run_sweep
 from first import impact
 from engines import BROKEN, BUILT_IN, ENGINES, get_engine, installed_engines
 

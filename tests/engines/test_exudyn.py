@@ -17,9 +17,8 @@ from engine_cases import scene
 
 from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start
 from analytic import simulate as exact
-from analytic.bearing import BearingLaw
-from analytic.caryatid import BEARINGS
-from analytic.rocking import restitution
+from analytic.rocking import BearingLaw, restitution
+from analytic.scene import BEARINGS
 from engines import get_engine
 from engines.contract import Mismatch
 from engines.events import find_events
@@ -65,7 +64,7 @@ def restitution_error(given, **settings):
 )
 def test_settings_go_with_weight_size_and_gravity(gravity, factors):
     """A block scaled by lengths of 4, masses of 64 and times of 4 or 1: each number by its unit."""
-    from engines.exudyn.sizing import MEASURED, CompliantCorners, scaled
+    from engines.exudyn.scene import MEASURED, CompliantCorners, scaled
 
     mass, radius, usual = MEASURED
     block = Block(mass=64 * mass, radius=4 * radius, slenderness=0.2)
@@ -97,7 +96,7 @@ def test_a_block_left_alone_does_not_sink(base):
 @pytest.mark.parametrize("law", NAMES)
 @pytest.mark.parametrize("way", [-3e-2, 2e-5, 0.2])
 def test_the_bearings_spring_meets_the_law_at_both_ends_of_a_step(law, way):
-    from engines.exudyn.model import Bearing
+    from engines.exudyn.scene import Bearing
 
     rule = BearingLaw.of(bearings_of(law, count=4))
     bearing = Bearing(rule, 0.01)
@@ -145,7 +144,7 @@ def test_e_does_not_hang_on_how_long_a_contact_is_left_to_settle():
 def test_the_implicit_steps_change_no_impact_and_save_most_steps(base, monkeypatch):
     given = scene(0.2, base, 2.0, start=Start(tilt=0.12))
     both = simulate(given)
-    monkeypatch.setattr("engines.exudyn.phases.WORTHWHILE", math.inf)
+    monkeypatch.setattr("engines.exudyn.stepping.WORTHWHILE", math.inf)
     explicit = simulate(given)
     assert both.steps < 0.5 * explicit.steps and len(both.impacts) >= 2
     for one, other in zip(both.impacts[:3], explicit.impacts[:3], strict=True):
@@ -166,15 +165,15 @@ def test_the_error_of_time_falls_with_the_square_of_the_implicit_step():
 def test_where_newton_finds_no_end_the_explicit_steps_go_on(monkeypatch):
     from engines.exudyn import stepping
 
-    usual = simulate(RELEASED).steps
+    usual, usual_settings = simulate(RELEASED).steps, stepping.solver_settings
 
     def hopeless(*asked, **settings):
-        made = stepping.solver_settings(*asked, **settings)
+        made = usual_settings(*asked, **settings)
         made.timeIntegration.newton.relativeTolerance = 1e-300
         return made
 
     for name, value in (("solver_settings", hopeless), ("RESIDUAL", 1e-30), ("ROUNDING", 0.0)):
-        monkeypatch.setattr(f"engines.exudyn.phases.{name}", value)
+        monkeypatch.setattr(f"engines.exudyn.stepping.{name}", value)
     response = simulate(RELEASED)
     assert response.failure is None and response.steps > 2 * usual
     assert response.impacts[0].time == pytest.approx(exact(RELEASED).impacts[0].time, abs=2e-5)
@@ -211,7 +210,7 @@ def test_an_impact_that_slips_has_its_restitution():
 
 def test_the_anchor_of_a_block_in_the_air_goes_with_its_lower_corner():
     """Two corners as exudyn tells of them: without force, one lower than the other."""
-    from engines.exudyn.model import DISPLACEMENT, Anchor
+    from engines.exudyn.scene import DISPLACEMENT, Anchor
 
     gaps, moved = {"left": (0.3, 0.2, 0.0), "right": (0.1, 0.05, 0.0)}, []
     told = SimpleNamespace(

@@ -13,22 +13,35 @@ from engine_cases import CASES, impact_errors, scene
 
 from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start
 from analytic import simulate as exact
-from analytic.caryatid import BEARINGS
-from analytic.pulses import PULSES
+from analytic.motion import PULSES
 from analytic.rocking import restitution
-from comparisons.measuring import errors
-from comparisons.measuring.errors import rms
-from engines import get_engine, stepping
-from engines.checks import energy_gain
+from analytic.scene import BEARINGS
+from comparisons.metrics import errors
+from comparisons.metrics.errors import rms
+from engines import get_engine
+from engines import loop as stepping
+from engines.checks import IMPULSE_LIMIT, energy_gain, impulse_error
 from engines.contract import Mismatch
-from engines.ground_velocity import ground_velocity
-from engines.leapfrog import failure_of, raw_trace_of, trace_of
-from engines.momentum import IMPULSE_LIMIT, impulse_error
-from engines.placement import placement
-from engines.readback import require
-from engines.step_size import GROWTH, HOLD, NEAR, SHARE, aligned, gap_rule, limits
-from engines.stepping import ImpactAware, NoSolution, march, mean_loads, sampled_loads, step_limits
-from engines.vibration import added_mass
+from engines.loads import added_mass, ground_velocity, placement
+from engines.loop import (
+    GROWTH,
+    HOLD,
+    NEAR,
+    SHARE,
+    ImpactAware,
+    NoSolution,
+    aligned,
+    failure_of,
+    gap_rule,
+    limits,
+    march,
+    mean_loads,
+    raw_trace_of,
+    require,
+    sampled_loads,
+    step_limits,
+    trace_of,
+)
 
 LINEAR = Bearings(law="linear", count=1, ka=2e6)
 RULED = ["pybullet", "mujoco", "pymunk", "dart"]
@@ -374,7 +387,7 @@ ROCKING = scene(0.2, 212.0, start=Start(tilt=0.1))
 def built(engine):
     """The module that builds an engine's scene."""
     get_engine(engine)  # skips the test where it is an extra that is not installed
-    return importlib.import_module(f"engines.{engine}.scene")
+    return importlib.import_module(f"engines.{engine}.adapter")
 
 
 # What an engine does not hold as asked is refused: calls of its API, each with the right function first.
@@ -442,11 +455,11 @@ def test_what_an_engine_does_not_hold_as_asked_is_refused(monkeypatch, engine, c
     "engine, base, setting, other",
     [
         # k = 1/h^2: what has sunk comes back within a step, with its speed
-        ("mujoco", None, "scene.contact_reference", lambda usual: lambda step, recovery: (-1 / step**2, -1 / step)),
+        ("mujoco", None, "adapter.contact_reference", lambda usual: lambda step, recovery: (-1 / step**2, -1 / step)),
         # without split impulses what has sunk is thrown out
         ("dart", None, "adapter.DartBodies", lambda usual: lambda scene, plain: usual(scene, True)),
         # a light base needs iterations by the ratio of the masses
-        ("pymunk", 212.0, "scene.LIGHT", lambda usual: 0),
+        ("pymunk", 212.0, "adapter.LIGHT", lambda usual: 0),
     ],
 )
 def test_settings_of_the_contact_bring_a_tenth_of_the_error(monkeypatch, engine, base, setting, other):
@@ -526,7 +539,7 @@ DRIVEN = scene(0.15, 212.0, 2.5, bearings=BEARINGS, motion=PulseMotion("one-sine
 
 def mutate_exudyn(monkeypatch, gain, delay):
     """The spring of the bearings is `gain` times as stiff, and acts from where the base was `delay` [s] ago."""
-    from engines.exudyn import model
+    from engines.exudyn import scene as model
 
     spring = model.Bearing.spring
 

@@ -16,16 +16,18 @@ from engines import swings
 from engines.checks import (
     GAIN_LIMIT,
     HEIGHT_TOLERANCE,
+    IMPULSE_LIMIT,
     SLIDING_TOLERANCE,
     check_place,
     energy_balance,
     energy_gain,
+    impulse_error,
+    missing_impulse,
     pivoting_centre,
     replay_bearing,
     replayed_force,
 )
 from engines.events import MOST_RESTITUTION, check_impacts, find_events, straddled
-from engines.momentum import IMPULSE_LIMIT, impulse_error, missing_impulse
 from engines.swings import Trace, find_swings
 
 

@@ -18,19 +18,17 @@ from sliding_scenes import LANDS, LOST, PASSES, SAVED, SLIDES, scene_of
 
 from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start, load_scene
 from analytic import simulate as exact
-from analytic.bearing import BearingLaw
-from analytic.caryatid import BEARINGS
-from analytic.decision import RIGID_BEARINGS
 from analytic.errors import SceneError
+from analytic.kernel.decision import RIGID_BEARINGS
 from analytic.response import Failure
-from analytic.rocking import RockingModel, momentum_restitution, restitution
-from comparisons.measuring.errors import impact_errors
+from analytic.rocking import BearingLaw, RockingModel, momentum_restitution, restitution
+from analytic.scene import BEARINGS
+from comparisons.metrics.errors import impact_errors
 from engines import ENGINES, get_engine
 from engines.checks import energy_balance, energy_gain, pivoting_centre
 from engines.comparison import RESTITUTION, compare
-from engines.couple import ALONE, Couple, holding
-from engines.events import contact_measures
-from engines.matching import STILL, impacts_of
+from engines.events import STILL, contact_measures, impacts_of
+from engines.loads import ALONE, Couple, holding
 from engines.scripting import write_script
 from engines.simulating import Simulator
 from engines.swings import Trace

@@ -16,13 +16,13 @@ import analytic
 from analytic import Bearings, PulseMotion, SampledMotion, load_scene
 from analytic.errors import SceneError, SettingError
 from analytic.motion import paired
+from analytic.records.synthetic import synthetic_motion
 from analytic.rocking import RockingModel
-from analytic.synthetic import synthetic_motion
-from comparisons.measuring.scripts import with_mistake
+from comparisons.metrics.scripts import with_mistake
 from comparisons.studies.mistakes.study import scenes
 from engines import ENGINES, get_engine
-from engines.couple import unkept_friction
-from engines.mistakes import GROUPS, NO_MATTER, Mistake
+from engines.contract import GROUPS, NO_MATTER, Mistake
+from engines.loads import unkept_friction
 from engines.scripting import write_script
 
 PROJECT = Path(__file__).parents[2]

@@ -13,15 +13,15 @@ import pytest
 from engine_cases import ACCURATE
 
 from analytic import Base, Start, load_scene, simulate
-from analytic.caryatid import BASE, MASS, caryatid_block
-from comparisons.ensembles.statues import random_scene
-from comparisons.measuring.errors import impact_errors, rms
-from comparisons.studies.restitution.cases import free_scene
+from analytic.scene import BASE, MASS, caryatid_block
+from comparisons.ensembles import random_scene
+from comparisons.metrics.errors import impact_errors, rms
+from comparisons.studies.restitution.study import free_scene
 from comparisons.studies.stability.cases import hard_cases
 from engines import get_engine
-from engines.exudyn.constants import CONSTANTS as EXUDYN
-from engines.pybullet.constants import CONSTANTS as PYBULLET
-from engines.statue_range import RANGE
+from engines.exudyn.adapter import CONSTANTS as EXUDYN
+from engines.pybullet.adapter import CONSTANTS as PYBULLET
+from engines.simulating import RANGE
 
 pytestmark = pytest.mark.timeout(1400)
 
@@ -43,30 +43,30 @@ MOVES = {
         "longest_step": (1.022, 1.019),
         "pivoting_step": (2.567, 1.831),
         "engines.exudyn.corners:RELAX": (1.741, 1.055),
-        "engines.exudyn.phases:AHEAD": (1.023, 1.040),
-        "engines.exudyn.phases:PUSHED": (1.014, 1.008),
-        "engines.exudyn.phases:CARRIES": (1.003, 1.010),
-        "engines.exudyn.phases:WORTHWHILE": (1.000, 1.020),
-        "engines.exudyn.phases:SMOOTH": (1.033, 1.122),
-        "engines.exudyn.phases:FIRST": (1.022, 1.019),
-        "engines.exudyn.phases:RESIDUAL": (1.027, 1.036),
-        "engines.exudyn.phases:DIFFERENCE": (1.009, 1.045),
-        "engines.vibration:VIBRATION": (1.035, 1.173),
+        "engines.exudyn.stepping:AHEAD": (1.023, 1.040),
+        "engines.exudyn.stepping:PUSHED": (1.014, 1.008),
+        "engines.exudyn.stepping:CARRIES": (1.003, 1.010),
+        "engines.exudyn.stepping:WORTHWHILE": (1.000, 1.020),
+        "engines.exudyn.stepping:SMOOTH": (1.033, 1.122),
+        "engines.exudyn.stepping:FIRST": (1.022, 1.019),
+        "engines.exudyn.stepping:RESIDUAL": (1.027, 1.036),
+        "engines.exudyn.stepping:DIFFERENCE": (1.009, 1.045),
+        "engines.loads:VIBRATION": (1.035, 1.173),
     },
     "pybullet": {
         "largest_step": (3.409, 3.542),
-        "engines.stepping:SMALLEST_STEP": (1.703, 1.826),
-        "engines.step_size:SHARE": (1.031, 1.098),
-        "engines.step_size:GROWTH": (1.191, 1.203),
-        "engines.step_size:HOLD": (1.000, 1.000),
-        "engines.step_size:NEAR": (1.000, 1.001),
-        "engines.stepping:LANDING": (1.000, 1.001),
-        "engines.stepping:SMEARED": (1.000, 1.000),
-        "engines.vibration:STIFF": (1.000, 1.010),
-        "engines.pybullet.scene:FRICTION": (1.000, None),
-        "engines.pybullet.scene:CORNER_RADIUS": (1.009, 1.037),
-        "engines.pybullet.scene:ROCKING_REST": (1.000, 1.000),
-        "engines.pybullet.scene:STANDING_REST": (1.000, 1.003),
+        "engines.loop:SMALLEST_STEP": (1.703, 1.826),
+        "engines.loop:SHARE": (1.031, 1.098),
+        "engines.loop:GROWTH": (1.191, 1.203),
+        "engines.loop:HOLD": (1.000, 1.000),
+        "engines.loop:NEAR": (1.000, 1.001),
+        "engines.loop:LANDING": (1.000, 1.001),
+        "engines.loop:SMEARED": (1.000, 1.000),
+        "engines.loads:STIFF": (1.000, 1.010),
+        "engines.pybullet.adapter:FRICTION": (1.000, None),
+        "engines.pybullet.adapter:CORNER_RADIUS": (1.009, 1.037),
+        "engines.pybullet.adapter:ROCKING_REST": (1.000, 1.000),
+        "engines.pybullet.adapter:STANDING_REST": (1.000, 1.003),
     },
 }
 DECLARED = [("exudyn", constant) for constant in EXUDYN] + [("pybullet", constant) for constant in PYBULLET]

@@ -11,11 +11,10 @@ import pytest
 from engine_cases import ACCURATE
 
 from analytic import simulate
-from analytic.bearing import BearingLaw
-from analytic.rocking import base_jump_length_as_printed, restitution
-from comparisons.measuring import agreement
-from comparisons.measuring import errors as errors_of
-from comparisons.measuring.tolerances import TABLE
+from analytic.rocking import BearingLaw, base_jump_length_as_printed, restitution
+from comparisons.metrics import agreement
+from comparisons.metrics import errors as errors_of
+from comparisons.metrics.agreement import TABLE
 from engines import ENGINES, get_engine
 
 RUNS, KEPT = {}, {}  # what rows of one variant share; these rows stay on one worker
@@ -163,7 +162,7 @@ class Lagging(BearingLaw):
 @pytest.mark.slow
 def test_a_bearing_force_that_lags_one_step_fails(monkeypatch):
     one = row("bearing force replayed", *DEFAULT, "isolated Caryatid, synthetic motion")
-    monkeypatch.setattr("engines.stepping.BearingLaw", Lagging)
+    monkeypatch.setattr("engines.loop.BearingLaw", Lagging)
     with pytest.raises(agreement.Unmeasurable, match="does not match the bearing force"):  # the run itself says so
         one.found()
 

@@ -6,7 +6,7 @@ const Engines = (() => {
   const sign = (y) => (y < 0 || Object.is(y, -0) ? -1 : 1);
 
   // The exact equations and impact law in steps of equal length [s]: semi-implicit Euler; an impact is detected only at
-  // the end of the step that contains it. analytic/time_stepping.py in JavaScript.
+  // the end of the step that contains it. analytic/checks/time_stepping.py in JavaScript.
   function straddling(par, ground, { step, duration }) {
     const { m, M, J, R, gamma, g, onBase } = par, count = Math.ceil((duration / step) * (1 - 1e-12));
     const arm = par.mt * R * Math.cos(gamma), threshold = g * Math.tan(gamma), rows = [], impacts = [];

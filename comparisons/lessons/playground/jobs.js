@@ -3,7 +3,7 @@
 // these very scripts: a page opened from a file can load no other.
 const Jobs = (() => {
   const STANDS = 0, ROCKS = 1, AT_ONCE = 2, AFTER_IMPACTS = 3, OPEN = 4; // values of a cell
-  const LONGEST = 100; // rocking periods after the motion, as in analytic/decision.py
+  const LONGEST = 100; // rocking periods after the motion, as in analytic/kernel/decision.py
 
   const groundOf = (motion, samples) => {
     if (motion.kind === "pulse") return Scene.pulse(motion.amplitude, motion.period);

@@ -1,5 +1,5 @@
 "use strict";
-// The event-driven model: full contact, uplift, rocking, impact, rest, re-uplift, overturning. analytic/kernel.py with
+// The event-driven model: full contact, uplift, rocking, impact, rest, re-uplift, overturning. analytic/kernel/march.py with
 // its steps, events and decision in JavaScript: Taylor steps whose events are roots of the step's own polynomials.
 const Model = (() => {
   const { value, firstRoot, bracketedRoot } = Polynomial, { P } = Series;
@@ -109,7 +109,7 @@ const Model = (() => {
 
   // --- when the outcome is decided ------------------------------------------------------------------------------
 
-  // Energy [J] that can still reach the block after the motion, see analytic/decision.py.
+  // Energy [J] that can still reach the block after the motion, see analytic/kernel/decision.py.
   function remainingEnergy(par, st) {
     const c = st.s ? par.R * Math.cos(st.s * par.gamma - st.tilt) : 0, { m, M, J, g, R, gamma } = par;
     const a = Math.abs(st.tilt);

@@ -1,5 +1,5 @@
 "use strict";
-// Values and first roots of the Taylor polynomials of a step: analytic/polynomial.py in JavaScript.
+// Values and first roots of the Taylor polynomials of a step: analytic/kernel/polynomial.py in JavaScript.
 // A polynomial is an array of coefficients, lowest first; `order` is the highest power used.
 const Polynomial = (() => {
   const MAX_ORDER = 24, BISECTIONS = 60;

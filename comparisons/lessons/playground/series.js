@@ -1,5 +1,5 @@
 "use strict";
-// Taylor series of the motion over one step, coefficient by coefficient: analytic/taylor.py in JavaScript.
+// Taylor series of the motion over one step, coefficient by coefficient: analytic/kernel/steps.py in JavaScript.
 // Row 0 of each is given, the rest is filled up to `order`. S and C are sin and cos of s gamma - phi.
 const Series = (() => {
   const row = () => new Float64Array(Polynomial.MAX_ORDER + 2);

@@ -2,11 +2,10 @@
 
 import numpy as np
 
-from analytic.bearing import BearingLaw
-from analytic.caryatid import BASE, BEARINGS, MASS
-from analytic.design import BearingProperties, properties
+from analytic.rocking import BearingLaw, BearingProperties, properties
+from analytic.scene import BASE, BEARINGS, MASS
 
-from ...showing.diagrams import labelled_on_bearings
+from ...plotting.diagrams import labelled_on_bearings
 from ..lesson import MODEL, OTHER, THIRD, Control, Equation, Exercise, Lesson, View, canvas, legend
 
 LAW = BearingLaw.of(BEARINGS)
@@ -78,8 +77,8 @@ def misprinted_jump() -> float:
 def code() -> float:
     import numpy as np
 
-    from analytic.bearing import BearingLaw
-    from analytic.caryatid import BEARINGS
+    from analytic.rocking import BearingLaw
+    from analytic.scene import BEARINGS
 
     law = BearingLaw.of(BEARINGS)
     x = np.concatenate([[0.0], 0.30 * np.cos(np.linspace(0, 2 * np.pi, 20001))])  # m, from rest to a cycle

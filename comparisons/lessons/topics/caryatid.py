@@ -3,11 +3,25 @@
 import math
 
 from analytic import PulseMotion, Scene, simulate, synthetic_motion
-from analytic.caryatid import BASE, BEARINGS, caryatid_block
 from analytic.motion import Motion
+from analytic.scene import BASE, BEARINGS, caryatid_block
 
-from ..engine_runs import G, edge, history_until, overturns
-from ..lesson import OTHER, SOFT, Control, Equation, Exercise, Lesson, View, canvas, legend, tilt_axis
+from ..lesson import (
+    OTHER,
+    SOFT,
+    Control,
+    Equation,
+    Exercise,
+    G,
+    Lesson,
+    View,
+    canvas,
+    edge,
+    history_until,
+    legend,
+    overturns,
+    tilt_axis,
+)
 
 BEARING_CHOICE = {"none": None, "as designed": 1.0, "twice as stiff": 2.0}
 NEAR_FAULT = synthetic_motion()

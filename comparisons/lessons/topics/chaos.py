@@ -6,11 +6,10 @@ import math
 import numpy as np
 
 from analytic import SampledMotion, Scene, simulate
-from analytic.caryatid import caryatid_block
+from analytic.scene import caryatid_block
 
-from ...showing.parts import MINUS_DIGITS
-from ..engine_runs import G
-from ..lesson import MODEL, OTHER, SOFT, Control, Equation, Exercise, Lesson, View, canvas, legend
+from ...schemas.columns import MINUS_DIGITS
+from ..lesson import MODEL, OTHER, SOFT, Control, Equation, Exercise, G, Lesson, View, canvas, legend
 
 SLENDERNESS, RESTITUTION, DURATION = 0.28, 0.98, 30.0  # rad, -, s
 APART = 0.1  # of the slenderness: tilts that differ by more have separated

@@ -6,14 +6,15 @@ import math
 import numpy as np
 
 from analytic import Response, Scene, Start, simulate
-from analytic.caryatid import BASE, caryatid_block
-from analytic.closed_form import free_rocking
+from analytic.checks.closed_form import free_rocking
+from analytic.checks.time_stepping import simulate_time_stepping
+from analytic.checks.twin import simulate_twin
 from analytic.rocking import RockingModel, base_jump_length, base_jump_length_as_printed, restitution
-from analytic.time_stepping import simulate_time_stepping
-from analytic.twin import simulate_twin
+from analytic.scene import BASE, caryatid_block
 
-from ...running.provenance import RESULTS
-from ...showing.parts import number, power_of_ten, where
+from ...execution.provenance import RESULTS
+from ...plotting.parts import where
+from ...schemas.columns import number, power_of_ten
 from ...studies.rows import read_study
 from ..lesson import MODEL, SOFT, Control, Equation, Exercise, Lesson, View, canvas
 

@@ -7,17 +7,35 @@ import numpy as np
 from matplotlib.patches import Rectangle
 
 from analytic import simulate
-from analytic.caryatid import RADIUS
-from analytic.time_stepping import simulate_time_stepping
+from analytic.checks.time_stepping import simulate_time_stepping
+from analytic.scene import RADIUS
 from engines import ENGINES
 
-from ...measuring.agreement import RIGID
-from ...running.provenance import RESULTS
-from ...showing.parts import Table, number, where
-from ...showing.plots import marker
+from ...execution.provenance import RESULTS
+from ...metrics.agreement import RIGID
+from ...plotting.parts import Table, where
+from ...plotting.plots import marker
+from ...schemas.columns import number
 from ...studies.rows import read_study
-from ..engine_runs import SCENE, SLENDERNESS, engine_runs, error_of, straddled
-from ..lesson import MODEL, OTHER, SOFT, STONE, THIRD, Control, Equation, Exercise, Lesson, View, canvas, legend
+from ..lesson import (
+    MODEL,
+    OTHER,
+    SCENE,
+    SLENDERNESS,
+    SOFT,
+    STONE,
+    THIRD,
+    Control,
+    Equation,
+    Exercise,
+    Lesson,
+    View,
+    canvas,
+    engine_runs,
+    error_of,
+    legend,
+    straddled,
+)
 
 # ms. Where a step and its half are both here, the error falls; steps of 20 and of 10 ms would err by the same.
 STEPS = (0.5, 1.0, 2.4, 3.0, 5.0, 6.0, 9.0, 12.0, 18.0, 28.0)
@@ -186,8 +204,8 @@ def code() -> float:
     import numpy as np
 
     from analytic import simulate
-    from analytic.time_stepping import simulate_time_stepping
-    from comparisons.lessons.engine_runs import SCENE
+    from analytic.checks.time_stepping import simulate_time_stepping
+    from comparisons.lessons.lesson import SCENE
 
     exact = simulate(SCENE, history=False).impacts[0].time
     steps = np.linspace(4e-3, 5e-3, 41)  # s

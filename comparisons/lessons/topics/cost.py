@@ -7,10 +7,28 @@ from operator import attrgetter
 
 from analytic import simulate
 
-from ...showing.parts import Table, number
-from ...showing.plots import marker, style
-from ..engine_runs import OWN, OWN_STEPS, EngineRun, engine_runs, own_runs, timed
-from ..lesson import INK, OTHER, SOFT, THIRD, Control, Equation, Exercise, Lesson, View, canvas, legend
+from ...plotting.parts import Table
+from ...plotting.plots import marker, style
+from ...schemas.columns import number
+from ..lesson import (
+    INK,
+    OTHER,
+    OWN,
+    OWN_STEPS,
+    SOFT,
+    THIRD,
+    Control,
+    EngineRun,
+    Equation,
+    Exercise,
+    Lesson,
+    View,
+    canvas,
+    engine_runs,
+    legend,
+    own_runs,
+    timed,
+)
 
 TARGET = 0.01  # error asked for
 MODEL = "event-driven"
@@ -111,7 +129,7 @@ def passing_solvers() -> float:
 
 
 def code() -> object:
-    from comparisons.lessons.engine_runs import engine_runs, own_runs
+    from comparisons.lessons.lesson import engine_runs, own_runs
     from comparisons.lessons.topics.cost import TARGET, model_runs, trusted
 
     best = trusted((*model_runs(), *own_runs(), *engine_runs()), TARGET)

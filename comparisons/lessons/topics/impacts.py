@@ -3,13 +3,12 @@
 import numpy as np
 
 from analytic import Block, Scene, Start, load_scene, simulate
-from analytic.caryatid import BASE, MASS, RADIUS, caryatid_block
 from analytic.rocking import RockingModel, momentum_restitution
+from analytic.scene import BASE, MASS, RADIUS, caryatid_block
 from engines import ENGINES
 
-from ...showing.diagrams import labelled
-from ..engine_runs import edge, history_until
-from ..lesson import MODEL, OTHER, SOFT, Control, Equation, Exercise, Lesson, View, canvas, legend
+from ...plotting.diagrams import labelled
+from ..lesson import MODEL, OTHER, SOFT, Control, Equation, Exercise, Lesson, View, canvas, edge, history_until, legend
 
 START, WINDOW = 0.8, 8.0  # tilt over slenderness, s
 CURVE = np.linspace(0.02, 1.2, 80)

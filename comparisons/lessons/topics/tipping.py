@@ -7,12 +7,26 @@ import numpy as np
 from matplotlib.colors import ListedColormap
 
 from analytic import Block, PulseMotion, Scene, overturning_map, simulate
-from analytic.caryatid import MASS, RADIUS, caryatid_block
 from analytic.rocking import RockingModel
+from analytic.scene import MASS, RADIUS, caryatid_block
 
-from ...showing.diagrams import labelled
-from ..engine_runs import G, edge, history_until, overturns
-from ..lesson import INK, OUTCOMES, PANEL, Control, Equation, Exercise, Lesson, View, canvas, tilt_axis
+from ...plotting.diagrams import labelled
+from ..lesson import (
+    INK,
+    OUTCOMES,
+    PANEL,
+    Control,
+    Equation,
+    Exercise,
+    G,
+    Lesson,
+    View,
+    canvas,
+    edge,
+    history_until,
+    overturns,
+    tilt_axis,
+)
 
 SLENDERNESS, PERIOD = 0.28, 0.8  # rad, s
 PERIODS, AMPLITUDES = np.linspace(0.2, 2.0, 61), np.linspace(0.02, 1.5, 50)  # s, g

@@ -1,4 +1,7 @@
-"""What is shown of the study of the paper, a page for each of its three results."""
+"""What is shown of the study of the paper, a page for each of its three results.
+
+Curves of the paper: its misprints beside their corrections, and its bearings.
+"""
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
@@ -9,14 +12,84 @@ from markupsafe import Markup, escape
 
 from engines import missing_words
 
-from ...running.provenance import Result
-from ...showing.charts import Axis, Chart, figure
-from ...showing.figures import lines, regions
-from ...showing.parts import Column, Head, Page, Table, grouped, number, percent, table, where
-from . import runs as paper
-from .drawn import GAMMA, bearings, curves, misprints
-from .runs import FREE, ISOLATED
-from .variations import CATEGORIES, WITHIN
+from ...execution.provenance import Result
+from ...plotting.charts import Axis, Chart, figure
+from ...plotting.figures import lines, regions
+from ...plotting.parts import Figure, Head, Page, Table, grouped, table, where
+from ...schemas.columns import Column, number, percent
+from . import study as paper
+from .study import CATEGORIES, COLUMNS, FREE, ISOLATED, WITHIN
+
+PRINTED, CORRECT, LIMIT = "var(--ghost)", "var(--accent)", "var(--soft)"  # colours of curves
+GAMMA = "slenderness γ [rad]"
+
+
+def curves(title: str, x: Axis, y: Axis, named: Mapping[str, tuple], right: int = 106) -> Chart:
+    """A `Chart` of {name: (colour, xs, ys)}, each named where it ends; a name in parentheses is not written."""
+    chart = Chart(x, y, f"{title}: {y.label} over {x.label}; {', '.join(named)}.", right=right, title=title)
+    for name, (tone, xs, ys) in named.items():
+        chart.line(xs, ys, tone=tone)
+        if not name.startswith("("):
+            chart.label(ys[-1], name, tone=tone)
+    return chart
+
+
+def misprints(arrays: Mapping[str, Any]) -> Figure:
+    """Eqs (8) and (12), as printed and corrected."""
+    forms = (("as printed", PRINTED, "printed"), ("corrected", CORRECT, "right"))
+    charts = [
+        curves(
+            title,
+            x,
+            Axis("momentum after / before [-]", *ends),
+            {name: (tone, arrays[f"impact/{by}"], arrays[f"impact/{form} by {by}"]) for name, tone, form in forms},
+        )
+        for title, by, x, ends in (
+            ("Eq. (8), R = 1.0884 m", "slenderness", Axis(GAMMA, 0.1, 0.45), (0.985, 1.02)),
+            ("Eq. (8), γ = 0.28 rad", "radius", Axis("radius R [m]", 0.1, 10.0, "log"), (0.5, 4.0)),
+        )
+    ]
+    unloading = {
+        name: (tone, arrays["reversal/x"][::-1], arrays[f"reversal/{form}"][::-1] / 1e3) for name, tone, form in forms
+    }
+    x, loading = arrays["reversal/loading"]
+    jump = arrays["reversal/right"][0] - arrays["reversal/printed"][0]
+    force_curves = {"loading": (LIMIT, x, loading / 1e3), **unloading}
+    displacement, force = Axis("displacement x [m]", -0.2, 0.2), Axis("force of one bearing [kN]", -2.5, 2.5)
+    return figure(
+        [*charts, curves("Eq. (12), unloading from 0.2 m", displacement, force, force_curves)],
+        "Horizontal momentum after an impact over that before: eq. (8) as printed is right only where R cos γ happens "
+        f"to be 1 m. With eq. (12) as printed the force jumps by {number(jump / 1e3)} kN = 2 f₀ at a reversal.",
+    )
+
+
+def bearings(arrays: Mapping[str, Any]) -> Figure:
+    """Fig. 3, and the definitions of Table 1(a) over the amplitude."""
+    ends, amplitude = np.array([-0.34, 0.34]), Axis("amplitude [m]", 0.0, 0.4)
+    limits = {
+        name: (LIMIT, ends, (abs(slope) * ends / 0.34 + s * f0) / 1e3)
+        for name, (s, slope, f0) in zip(("(lower)", "limit curves"), arrays["loops/limits"], strict=True)
+    }
+    loops = curves(
+        "Fig. 3",
+        Axis("displacement x [m]", -0.34, 0.34),
+        Axis("force of one bearing [kN]", -3.0, 3.0),
+        {**limits, "algebraic law": (CORRECT, arrays["loops/x"], arrays["loops/force"] / 1e3)},
+    )
+    loops.dots(*(arrays["loops/reversals"].T / [[1.0], [1e3]]), tone=PRINTED)
+    period, ours, usual = (arrays[f"amplitude/{name}"] for name in ("period", "damping 2 pi", "damping 4 pi"))
+    at, energy = arrays["amplitude/x"], {"loss/(2π energy)": (PRINTED, ours), "loss/(4π energy)": (CORRECT, usual)}
+    dampings = {name: (tone, at, 100 * share) for name, (tone, share) in energy.items()}
+    periods = curves("Period", amplitude, Axis("secant period [s]", 0.0, 2.5), {"(one)": (CORRECT, at, period)}, 14)
+    damping = curves("Damping", amplitude, Axis("damping [% of critical]", 0.0, 60.0), dampings, 132)
+    for chart, value in ((periods, paper.PERIOD), (damping, 100 * paper.DAMPING)):
+        chart.dots([paper.X_MAX], [value], says=[f"Table 1(a): {value:g}"], tone="var(--bad)")
+    return figure(
+        [loops, periods, damping],
+        "The bearing law between its limit curves; its history is fixed at the reversal points, dots. Dots on period "
+        "and damping: Table 1(a), the secant period at 0.30 m, and loss of a cycle over 2π times the elastic energy.",
+    )
+
 
 DAMPINGS = ("var(--ink)", "var(--accent)", "var(--good)", "var(--fair)", "var(--bad)")  # of Fig. 5(b), least first
 FLOOR = 1e-9  # differences below are drawn there
@@ -24,12 +97,12 @@ KEPT = 5  # of so many samples of a smooth history one is drawn
 HARMS = dict(zip(CATEGORIES, ("", "right", "wrong", "falls"), strict=True))  # classes of who stays upright
 
 NUMBER = Column("number of the paper", "{where}: {quantity}")
-PAPER = Column("paper", "paper", digits=6)
+PAPER = COLUMNS["paper"]
 STATUS = Column("status", lambda row: ": ".join(filter(None, (row["status"], row.get("note")))))
 SCENE = Column("scene", lambda row: _scene(row))
 RUN = (
     SCENE,
-    Column("solver", "engine"),
+    COLUMNS["engine"],
     Column("outcome", lambda row: f"failed: {row['failure']['reason']}" if row["failure"] else row["outcome"]),
     Column("overturning time [s]", lambda row: row.get("overturning_time"), digits=5),
     Column("peak |φ|/γ [-]", lambda row: row.get("peak_tilt_ratio"), digits=4),
@@ -75,29 +148,29 @@ def _paper(result):
                 where(result.rows, part="value"),
                 NUMBER,
                 PAPER,
-                Column("this study", "study", digits=6),
-                Column("difference", "difference"),
+                COLUMNS["study"],
+                COLUMNS["difference"],
                 STATUS,
             ),
             _table(
                 "Equations, Fig. 3 and Table 1",
                 rows,
-                Column("number", "number"),
-                Column("what", "what"),
+                COLUMNS["number"],
+                COLUMNS["what"],
                 STATUS,
-                Column("how it was checked", "check"),
-                Column("value", "value", digits=6),
+                COLUMNS["check"],
+                COLUMNS["value"],
             ),
             Head("Misprints and definitions"),
             _table(
                 "What is printed, and what it should be",
                 where(result.rows, part="misprint"),
-                Column("where", "where"),
-                Column("printed", "printed"),
-                Column("should be", "corrected"),
-                Column("measure", "measure"),
-                Column("value corrected", "value_corrected", digits=5),
-                Column("value printed", "value_printed", digits=5),
+                COLUMNS["where"],
+                COLUMNS["printed"],
+                COLUMNS["corrected"],
+                COLUMNS["measure"],
+                COLUMNS["value_corrected"],
+                COLUMNS["value_printed"],
             ),
             misprints(result.arrays),
             Head("The bearings"),
@@ -129,7 +202,7 @@ def _motion(result):
                 _beside(where(result.rows, part="value")),
                 NUMBER,
                 PAPER,
-                Column("analytic model", "study", digits=6),
+                COLUMNS["study"].called("analytic model"),
                 Column("engines", "engines"),
                 STATUS,
             ),
@@ -137,16 +210,16 @@ def _motion(result):
             _table(
                 "A linear oscillator at the design period, by either definition of damping, beside the bearings",
                 where(result.rows, part="equivalent"),
-                Column("damping", "definition"),
-                Column("its value", "damping", digits=3, percent=True),
-                Column("peak displacement of the oscillator [m]", "displacement", digits=3),
-                Column("of the bearings [m]", "nonlinear", digits=3),
+                COLUMNS["definition"],
+                COLUMNS["damping"],
+                COLUMNS["displacement"],
+                COLUMNS["nonlinear"],
             ),
             Head("Which slenderness?"),
             _table(
                 "Slendernesses that fit the paper's claims",
                 claims,
-                Column("claim", "claim"),
+                COLUMNS["claim"],
                 Column("holds for γ [rad]", lambda row: _spans(row["intervals"])),
             ),
             _vulnerable(result),
@@ -155,7 +228,7 @@ def _motion(result):
             _table(
                 "Share of the map over slenderness and intensity",
                 [shares[0], {"motion": f"mean of {len(others)} synthetic motions", **mean}, *others],
-                Column("motion", "motion"),
+                COLUMNS["motion"],
                 *(
                     Column(f"isolated upright {key}" if key == SHARES[-1] else key, key, digits=3, percent=True)
                     for key in SHARES
@@ -219,7 +292,7 @@ def _agreement(runs):
             rows.append({**row, "apart": apart, "panel": panel})
     return lines(
         [row for row in rows if row["engine"] != "analytic"],
-        Column("period [s]", "period", digits=3),
+        COLUMNS["period"],
         Column("relative difference [-]", lambda row: max(row["apart"], FLOOR)),
         "Relative difference of an engine from the analytic model: in the overturning time if it overturns, otherwise "
         "in the peak. 1: another outcome.",
@@ -267,7 +340,7 @@ def _vulnerable(result):
     return lines(
         [{"engine": "analytic", "at": float(x), "period": float(y)} for x, y in values],
         Column(GAMMA, "at", digits=3),
-        Column("longest that overturns [s]", "period", digits=3),
+        COLUMNS["period"].called("longest that overturns"),
         "Longest rocking period of a block that overturns: the paper's are vulnerable below about 4 s. By the "
         "acceleration of the base alone, atan(max|a|/g), a block stays down on the bearings from a slenderness of "
         f"{result.settings['uplift_slenderness']:.4f} rad on.",

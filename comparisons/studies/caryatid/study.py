@@ -3,26 +3,818 @@
 There are three results, all of kind "caryatid": ``caryatid-paper`` (what needs no motion: bearing law, Table 1,
 misprints), ``caryatid-under-<motion>`` (what does, without a single value of the motion itself) and
 ``caryatid-under-<motion>-histories`` (Figs 4 and 6 over time: not to be passed on where the record may not be).
+
+What the Caryatid paper prints, as far as it is known here; its simulations in every solver, Figs 4(b) and 6, points
+of Figs 5(a) and 5(b); and each number of the paper beside this study's.
+
+What needs no ground motion: the bearing law of Fig. 3, Table 1 and the misprints, each by a number.
+
+`branch` and `history_point` are the paper's equations written out literally, misprint included; the corrected ones are
+the model's own.
+
+What the paper leaves out: which slenderness it can have meant, other slendernesses, intensities and motions.
 """
 
+import math
 import re
+from collections.abc import Generator, Iterator, Mapping, Sequence
+from functools import partial, reduce
+from itertools import pairwise, product
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 import typer
+from scipy.integrate import cumulative_simpson
 
-from analytic import SampledMotion
-from analytic.design import properties
+from analytic import (
+    Base,
+    Bearings,
+    Response,
+    SampledMotion,
+    Scene,
+    load_scene,
+    rocking_spectrum,
+    simulate,
+    simulate_many,
+    synthetic_motion,
+)
+from analytic.bearing_scan import displacement_spectrum
+from analytic.motion import Motion
+from analytic.rocking import (
+    BearingLaw,
+    BearingProperties,
+    RockingModel,
+    base_jump_length,
+    base_jump_length_as_printed,
+    design_bearings,
+    momentum_restitution,
+    properties,
+)
 from engines import available_engines
 
-from ...running.options import Channel, Column, Step, Units
-from ...running.plan import Computed, Plan, Request
-from ...running.progress import log
-from ...running.solving import ground_motion
-from .formulas import formulas
-from .runs import ISOLATED, X_MAX, caryatid, equivalent_oscillators, motion_values, simulations, spectra
-from .variations import claims, maps, uplift_slenderness
+from ...execution.cases import Case
+from ...execution.plan import Batch, Computed, Plan, Request, boundaries, drive
+from ...execution.progress import log
+from ...execution.solving import Channel, Column, Step, Units, ground_motion
+from ...execution.sweep import Row
+from ...metrics.agreement import branch, history_point
+from ...schemas.columns import declared, flag_of, list_of, number_of, table_of, whole_of, word_of
+from ..rows import SHARED
+
+# What its rows have; see `comparisons.studies.rows`.
+COLUMNS = SHARED | declared(
+    word_of("where", "where", "in the paper"),
+    word_of("quantity", "quantity", "with its unit"),
+    number_of("paper", "paper", "what the paper prints", "of the quantity", type="number or word", digits=6),
+    number_of("study", "this study", "what is found here", "of the quantity", type="number or word", digits=6),
+    number_of("difference", "difference", "found over printed, less 1"),
+    word_of("status", "status", "reproduced, corrected, derived, input, not printed or not checkable"),
+    word_of("note", "note", "on the status, in words"),
+    word_of("printed", "printed", "the equation as printed"),
+    word_of("corrected", "should be", "the equation corrected"),
+    word_of("measure", "measure", "what shows the misprint, with its unit"),
+    number_of(
+        "value_corrected", "value corrected", "of that measure with the corrected equation", "of the measure", digits=5
+    ),
+    number_of("value_printed", "value printed", "of that measure with the printed one", "of the measure", digits=5),
+    word_of("number", "number", "of the equation"),
+    word_of("what", "what", "what is computed"),
+    word_of("check", "how it was checked", "of the equation, with its unit"),
+    number_of("value", "value", "of the check", "of the check", digits=6),
+    flag_of("decided", "decided", "whether nothing can change it any more"),
+    number_of("overturning_time", "overturning time", "when the block has overturned", "s"),
+    number_of("unstable_time", "unstable time", "when its overturning was certain", "s"),
+    number_of("fall_time", "fall time", "last passage of the slenderness by a block that overturns", "s"),
+    number_of("peak_tilt", "peak tilt", "largest |tilt|", "rad"),
+    number_of("peak_tilt_ratio", "peak tilt ratio", "largest |tilt| over the slenderness"),
+    number_of("peak_base_displacement", "peak base displacement", "largest displacement of the base", "m"),
+    number_of("peak_base_acceleration", "peak base acceleration", "largest absolute acceleration of the base", "m/s2"),
+    whole_of("impact_count", "impact count", "impacts of the run"),
+    number_of("friction_demand", "friction demand", "largest horizontal over normal force under the block"),
+    number_of("min_normal_ratio", "min normal ratio", "least normal force over the weight"),
+    table_of("end", "end", "time, tilt, displacement and rates at the end", "SI"),
+    whole_of("steps", "steps", "steps of the run"),
+    table_of("settings", "settings", "all settings of the run"),
+    table_of("versions", "versions", "of the packages that computed it"),
+    list_of("warnings", "warnings", "of the run"),
+    number_of("period", "period", "of the oscillator, or of the isolated structure", "s", digits=3),
+    number_of("damping", "its value", "equivalent viscous damping over the critical one", digits=3, percent=True),
+    word_of("definition", "damping", "of that damping"),
+    number_of(
+        "displacement", "peak displacement of the oscillator", "peak of the equivalent linear oscillator", "m", digits=3
+    ),
+    number_of("nonlinear", "of the bearings", "peak under the bearings' own law", "m", digits=3),
+    word_of("claim", "claim", "of the paper, on an outcome"),
+    list_of("intervals", "intervals", "of slenderness within which the claim holds: [[low, high]]", "rad"),
+    whole_of("evaluations", "evaluations", "runs that the search took"),
+    number_of("step", "step", "of the scan over slenderness", "rad"),
+    word_of("motion", "motion", "under which the cells are computed"),
+    whole_of("cells", "cells", "of the map of slenderness and intensity"),
+    number_of("both stay upright", "both stay upright", "share of cells"),
+    number_of(
+        "only the isolated one does",
+        "only the isolated one does",
+        "share of cells where the isolated block alone stays upright",
+    ),
+    number_of(
+        "only the free-standing one does",
+        "only the free-standing one does",
+        "share of cells where the free-standing block alone does",
+    ),
+    number_of("both overturn", "both overturn", "share of cells"),
+    number_of(
+        "only the isolated one does, within 0.30 m",
+        "only the isolated one does, within 0.30 m",
+        "as above, the base within 0.30 m",
+    ),
+    number_of("isolated lifts", "isolated lifts", "share of cells where the isolated block lifts"),
+    number_of("beyond x_max", "beyond x max", "share of cells where the base goes beyond its limit"),
+    number_of("cpu_seconds", "cpu seconds", "CPU time of the run", "s"),
+)
+RUN = """engine variant? outcome failure? | scene overturning_time? unstable_time? peak_tilt? peak_tilt_ratio?
+    peak_base_displacement? friction_demand? min_normal_ratio? end steps settings versions decided warnings differences
+    comparable impact_count"""
+PARTS = {
+    "value": "where quantity engine? paper study difference? status note",
+    "misprint": "where printed corrected measure value_corrected value_printed",
+    "equation": "number what status check value",
+    "run": f"scene {RUN}",
+    "rocking spectrum": f"period {RUN}",
+    "displacement spectrum": f"period damping {RUN}",
+    "equivalent": "definition damping period displacement nonlinear",
+    "claim": "claim intervals evaluations?",
+    "vulnerable": "slenderness step period",
+    "benefit": """motion cells 'both stay upright' 'only the isolated one does' 'only the free-standing one does'
+            'both overturn' 'only the isolated one does, within 0.30 m' 'isolated lifts' 'beyond x_max'""",
+}
+
+FREE, ISOLATED = "free-standing", "isolated"
+SHIPPED = {FREE: "caryatid-rigid", ISOLATED: "caryatid-isolated"}
+DAMPING_RATIOS = (0.05, 0.10, 0.15, 0.20, 0.30)  # Fig. 5(b); the paper's own are not at hand
+OSCILLATOR_DAMPING = (0.05, 0.30)  # of those run in the engines
+# A block this stocky stays down on its oscillator: it lifts at 0.84 g.
+STOCKY = 0.7  # rad
+TIME_LIMIT = 120.0  # s
+HISTORY_STEP = 0.01  # s, at which histories are kept
+LEFT_OUT = "impacts", "uplifts", "rests", "energy", "sliding"  # of a response: lists, and what needs a friction
+
+
+def caryatid(name: str, motion: Motion | None) -> Scene:
+    """The free-standing or the isolated Caryatid under `motion`."""
+    return load_scene(SHIPPED[name]).with_(motion=motion, duration=None)
+
+
+def slender_block(motion: Motion, period: float, slenderness: float) -> Scene:
+    """A block on rigid ground whose rocking period T_r is `period` [s], as in Fig. 5(a)."""
+    scene = caryatid(FREE, motion)
+    radius = 3 * scene.gravity * (period / (2 * np.pi)) ** 2 / 4  # (1) with J_O = 4/3 m R^2
+    return scene.with_(block={"radius": float(radius), "slenderness": slenderness})
+
+
+def oscillator(motion: Motion, period: float, damping: float) -> Scene:
+    """A linear oscillator as a scene: a block that cannot lift, on one linear bearing with a damper."""
+    scene = caryatid(ISOLATED, motion)
+    omega = 2 * np.pi / period
+    bearing = Bearings(
+        law="linear",
+        count=1,
+        ka=float(scene.total_mass * omega**2),
+        damping=float(2 * damping * omega * scene.total_mass),
+    )
+    return Scene(
+        block=scene.block.model_copy(update={"slenderness": STOCKY}),
+        base=Base(mass=scene.base.mass),
+        bearings=bearing,
+        motion=motion,
+        gravity=scene.gravity,
+    )
+
+
+def measure(case: Case, response: Response) -> dict[str, Any]:
+    """The whole response, and of Figs 4(b) and 6 tilt and displacement at multiples of `HISTORY_STEP`."""
+    found = response.to_json()
+    if case.tag["part"] == "run" and (history := response.history):
+        time = np.arange(0.0, history.time[-1], HISTORY_STEP)
+        columns = {
+            name: np.interp(time, history.time, getattr(history, name)) for name in ("tilt", "base_displacement")
+        }
+        found["history"] = {name: column.tolist() for name, column in {"time": time, **columns}.items()}
+    return found
+
+
+def simulations(
+    motion: Motion, engines: Sequence[str], quick: bool = False
+) -> Generator[Batch, list[Row], tuple[list[dict[str, Any]], dict[str, np.ndarray]]]:
+    """Plan of all runs; returns their rows, and the histories of Figs 4(b) and 6 as arrays."""
+    solvers = ("analytic", *engines)
+    figures = [
+        Case(caryatid(name, motion), solver, tag={"part": "run", "scene": name})
+        for name in SHIPPED
+        for solver in solvers
+    ]
+    rows, histories = [], {}
+    for row in (yield Batch([*figures, *_points(motion, solvers, quick)], measure, "Figs 4 to 6", TIME_LIMIT)):
+        values = {name: value for name, value in row.values.items() if name not in LEFT_OUT}
+        engine = row.case.solver
+        if row.case.scene.base is None:  # the ground's own peak: a value of the motion
+            values.pop("peak_base_acceleration", None)
+        for column, numbers in values.pop("history", {}).items():
+            histories[f"{row.case.tag['scene']}/{engine}/{column}"] = np.array(numbers, dtype=np.float32)
+        default = {"engine": engine, "variant": row.case.variant}  # of a run that failed
+        rows.append({**default, **values, **row.case.tag, "failure": row.failure, **row.cost})
+    return rows, histories
+
+
+def _points(motion, solvers, quick):
+    """Single blocks and oscillators of Fig. 5, in every solver."""
+    free = caryatid(FREE, motion)
+    slenderness, own = free.block.slenderness, 2 * np.pi / free.rocking_frequency
+    blocks = (own, 5.0) if quick else (1.5, own, 3.0, 3.5, 4.5, 5.0, 6.0, 7.0)
+    oscillators = (2.0,) if quick else (1.0, 2.0, 3.0)
+    without = {"history": False}
+    for solver, period in product(solvers, blocks):
+        tag = {"part": "rocking spectrum", "period": float(period)}
+        yield Case(slender_block(motion, period, slenderness), solver, settings=without, tag=tag)
+    for solver, period, damping in product(solvers, oscillators, OSCILLATOR_DAMPING):
+        tag = {"part": "displacement spectrum", "period": period, "damping": damping}
+        yield Case(oscillator(motion, period, damping), solver, settings=without, tag=tag)
+
+
+def spectra(motion: Motion, quick: bool = False) -> dict[str, np.ndarray]:
+    """Arrays of Fig. 5(a), max tilt over slenderness against T_r, and Fig. 5(b), max displacement against T_bi."""
+    slenderness = caryatid(FREE, motion).block.slenderness
+    periods = np.linspace(0.5, 8.0, 151 if quick else 751)
+    tilts = rocking_spectrum(motion, periods, slenderness)
+    isolation = np.linspace(0.1, 5.0, 99 if quick else 246)
+    return {
+        "rocking/period": periods,
+        "rocking/tilt": np.where(tilts.overturns, np.nan, tilts.peak_tilt / slenderness),
+        "rocking/overturns": tilts.overturns,
+        "displacement/period": isolation,
+        "displacement/damping": np.array(DAMPING_RATIOS),
+        "displacement/peak": displacement_spectrum(motion, isolation, DAMPING_RATIOS),
+    }
+
+
+def equivalent_oscillators(motion: Motion, properties: BearingProperties, nonlinear: float) -> list[dict[str, Any]]:
+    """What a linear oscillator at T_bi predicts, with the damping in either definition, beside the bearings' own."""
+    return [
+        {
+            "part": "equivalent",
+            "definition": name,
+            "damping": damping,
+            "period": properties.period,
+            "displacement": float(displacement_spectrum(motion, [properties.period], [damping])[0, 0]),
+            "nonlinear": nonlinear,
+        }
+        for name, damping in (
+            ("W_D/(2π E_s)", properties.damping_paper),
+            ("W_D/(4π E_s)", properties.damping_equivalent),
+        )
+    ]
+
+
+REPRODUCED, CORRECTED, NOT_REPRODUCIBLE = "reproduced", "corrected", "not reproducible"
+GIVEN, DERIVED, OTHER_MOTION = "input", "not printed, derived", "other motion"
+NOT_CHECKABLE = "not checkable"
+
+# Table 1(a): targets; Table 1(b): the bearings designed for them
+PERIOD, X_MAX, DAMPING = 2.0, 0.30, 0.30  # s, m, share of critical
+KA, KB, ALPHA, DELTA_K = 6.22e4, 6.22e3, 44.69, 1e-20  # N/m, N/m, -, N/m
+COUNT, MASS, BASE_MASS, OMEGA_R = 4, 3172.05, 212.0, 2.60  # -, kg, kg, rad/s
+# Of Figs 4 to 6 (Duzce 12 November 1999, East-West) the text prints outcomes and two times, and no other value.
+OVERTURNING = "after approximately 35 s"  # of the paper's own file
+VULNERABLE_PERIOD, VULNERABLE_ABOUT = 4.0, 0.5  # s, "four seconds" and how it is read here
+OWN_FILE = "the paper's file of the same event and component starts earlier and is processed otherwise"
+
+# Known to exist, but neither text nor numbers of it are at hand.
+UNKNOWN = (
+    "Figs 1 and 2; the damping ratios of Fig. 5(b); the values on the axes of Figs 3 to 6; the dimensions of "
+    "the Caryatid and of its bearings beyond Table 1; the slenderness."
+)
+
+
+def value(
+    where: str,
+    quantity: str,
+    printed: float | str,
+    study: float | str,
+    status: str,
+    note: str = "",
+    engine: str | None = None,
+) -> dict[str, Any]:
+    """A row: one number of the paper beside this study's, with their difference where both are numbers.
+
+    Parameters
+    ----------
+    where : str
+        Table, figure or equation.
+    quantity : str
+        What, with its unit.
+    printed, study : float or str
+        The paper's and this study's.
+    status : str
+        One of those above.
+    note : str
+        Why.
+    engine : str or None
+        Whose run gave it, "analytic" among them; None: no run.
+    """
+    numbers = isinstance(printed, float) and isinstance(study, float) and status != GIVEN
+    return {
+        "part": "value",
+        "where": where,
+        "quantity": quantity,
+        "engine": engine,
+        "paper": printed,
+        "study": study,
+        "difference": study - printed if numbers else None,  # type: ignore[operator]  # both are numbers
+        "status": status,
+        "note": note,
+    }
+
+
+def judged(
+    where: str, quantity: str, printed: float, study: float, within: float, note: str = "", own: bool = True
+) -> dict[str, Any]:
+    """A row as `value` makes it, reproduced if it lies within half a printed digit, or what "about" allows.
+
+    own: whether the paper's motion is behind it; else it is not judged.
+    """
+    met = abs(study - printed) <= within
+    return value(where, quantity, printed, study, _status(own, met), note)
+
+
+def _status(own, met):
+    return OTHER_MOTION if not own else REPRODUCED if met else NOT_REPRODUCIBLE
+
+
+def is_papers_motion(motion: Motion) -> bool:
+    """Whether it is a Duzce record, by its name: only then are the paper's numbers the ones to meet."""
+    return "DUZCE" in motion.label.upper() and not motion.label.startswith("synthetic")
+
+
+def motion_values(rows: Sequence[Mapping[str, Any]], motion: SampledMotion, least: float) -> Iterator[dict[str, Any]]:
+    """Rows of the paper's numbers in Figs 4 to 6, each beside what every solver's rows give.
+
+    least: slenderness [rad] that does not rock on the bearings.
+    """
+    own = is_papers_motion(motion)
+    for row in rows:
+        if row["part"] == "run":
+            yield from _run_values(row, motion, own)
+    status, note = (GIVEN, OWN_FILE) if own else (OTHER_MOTION, "")
+    yield value("Fig. 4(a)", "ground motion", "Duzce 12 Nov 1999, East-West", motion.label, status, note)
+    note = "the paper's damping ratios and values are not at hand"
+    yield value("Fig. 5(b)", "peak displacements of oscillators", "not at hand", "drawn", NOT_REPRODUCIBLE, note)
+    for row in rows:
+        if row["part"] == "vulnerable":
+            note = f"largest T_r that overturns, in steps of {row['step']:g} s, γ = {row['slenderness']:g} rad"
+            about = VULNERABLE_PERIOD, row["period"], VULNERABLE_ABOUT
+            yield judged("Fig. 5(a)", "vulnerable below T_r of [s]", *about, note, own=own)
+    what = "least slenderness that does not rock on the bearings [rad]"
+    yield value("text", what, "not printed", least, DERIVED, "atan(max|a|/g)")
+
+
+def _run_values(row, motion, own):
+    """Figs 4(b) and 6 as one solver's run has them."""
+    what, engine = f"{row['scene']} Caryatid", row["engine"]
+
+    def found(place, quantity, printed, study, status=None, note=""):
+        study, note = "does not happen" if study is None else study, note if own else ""
+        status = status if own and status else _status(own, study == printed)
+        return value(place, quantity, printed, study, status, note, engine)
+
+    if row["outcome"] == "failed":
+        why = row["failure"]["reason"]
+        yield value("Figs 4(b), 6", what, "runs", "failed", NOT_REPRODUCIBLE, why, engine)
+    elif row["scene"] == FREE:
+        time, after = row["overturning_time"], "overturning after the peak of the motion [s]"
+        yield found("Fig. 4(b)", what, "overturns", row["outcome"])
+        time = None if time is None else time - motion.peak_time
+        yield found("Fig. 4(b)", after, OVERTURNING, time, NOT_CHECKABLE, OWN_FILE)
+    else:
+        peak = row["peak_base_displacement"]
+        acceleration = row["peak_base_acceleration"] / caryatid(ISOLATED, motion).gravity
+        yield found("Fig. 6", what, "stands", row["outcome"])
+        yield found("Fig. 6", "peak displacement of the base [m]", "not printed", peak, DERIVED)
+        yield found("Fig. 6", "peak absolute acceleration [g]", "not printed", acceleration, DERIVED)
+        yield found("Fig. 6", "peak displacement below x_max = 0.30 m", "yes", "yes" if peak < X_MAX else "no")
+
+
+TURNS = (0.0, 0.06, -0.06, 0.15, -0.15, 0.30, -0.30, 0.10, -0.05, 0.30)  # m, the path of Fig. 3
+REVERSAL = 0.20  # m, where the misprint of eq. (12) is shown
+POINTS = 120  # per branch
+RADII = np.geomspace(0.1, 10.0, 81)  # m
+SLENDERNESSES = np.linspace(0.1, 0.45, 71)  # rad
+AMPLITUDES = np.linspace(0.02, 0.40, 96)  # m
+
+
+def momentum_after(scene: Scene, jump_length: float, rate: float = -1.0) -> float:
+    """Horizontal momentum after an impact over that before it, for a base velocity jump -e_x phi'-; 1 if conserved.
+
+    Before: m h w (the base stands). After: m h e_phi w + (m + m_b) jump.
+    """
+    before = scene.block.mass * scene.block.half_height * rate
+    return (momentum_restitution(scene) * before - scene.total_mass * jump_length * rate) / before
+
+
+def formulas() -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
+    """(rows, arrays) of the result ``caryatid-paper``."""
+    scene = load_scene("caryatid-isolated").with_(motion=None)
+    law = BearingLaw.of(scene.bearings)
+    arrays = {**_loops(law), **_reversal(law), **_momentum(scene), **_amplitudes(scene)}
+    loaded, unloading = arrays["reversal/loading"][1, -1], arrays["reversal/right"]
+    jumps = {  # of the force at a reversal, over 2 f0, with eq. (12) corrected and as printed
+        "corrected": abs(arrays["reversal/literal"][0] - loaded) / (2 * law.f0),
+        "printed": (unloading[0] - arrays["reversal/printed"][0]) / (2 * law.f0),
+    }
+    literal = np.abs(arrays["reversal/literal"] - unloading).max() / law.f0
+    got = properties(scene.bearings, scene.total_mass, X_MAX)
+    designed = design_bearings(scene.total_mass, PERIOD, DAMPING, X_MAX, count=COUNT, definition="paper")
+    equations = _equations(scene, law, got, designed, jumps, float(literal))
+    return [*_values(scene, got, designed), *_misprints(scene, got, jumps), *equations], arrays
+
+
+def _loops(law):
+    """Fig. 3: the path through `TURNS`, its reversal points, the limit curves."""
+    x, f, z = [], [], 0.0
+    for start, end in pairwise(TURNS):
+        travel = np.linspace(0.0, end - start, POINTS)
+        forces = np.array([law.hysteretic(z, dx) for dx in travel])
+        x.append(start + travel)
+        f.append(law.kb * (start + travel) + forces)
+        z = forces[-1]
+    return {
+        "loops/x": np.concatenate(x),
+        "loops/force": np.concatenate(f),
+        "loops/reversals": np.column_stack([TURNS[1:-1], [force[-1] for force in f[:-1]]]),
+        "loops/limits": np.array([[s, law.kb * s * 0.34, law.f0] for s in (-1.0, 1.0)]),
+    }
+
+
+def _reversal(law):
+    """Loading of the virgin bearing to `REVERSAL` and unloading: right, and with eq. (12) as printed."""
+    loading, unloading = np.linspace(0.0, REVERSAL, POINTS), np.linspace(REVERSAL, -REVERSAL, POINTS)
+    force = np.array([law.kb * x + law.start(x) for x in loading])
+    z, x_j = law.start(REVERSAL), history_point(law, REVERSAL, force[-1], -1)
+    return {
+        "reversal/loading": np.array([loading, force]),
+        "reversal/x": unloading,
+        "reversal/right": np.array([law.kb * x + law.hysteretic(z, x - REVERSAL) for x in unloading]),
+        "reversal/literal": np.array([branch(law, x, -1, x_j) for x in unloading]),
+        "reversal/printed": np.array([branch(law, x, -1, x_j, misprinted=True) for x in unloading]),
+    }
+
+
+def _momentum(scene):
+    """Momentum after an impact over that before, by eq. (8) corrected and printed, over slenderness and over radius."""
+    arrays = {"impact/slenderness": SLENDERNESSES, "impact/radius": RADII}
+    for by in ("slenderness", "radius"):
+        scenes = [scene.with_(block={by: float(size)}) for size in arrays[f"impact/{by}"]]
+        for form, length in (("right", base_jump_length), ("printed", base_jump_length_as_printed)):
+            arrays[f"impact/{form} by {by}"] = np.array([momentum_after(one, length(one)) for one in scenes])
+    return arrays
+
+
+def _amplitudes(scene):
+    """Secant period and damping in both definitions over the amplitude."""
+    at = [properties(scene.bearings, scene.total_mass, float(amplitude)) for amplitude in AMPLITUDES]
+    return {
+        "amplitude/x": AMPLITUDES,
+        "amplitude/period": np.array([bearings.period for bearings in at]),
+        "amplitude/damping 2 pi": np.array([bearings.damping_paper for bearings in at]),
+        "amplitude/damping 4 pi": np.array([bearings.damping_equivalent for bearings in at]),
+    }
+
+
+def _values(scene, got, designed):
+    """Every number of the paper that needs no motion."""
+    radius = 3 * scene.gravity / (4 * OMEGA_R**2)  # (1) with J_O = 4/3 m R^2
+    secant = f"as secant period at x_max; with k_b alone it would be {got.period_kb:.3f} s"
+    ours, usual = "damping ξ as W_D/(2π E_s) [%]", "damping ξ as W_D/(4π E_s) [%]"
+    from_a, ten = "designed from Table 1(a)", "designed from Table 1(a) with k_a/k_b = 10"
+    return [
+        value("text", "mass of the Caryatid m [kg]", MASS, scene.block.mass, GIVEN),
+        value("text", "mass of the base m_b [kg]", BASE_MASS, scene.base.mass, GIVEN),
+        judged(
+            "eq. (1)",
+            "rocking frequency ω_r [rad/s]",
+            OMEGA_R,
+            scene.rocking_frequency,
+            0.005,
+            "with R = 1.0884 m, itself derived from ω_r",
+        ),
+        value(
+            "eq. (1)",
+            "radius R [m]",
+            "not at hand",
+            radius,
+            DERIVED,
+            "follows from ω_r and J_O = 4/3 m R² of a rectangle",
+        ),
+        value(
+            "text",
+            "slenderness γ [rad]",
+            "not printed",
+            scene.block.slenderness,
+            DERIVED,
+            "chosen; the interval that fits the paper's claims is with each motion",
+        ),
+        judged("Table 1(a)", "period T_bi [s]", PERIOD, got.period, 0.005, secant),
+        value("Table 1(a)", "displacement x_max [m]", X_MAX, X_MAX, GIVEN),
+        judged(
+            "Table 1(a)",
+            ours,
+            100 * DAMPING,
+            100 * got.damping_paper,
+            0.5,
+            "the only definition that gives the printed value",
+        ),
+        value(
+            "Table 1(a)",
+            usual,
+            100 * DAMPING,
+            100 * got.damping_equivalent,
+            CORRECTED,
+            "the usual equivalent viscous damping: half of what is printed",
+        ),
+        value("Table 1(b)", "number of bearings n_d [-]", float(COUNT), float(scene.bearings.count), GIVEN),
+        judged("Table 1(b)", "k_a [N/m]", KA, designed.ka, 50.0, ten),
+        judged("Table 1(b)", "k_b [N/m]", KB, designed.kb, 5.0, ten),
+        judged("Table 1(b)", "α [-]", ALPHA, designed.alpha, 0.005, from_a),
+        value("Table 1(b)", "δ_k [N/m]", DELTA_K, scene.bearings.delta_k, GIVEN),
+        value("Figs 1, 2", "what they show", "not at hand", "not drawn", NOT_REPRODUCIBLE, "neither known here"),
+    ]
+
+
+def _rows(part, keys, *rows):
+    """Rows of a part, their values in the order of the keys."""
+    return [{"part": part, **dict(zip(keys, row, strict=True))} for row in rows]
+
+
+def _misprints(scene, got, jumps):
+    return _rows(
+        "misprint",
+        ("where", "printed", "corrected", "measure", "value_corrected", "value_printed"),
+        (
+            "eq. (8)",
+            "e_x with a factor R cos γ too many: a length squared",
+            "e_x = 2R³ sin²γ cosγ m m̃/(…)",
+            "momentum after an impact over that before, γ = 0.28 rad [-]",
+            momentum_after(scene, base_jump_length(scene)),
+            momentum_after(scene, base_jump_length_as_printed(scene)),
+        ),
+        (
+            "eq. (12)",
+            "bracket 1 + x − x_j + 2x₀",
+            "bracket 1 − x + x_j + 2x₀",
+            "force jump at a reversal over 2 f₀ [-]",
+            jumps["corrected"],
+            jumps["printed"],
+        ),
+        (
+            "Table 1(a), ξ",
+            "30 %, which is W_D/(2π E_s)",
+            "equivalent viscous damping W_D/(4π E_s)",
+            "damping at x_max [%]",
+            100 * got.damping_equivalent,
+            100 * got.cycle_loss / (math.pi * got.force * X_MAX),
+        ),
+        (
+            "Table 1(a), T_bi",
+            "2 s, said of the isolated system",
+            "secant period at x_max = 0.30 m only",
+            "period: secant at x_max, and with k_b alone [s]",
+            got.period,
+            got.period_kb,
+        ),
+    )
+
+
+def _momentum_residual():
+    """Eq. (2) integrated: (m + m_b)(v + int a_g dt) + int n_d f dt over a run, over the largest of its impulses."""
+    scene = load_scene("caryatid-isolated")
+    history = simulate(scene.with_(duration=scene.motion.end), output_step=scene.motion.dt / 8).history
+    ground = cumulative_simpson(history.ground_acceleration, x=history.time, initial=0)
+    bearings = cumulative_simpson(history.bearing_force, x=history.time, initial=0)
+    left = scene.total_mass * (history.base_velocity + ground) + bearings
+    return float(np.abs(left).max() / np.abs(bearings).max())
+
+
+def _impact_by_balances(scene, rate):
+    """(phi'+, jump of x') from linear momentum and the block's angular momentum about its new corner alone."""
+    m, b, h, about = scene.block.mass, scene.block.half_width, scene.block.half_height, scene.block.centre_inertia
+    balances = np.array([[m * h, scene.total_mass], [about + m * (h * h + b * b), m * h]])
+    return np.linalg.solve(balances, [m * h * rate, (about + m * (h * h - b * b)) * rate])
+
+
+def _equations(scene, law, got, designed, jumps, literal):
+    """Eqs (1) to (14), Fig. 3 and Table 1, each by a number that it must give."""
+    run = simulate(load_scene("caryatid-isolated").with_(block={"slenderness": 0.15}), history=False)  # it rocks
+    rate = -0.7
+    spin, base = _impact_by_balances(scene, rate)
+    _, corrected = RockingModel.of(scene).impact(rate)
+    off = base_jump_length_as_printed(scene) / base_jump_length(scene) - 1
+    return _rows(
+        "equation",
+        ("number", "what", "status", "check", "value"),
+        ("(1)", "rocking frequency", REPRODUCED, "ω_r [rad/s], 2.60 printed", scene.rocking_frequency),
+        (
+            "(2)",
+            "full contact on the bearings",
+            REPRODUCED,
+            "momentum balance over a run in full contact, over its largest impulse [-]",
+            _momentum_residual(),
+        ),
+        (
+            "(3)–(6)",
+            "rocking on the base, re-derived",
+            REPRODUCED,
+            f"imbalance of the energy over the input, {run.impact_count} impacts [-]",
+            abs(run.energy.imbalance / run.energy.input),
+        ),
+        (
+            "(7)",
+            "restitution e_φ",
+            REPRODUCED,
+            "difference from the momentum balances [-]",
+            abs(momentum_restitution(scene) - spin / rate),
+        ),
+        (
+            "(8)",
+            "jump of the base velocity",
+            CORRECTED,
+            f"corrected form, relative difference from the momentum balances [-]; printed form: {off:.3%} off",
+            abs(corrected / base - 1),
+        ),
+        (
+            "(9)–(11)",
+            "bearing force and its history x_j",
+            REPRODUCED,
+            "literal x_j form against the stable form, over f₀ [-] (literal is NaN beyond 1.33 m of travel)",
+            literal,
+        ),
+        (
+            "(12)",
+            "unloading branch",
+            CORRECTED,
+            f"force jump at a reversal over 2 f₀, corrected [-]; printed form: {jumps['printed']:.4f}",
+            jumps["corrected"],
+        ),
+        ("(13)", "x₀ from k_a, k_b, α, δ_k", REPRODUCED, "2 x₀ [m]", 2 * law.constants.x0),
+        ("(14)", "f₀ from k_a, k_b, α, x₀", REPRODUCED, "f₀ of one bearing [N]", law.f0),
+        (
+            "Fig. 3",
+            "bearing law with its curves and reversal points",
+            REPRODUCED,
+            "W_D of one bearing at 0.30 m [J]",
+            got.cycle_loss,
+        ),
+        ("Table 1(a)", "design targets", REPRODUCED, "T_bi as secant period at x_max [s]", got.period),
+        ("Table 1(b)", "bearings", REPRODUCED, "α designed from Table 1(a) [-]", designed.alpha),
+    )
+
+
+LOW, HIGH = 0.10, 0.45  # rad
+TOLERANCE = 1e-5  # rad
+LONGEST = 8.0  # s, of the rocking periods looked at
+# who stays upright
+BOTH, ONLY_ISOLATED, ONLY_FREE, NEITHER = range(4)
+CATEGORIES = ("both stay upright", "only the isolated one does", "only the free-standing one does", "both overturn")
+WITHIN = "only the isolated one does, within 0.30 m"
+SEEDS = 12
+
+
+def vulnerable_period(motion: Motion, slenderness: float, step: float = 0.02) -> float:
+    """Largest rocking period T_r [s] up to `LONGEST` at which a block overturns, on a grid of `step`; 0 if none."""
+    periods = np.arange(LONGEST, 0.4, -step)
+    overturns = rocking_spectrum(motion, periods, slenderness).overturns
+    return round(float(periods[overturns].max(initial=0.0)), 6)
+
+
+def claims(motion: Motion, quick: bool = False) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
+    """Rows: for each of the paper's three claims the intervals of slenderness in which it holds; then where all do.
+
+    Also the arrays of vulnerable period over slenderness.
+    """
+    free, isolated = caryatid(FREE, motion), caryatid(ISOLATED, motion)
+    scan, step, near = (29, 0.1, 1e-2) if quick else (71, 0.02, 1e-3)
+
+    def run(scene, points):
+        return simulate_many([scene.with_(block={"slenderness": point}) for point in points])
+
+    def vulnerable(points):
+        periods = np.array([vulnerable_period(motion, point, step) for point in points])
+        return abs(periods - VULNERABLE_PERIOD) <= VULNERABLE_ABOUT
+
+    tests = {
+        "free-standing overturns": (lambda points: run(free, points).overturns, 141, TOLERANCE),
+        f"vulnerable below T_r = {VULNERABLE_PERIOD:g} ± {VULNERABLE_ABOUT:g} s": (vulnerable, scan, near),
+        "isolated does not rock": (lambda points: ~run(isolated, points).lifted, 141, TOLERANCE),
+    }
+    rows = []
+    for claim, (holds, points, tolerance) in tests.items():
+        search = boundaries(LOW, HIGH, points, tolerance)
+        (column,) = drive([search], partial(_outcomes, holds))
+        intervals = _intervals(column.transitions, bool(holds([LOW])[0]))
+        rows.append({"part": "claim", "claim": claim, "intervals": intervals, "evaluations": column.evaluations})
+    together = reduce(_overlap, [row["intervals"] for row in rows])
+    own, grid = free.block.slenderness, np.linspace(LOW, HIGH, scan)
+    rows += [
+        {"part": "claim", "claim": "all three", "intervals": together, "evaluations": None},
+        {"part": "vulnerable", "slenderness": own, "step": step, "period": vulnerable_period(motion, own, step)},
+    ]
+    periods = np.array([vulnerable_period(motion, float(gamma), step) for gamma in grid])
+    return rows, {"claims/slenderness": grid, "claims/vulnerable period": periods}
+
+
+def _outcomes(holds, batch):
+    return list(map(bool, holds([point for _, point in batch])))
+
+
+def uplift_slenderness(motion: Motion) -> float:
+    """Least slenderness [rad] that stays down on the bearings, from the acceleration alone: atan(max|a|/g).
+
+    A block that stays down does not change the acceleration of its base, so any that does gives it.
+    """
+    scene = caryatid(ISOLATED, motion).with_(block={"slenderness": 1.2})
+    return math.atan(simulate(scene, history=False).peak_base_acceleration / scene.gravity)
+
+
+def _intervals(transitions, holds_at_low):
+    edges = [LOW] if holds_at_low else []
+    edges += [transition.high if transition.after else transition.low for transition in transitions]
+    edges += [HIGH] if len(edges) % 2 else []
+    return [edges[k : k + 2] for k in range(0, len(edges), 2)]
+
+
+def _overlap(ones, others):
+    pairs = [(max(a[0], b[0]), min(a[1], b[1])) for a in ones for b in others]
+    return [[low, high] for low, high in sorted(pairs) if low < high]
+
+
+def grid(quick: bool, fine: bool = True) -> tuple[np.ndarray, np.ndarray]:
+    """(slendernesses [rad], intensities [-])."""
+    slendernesses, intensities = (15, 12) if quick else (71, 56) if fine else (36, 34)
+    return np.linspace(LOW, HIGH, slendernesses), np.linspace(0.25, 3.0, intensities)
+
+
+def benefit(
+    motion: Motion, slendernesses: np.ndarray, intensities: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Category (uint8), whether the isolated block lifts, and its peak base displacement [m], shape (n, k).
+
+    The displacement is NaN where the isolated block overturns: runs end when that is certain.
+    """
+    scaled = [motion.scaled(float(factor)) for factor in intensities]
+    changes = [{"block": {"slenderness": float(gamma)}, "motion": one} for gamma, one in product(slendernesses, scaled)]
+    shape = len(slendernesses), len(intensities)
+    free, isolated = (
+        simulate_many([scene.with_(**change) for change in changes])
+        for scene in (caryatid(FREE, motion), caryatid(ISOLATED, motion))
+    )
+    if free.failed.any() or isolated.failed.any():
+        raise RuntimeError("the analytic model failed on a scene of the map; report it with its slenderness")
+    category = np.select(
+        [~free.overturns & ~isolated.overturns, ~isolated.overturns, ~free.overturns],
+        [BOTH, ONLY_ISOLATED, ONLY_FREE],
+        NEITHER,
+    )
+    displacement = np.where(isolated.overturns, np.nan, isolated.peak_base_displacement)
+    return (
+        category.astype(np.uint8).reshape(shape),
+        isolated.lifted.reshape(shape),
+        displacement.astype(np.float32).reshape(shape),
+    )
+
+
+def maps(motion: Motion, quick: bool = False) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
+    """(rows, arrays): shares of the map of `motion` and of synthetic motions' maps, and the map itself."""
+    fine, coarse = grid(quick), grid(quick, fine=False)
+    found = benefit(motion, *fine)
+    rows = [_shares("this motion", *found)]
+    names = ("slenderness", "intensity", "category", "isolated lifts", "isolated displacement")
+    arrays = {f"benefit/{name}": values for name, values in zip(names, (*fine, *found), strict=True)}
+    for seed in range(3 if quick else SEEDS):
+        rows.append(_shares(f"synthetic, seed {seed}", *benefit(synthetic_motion(seed=seed), *coarse)))
+    return rows, arrays
+
+
+def _shares(name, category, lifted, displacement):
+    shares = {text: float((category == kind).mean()) for kind, text in enumerate(CATEGORIES)}
+    within = (category == ONLY_ISOLATED) & (displacement <= X_MAX)
+    return {
+        "part": "benefit",
+        "motion": name,
+        "cells": int(category.size),
+        **shares,
+        WITHIN: float(within.mean()),
+        "isolated lifts": float(lifted.mean()),
+        "beyond x_max": float((displacement > X_MAX).mean()),
+    }
+
 
 # Why one engine's rows cannot be computed anew by themselves, see `Study.whole`.
 WHOLE = "its answer is several files, under a motion that they do not hold"

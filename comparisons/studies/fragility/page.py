@@ -7,12 +7,14 @@ from scipy.stats import norm
 
 from engines.comparison import FALL
 
-from ...running.provenance import Result
-from ...showing.charts import REFERENCE, Axis, Chart, figure
-from ...showing.figures import as_it_comes, beside, leading, ranks, subject
-from ...showing.glance import Glance, counted
-from ...showing.parts import NAME, Column, Head, Judgement, Page, grouped, number, percent, short, table, where
-from ...showing.wording import ends, ends_in_words, equal_mark, least_shown, left_out, tally
+from ...execution.provenance import Result
+from ...plotting.charts import REFERENCE, Axis, Chart, figure
+from ...plotting.figures import as_it_comes, beside, leading, ranks, subject
+from ...plotting.glance import Glance, counted
+from ...plotting.parts import Head, Judgement, Page, grouped, table, where
+from ...plotting.wording import ends, ends_in_words, equal_mark, least_shown, left_out, tally
+from ...schemas.columns import NAME, Column, number, percent, short
+from .study import COLUMNS
 
 LEVEL = 0.05  # of the test between an engine and the model, and least p of a curve that is shown
 OVERTURNING = "overturning"
@@ -23,24 +25,21 @@ TICKS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)
 OUTCOMES = ("both_stand", "both_overturn", "only_a", "only_b")
 RATIOS = (0.5, 0.7, 1.0, 1.4, 2.0)  # of medians, as ticks
 
-SCENE, STATE = (
-    Column("scene", "scene"),
-    Column("limit state", lambda row: row["state"].replace("displacement", "displ.")),
-)
+SCENE, STATE = (COLUMNS["scene"], Column("limit state", lambda row: row["state"].replace("displacement", "displ.")))
 MEASURE = Column(
     "intensity measure", lambda row: f"{row['measure'].replace('_r', 'ᵣ')} [{UNITS.get(row['measure'], '-')}]"
 )
-MEDIAN_SHIFT = Column("median over the model's [-]", "median_shift", digits=3, within="median_interval")
+MEDIAN_SHIFT = COLUMNS["median_shift"]
 COMPARED = Column("runs compared [-]", lambda row: sum(row[key] for key in OUTCOMES))
 EFFECT = (
     COMPARED,
-    Column("failed [-]", "left_out"),
+    COLUMNS["left_out"],
     Column("exceeded: model alone, engine alone [-]", "{only_a}, {only_b}"),
-    Column("p (McNemar, Holm) [-]", "p_holm"),
+    COLUMNS["p_holm"],
     MEDIAN_SHIFT,
-    Column("dispersion over the model's [-]", "dispersion_shift", digits=3, within="dispersion_interval"),
-    Column("detectable median ratio [-]", "detectable_shift", digits=3),
-    Column("detectable difference", "detectable_difference", percent=True),
+    COLUMNS["dispersion_shift"],
+    COLUMNS["detectable_shift"],
+    COLUMNS["detectable_difference"],
 )
 
 
@@ -75,7 +74,7 @@ def page(result: Result) -> Page:
                 "motion",
                 found,
                 NAME,
-                Column("runs judged [-]", "runs"),
+                COLUMNS["runs"],
                 Column("that differ or fail [-]", "differing"),
                 *ends(found),
                 Column("share that differs or fails", "share", percent=True, within="interval"),
@@ -119,18 +118,18 @@ def page(result: Result) -> Page:
                 STATE,
                 MEASURE,
                 Column("exceeded [-]", "{exceeded} of {size}"),
-                Column("median", "median", within="median_interval"),
-                Column("dispersion [-]", "dispersion", within="dispersion_interval"),
-                Column("p of the fit [-]", "p_value"),
+                COLUMNS["median"],
+                COLUMNS["dispersion"],
+                COLUMNS["p_value"],
                 Column("fits", lambda row: "no curve" if row["median"] is None else "yes" if _fits(row) else "no"),
             ),
             table(
                 "Runs of the analytic model",
                 where(result.rows, part="check"),
                 SCENE,
-                Column("runs [-]", "runs"),
-                Column("undecided at their end [-]", "undecided"),
-                Column("failed [-]", "failed"),
+                COLUMNS["runs"].called("runs"),
+                COLUMNS["undecided"],
+                COLUMNS["failed"],
             ),
         ),
         how=_how(result.settings),

@@ -2,6 +2,8 @@
 
 Blocks and motions of the cloud are random. No two runs share a motion, a block or an intensity, so that runs are
 independent. Accelerations are evenly spread over the logarithm, far below and far above what matters.
+
+Fragility curves: of the analytic model, and what an engine makes of them.
 """
 
 import math
@@ -10,21 +12,218 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy.stats import norm
 
 from analytic import Response, SampledMotion, Scene, load_scene, synthetic_motion
-from analytic.caryatid import BASE, BEARINGS, MASS
-from analytic.design import properties
-from analytic.linear_oscillator import displacement_spectrum
-from analytic.rocking import RockingModel
+from analytic.bearing_scan import displacement_spectrum
+from analytic.rocking import RockingModel, properties
+from analytic.scene import BASE, BEARINGS, MASS
 from engines import get_engine
 from engines.comparison import END, Reference, compare
 
-from ...ensembles.motions import peak_velocity
-from ...measuring.statistics import class_of
-from ...running.cases import Case
-from ...running.plan import Batch, Computed, Plan, Request
-from ...running.sweep import Row
-from .fits import State, effects, fits
+from ...ensembles import peak_velocity
+from ...execution.cases import Case
+from ...execution.plan import Batch, Computed, Plan, Request
+from ...execution.sweep import Row
+from ...metrics.statistics import (
+    class_of,
+    compare_outcomes,
+    draws,
+    fit_fragility,
+    goodness,
+    holm,
+    interval,
+    points,
+    resampled,
+)
+from ...schemas.columns import declared, flag_of, list_of, number_of, whole_of, word_of
+from ..rows import SHARED
+
+# What its rows have; see `comparisons.studies.rows`.
+COLUMNS = SHARED | declared(
+    word_of("state", "state", "limit state"),
+    word_of("measure", "measure", "intensity measure"),
+    whole_of("size", "size", "runs that failed in no solver compared"),
+    whole_of("exceeded", "exceeded", "of these, runs beyond the limit state"),
+    list_of("points", "points", "shares beyond it in classes of intensity, with 95 % Wilson intervals"),
+    number_of("median", "median", "of the lognormal curve", "of the measure", within="median_interval"),
+    number_of(
+        "dispersion",
+        "dispersion",
+        "of the lognormal curve: standard deviation of ln(intensity)",
+        within="dispersion_interval",
+    ),
+    list_of(
+        "median_interval",
+        "median interval",
+        "interval of the median, or of its shift (95 %, bootstrap over runs): [low, high]",
+        "of the measure, or -",
+    ),
+    list_of(
+        "dispersion_interval",
+        "dispersion interval",
+        "interval of the dispersion, or of its shift (95 %, bootstrap over runs): [low, high]",
+    ),
+    number_of("p_value", "p of the fit", "of the curve's fit, or of McNemar's exact test of the outcomes"),
+    whole_of("undecided", "undecided at their end", "runs that ended before their outcome was certain"),
+    number_of("cpu_per_run", "cpu per run", "CPU time: mean", "s"),
+    whole_of("left_out", "failed", "runs that failed in one of the two"),
+    number_of("difference", "difference", "of the shares beyond the limit state, engine less model"),
+    number_of(
+        "detectable_difference",
+        "detectable difference",
+        "that the test would have found with 80 % probability",
+        percent=True,
+    ),
+    number_of(
+        "median_shift",
+        "median over the model's",
+        "median of the engine over that of the model",
+        digits=3,
+        within="median_interval",
+    ),
+    number_of(
+        "dispersion_shift",
+        "dispersion over the model's",
+        "dispersion of the engine over that of the model",
+        digits=3,
+        within="dispersion_interval",
+    ),
+    number_of(
+        "detectable_shift",
+        "detectable median ratio",
+        "ratio of medians that the test would have found with 80 % probability",
+        digits=3,
+    ),
+    number_of("p_holm", "p (McNemar, Holm)", "p_value adjusted over limit states, by Holm"),
+    word_of("class", "class", '"right" or "differs" (how the block ends, and when), "failed" or "left out"'),
+    whole_of("seed", "seed", "of the synthetic motion"),
+    flag_of("overturns", "overturns", "whether the block overturns in the engine; null: the run failed"),
+    flag_of("model_overturns", "model overturns", "whether it overturns in the model"),
+)
+PARTS = {
+    "fit": """scene state measure size exceeded points median? dispersion? median_interval? dispersion_interval?
+            p_value? reason?""",
+    "check": "scene engine variant runs undecided failed",
+    "run": "scene engine variant seed comparable class quantities? model_overturns overturns?",
+    "cost": "scene engine variant runs cpu_per_run?",
+    "effect": """scene engine variant state left_out measure both_stand both_overturn only_a only_b p_value
+            difference detectable_difference? median_shift? median_interval? dispersion_shift? dispersion_interval?
+            detectable_shift? reason? p_holm""",
+    "failure": "scene engine variant seed kind reason message",
+}
+
+DRAWS, POINTS = 200, 14
+PAIRED_DRAWS = 500
+SHIFTS = ("median_shift", "median_interval", "dispersion_shift", "dispersion_interval", "detectable_shift")
+
+
+@dataclass(frozen=True)
+class State:
+    """A limit state: exceeded where a run's value of this key is above the limit; measure: of its curve's intensity."""
+
+    key: str
+    limit: float
+    measure: str
+
+    def exceeded(self, values: dict[str, np.ndarray]) -> np.ndarray:
+        """1 where a run exceeds it, 0 where not, NaN where it failed; shape (n,)."""
+        found = values[self.key]
+        return np.where(np.isnan(found), np.nan, found > self.limit)
+
+
+def fits(
+    measures: dict[str, np.ndarray], states: dict[str, State], values: dict[str, np.ndarray]
+) -> list[dict[str, Any]]:
+    """A row per limit state.
+
+    median, dispersion and their intervals (bootstrap over runs); p_value of the curve's fit; points: shares with Wilson
+    intervals. reason: why there is no curve, or None.
+    """
+    rows = []
+    for name, state in states.items():
+        exceeded = state.exceeded(values)
+        sound = ~np.isnan(exceeded)
+        row = {"part": "fit", "state": name, "measure": state.measure, "size": int(sound.sum())}
+        row["exceeded"] = int(exceeded[sound].sum())
+        rows.append(row | _curve(measures[state.measure][sound], exceeded[sound]))
+    return rows
+
+
+def _curve(intensity, exceeded):
+    found = {"points": points(intensity, exceeded, POINTS)}
+    try:
+        curve = fit_fragility(intensity, exceeded)
+    except ValueError as error:
+        lost = dict.fromkeys(("median", "dispersion", "median_interval", "dispersion_interval", "p_value"))
+        return {**found, **lost, "reason": str(error)}
+    medians, spreads = resampled(intensity, exceeded, draws(DRAWS, len(exceeded)))
+    return {
+        **found,
+        "median": curve.median,
+        "dispersion": curve.dispersion,
+        "median_interval": interval(curve.median, medians),
+        "dispersion_interval": interval(curve.dispersion, spreads),
+        "p_value": goodness(intensity, exceeded, curve),
+        "reason": None,
+    }
+
+
+def effects(
+    measures: dict[str, np.ndarray],
+    chosen: np.ndarray,
+    states: dict[str, State],
+    values: tuple[dict[str, np.ndarray], dict[str, np.ndarray]],
+    pair: tuple[str, str],
+) -> list[dict[str, Any]]:
+    """A row per limit state: `compare` of the two on the runs that failed in neither, and what it makes of the curve.
+
+    median_shift and dispersion_shift: the engine's median and dispersion over the model's, with intervals by paired
+    bootstrap over runs; detectable_shift: the ratio of medians whose
+    difference of probability the test would have found with 80 % probability. p_holm: p adjusted over limit states.
+
+    Parameters
+    ----------
+    measures : {name: (n,)}
+    chosen : indices of the runs compared, shape (k,)
+    states : {name: `State`}
+    values : of the model and of the engine, arrays of shape (k,)
+    pair : engine and variant
+    """
+    rows: list[dict[str, Any]] = []
+    for name, state in states.items():
+        ours, theirs = map(state.exceeded, values)
+        sound = ~np.isnan(ours) & ~np.isnan(theirs)
+        if sound.any():
+            row: dict[str, Any] = {"part": "effect", "engine": pair[0], "variant": pair[1], "state": name}
+            row |= {"left_out": int((~sound).sum()), "measure": state.measure}
+            row |= compare_outcomes(ours[sound] == 1, theirs[sound] == 1)
+            intensity = measures[state.measure][chosen[sound]]
+            rows.append(row | _shift(intensity, ours[sound], theirs[sound], row["detectable_difference"]))
+    adjusted = holm([row["p_value"] for row in rows]) if rows else []
+    return [row | {"p_holm": float(p_value)} for row, p_value in zip(rows, adjusted, strict=True)]
+
+
+def _shift(intensity, ours, theirs, detectable):
+    """Ratios of the two fits; None, with the reason, where one of them does not exist."""
+    found = dict.fromkeys(SHIFTS)
+    try:
+        model, engine = (fit_fragility(intensity, exceeded) for exceeded in (ours, theirs))
+    except ValueError as error:
+        return {**found, "reason": str(error)}
+    weights = draws(PAIRED_DRAWS, len(ours))
+    medians, spreads = zip(*(resampled(intensity, exceeded, weights) for exceeded in (ours, theirs)), strict=True)
+    found["median_shift"] = engine.median / model.median
+    found["dispersion_shift"] = engine.dispersion / model.dispersion
+    if (ours != theirs).any():  # else bootstrap knows of no difference: no width, which would be certainty
+        found["median_interval"] = interval(found["median_shift"], medians[1] / medians[0])
+        found["dispersion_interval"] = interval(found["dispersion_shift"], spreads[1] / spreads[0])
+    if detectable is not None:
+        # a shift d of ln(median) changes the probability of a run by phi(z) d/dispersion
+        steepness = (norm.pdf(np.log(intensity / model.median) / model.dispersion) / model.dispersion).mean()
+        found["detectable_shift"] = float(np.exp(detectable / steepness))
+    return {**found, "reason": None}
+
 
 X_MAX = 0.30  # m, what the bearings are built for: Table 1(a) of the paper
 PERIOD = properties(BEARINGS, MASS + BASE.mass, X_MAX).period  # s, of isolation, secant at X_MAX
@@ -132,7 +331,7 @@ def beside_model(case: Case, response: Response) -> dict[str, Any]:
 def plan(request: Request, scenes: dict[str, Any] | None = None, runs: tuple[int, int, int] | None = None) -> Plan:
     """The plan of the study; an answer with one scene more each time.
 
-    Rows by "part": "fit" and "effect" (see `comparisons.studies.fragility.fits`), "run" (an engine's, its class by how
+    Rows by "part": "fit" and "effect" (see `comparisons.studies.fragility.study`), "run" (an engine's, its class by how
     the block ends), "cost" (CPU seconds per run), "check" and "failure". The model with its restitution changed by
     `CHANGE` is the variant "perturbed" of "analytic". Arrays, float32: ``<scene>/<drawn>``, of all runs, with PGV and,
     on bearings, Sa; ``<scene>/<engine>, <variant>/tilt`` and ``/displacement`` of the first in ``<scene>/near``

@@ -4,10 +4,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from ...running.provenance import Result
-from ...showing.charts import Axis, Chart, figure, key_of, log_axis, room
-from ...showing.parts import Column, Figure, Page, grouped, number, short, table, where
-from ...showing.wording import TRUSTED, listed
+from ...execution.provenance import Result
+from ...plotting.charts import Axis, Chart, figure, key_of, log_axis, room
+from ...plotting.parts import Figure, Page, grouped, table, where
+from ...plotting.wording import TRUSTED, listed
+from ...schemas.columns import Column, number, short
+from .study import COLUMNS
 
 AS_IT_IS = "no mistake"
 MARKS: dict[str, dict[str, Any]] = {
@@ -75,7 +77,7 @@ def _counts(made, harmless):
     return table(
         "How many mistakes",
         rows,
-        Column("engine", "engine"),
+        COLUMNS["engine"].called("engine"),
         Column("mistakes", "mistakes"),
         Column("another outcome, or a run that fails", "lost"),
         Column(f"of the others: e off by more than {TRUSTED:g}", "off"),
@@ -130,9 +132,9 @@ def _table(engine, rows):
         Column("outcome", "outcomes"),
         Column("error of restitution, rigid ground [-]", "rigid"),
         Column("on bearings [-]", "bearings"),
-        Column("by energy [-]", "energy"),
-        Column("tilt [slenderness]", "graph"),
-        Column("base displacement, of its peak [-]", "displacement"),
+        COLUMNS["energy"],
+        COLUMNS["graph"],
+        COLUMNS["displacement"],
     )
 
 

@@ -6,17 +6,53 @@ from typing import Any
 import numpy as np
 
 from analytic import PulseMotion, Response, Scene, load_scene, simulate
-from analytic.caryatid import caryatid_block
 from analytic.rocking import restitution
+from analytic.scene import caryatid_block
 from engines import get_engine
-from engines.contract import Engine
-from engines.mistakes import NO_MATTER, Mistake
+from engines.contract import NO_MATTER, Engine, Mistake
 from engines.swings import Trace
 
-from ...measuring.errors import impact_errors, rate_restitution, rms
-from ...measuring.scripts import NAME, SECONDS, ScriptFailed, as_written, run_script, version_of, with_mistake
-from ...running.cases import Case
-from ...running.plan import Batch, Computed, Plan, Request
+from ...execution.cases import Case
+from ...execution.plan import Batch, Computed, Plan, Request
+from ...metrics.errors import impact_errors, rate_restitution, rms
+from ...metrics.scripts import NAME, SECONDS, ScriptFailed, as_written, run_script, version_of, with_mistake
+from ...schemas.columns import declared, number_of, whole_of, word_of
+from ..rows import SHARED
+
+# What its rows have; see `comparisons.studies.rows`.
+COLUMNS = SHARED | declared(
+    word_of("mistake", "mistake", "its name; null: the script as it is"),
+    word_of("done", "done", "what was done, in words"),
+    word_of("group", "group", 'what it concerns: body, contact, steps, forces or motion; or "no matter"'),
+    word_of("expected", "expected", "outcome of the analytic model"),
+    word_of(
+        "outcome", "outcome", 'of the script\'s run: stands, rocks, overturns; "failed": no end, or a run that is none'
+    ),
+    word_of("reason", "reason", "why the run failed; null: it did not"),
+    number_of("error", "error", "error of restitution by the states at strong impacts: root mean square"),
+    number_of(
+        "energy",
+        "by energy",
+        "error of restitution by the rates of successive impacts, free rocking on rigid ground: root mean square",
+    ),
+    number_of(
+        "graph",
+        "tilt",
+        "largest difference of the tilt from the model's at one time, until either block is beyond its unstable point",
+        "slenderness",
+    ),
+    number_of(
+        "displacement",
+        "base displacement, of its peak",
+        "largest difference of the base displacement, as long",
+        "peak of the model's",
+    ),
+    whole_of("steps", "steps", "steps of the run"),
+)
+PARTS = {
+    "run": """engine variant scene mistake? done? group? expected outcome reason? error? energy? graph?
+            displacement? steps?"""
+}
 
 QUICK = ("inertia + 1 %", "default damping", "10 × softer")
 NOTHING = dict.fromkeys(("error", "energy", "graph", "displacement", "steps"))

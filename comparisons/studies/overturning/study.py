@@ -12,7 +12,10 @@ from analytic import load_scene, overturning_map, simulate
 from engines import get_engine
 from engines.contract import Variant
 
-from ...measuring.boundaries import (
+from ...execution.cases import variant_settings
+from ...execution.plan import Computed, Plan, Request
+from ...execution.progress import log
+from ...metrics.boundaries import (
     HIGHEST,
     LEVEL_DISTANCES,
     LEVEL_TOLERANCE,
@@ -27,10 +30,44 @@ from ...measuring.boundaries import (
     under,
     usual_settings,
 )
-from ...measuring.statistics import Confusion, cohen_kappa, confusion, equality
-from ...running.cases import variant_settings
-from ...running.plan import Computed, Plan, Request
-from ...running.progress import log
+from ...metrics.statistics import Confusion, cohen_kappa, confusion, equality
+from ...schemas.columns import declared, flag_of, list_of, number_of, whole_of, word_of
+from ..rows import BOUNDARY, BOUNDARY_ROW, EDGE, PULSE, SHARED, SOUGHT
+
+# What its rows have; see `comparisons.studies.rows`.
+COLUMNS = (
+    SHARED
+    | BOUNDARY
+    | declared(
+        whole_of("runs", "runs judged", "runs that the search took; of a scan, those that are judged"),
+        list_of(
+            "interval",
+            "interval",
+            "of a scan: 95 % interval of the share that differs or failed (Wilson, by frequency)",
+        ),
+        word_of("region", "region", 'of a confusion: "scan", or "outside", "inside" the band, "held down" where N < 0'),
+        number_of("kappa", "kappa", "Cohen's kappa of the outcomes"),
+        number_of("kappa_low", "kappa low", "lower end of kappa's 95 % interval"),
+        number_of("kappa_high", "kappa high", "upper end of kappa's 95 % interval"),
+        flag_of("analytic_overturns", "analytic overturns", "whether the block overturns in the analytic model"),
+        number_of(
+            "distance",
+            "distance from the nearest boundary",
+            "from the nearest boundary of the analytic model, relative",
+            percent=True,
+        ),
+    )
+)
+PARTS = {
+    "edge": EDGE,
+    "shift": BOUNDARY_ROW,
+    "refinement": BOUNDARY_ROW,
+    "confusion": """engine variant level ground region both_stand both_overturn only_a only_b kappa? kappa_low?
+            kappa_high?""",
+    "scan": "engine variant level runs failed both_stand both_overturn only_a only_b interval",
+    "disagreement": f"{PULSE} min_normal analytic_overturns distance?",
+    "failure": SOUGHT,
+}
 
 # The isolated Caryatid itself overturns at base displacements far beyond its bearings' 0.30 m only; a more slender
 # block on the same bearings does at amplitudes of a strong earthquake.

@@ -6,30 +6,17 @@ from typing import Any
 
 import numpy as np
 
-from analytic.records.fema import PREFIX
+from analytic.records.content import PREFIX
 from engines.comparison import FALL
 
-from ...running.provenance import Result
-from ...showing.charts import Axis, Chart, figure, key_of
-from ...showing.figures import as_it_comes, kind, leading, mains, subject
-from ...showing.glance import Glance, Peaks, counted
-from ...showing.parts import (
-    NAME,
-    Column,
-    Figure,
-    Judgement,
-    Mark,
-    Page,
-    grouped,
-    number,
-    percent,
-    short,
-    table,
-    typeset,
-    where,
-)
-from ...showing.wording import NOT_COMPARED, ends, ends_in_words, equal_mark, least_shown, left_out, tally
-from .study import ERRORS
+from ...execution.provenance import Result
+from ...plotting.charts import Axis, Chart, figure, key_of
+from ...plotting.figures import as_it_comes, kind, leading, mains, subject
+from ...plotting.glance import Glance, Peaks, counted
+from ...plotting.parts import Figure, Judgement, Mark, Page, grouped, table, where
+from ...plotting.wording import NOT_COMPARED, ends, ends_in_words, equal_mark, least_shown, left_out, tally
+from ...schemas.columns import NAME, Column, number, percent, short, typeset
+from .study import COLUMNS, ERRORS
 
 MANY = 0.95  # share of the runs whose error a quantile tells
 FALLS = "overturns"
@@ -47,8 +34,8 @@ WORDS = {
 }
 
 RECORD = Column("record", lambda row: f"{row['record'].removeprefix(PREFIX)}/{row['component']}")
-CONFIGURATION = Column("configuration", "configuration")
-JUDGED, DIFFERING = Column("runs judged [-]", "runs"), Column("that differ or fail [-]", "differing")
+CONFIGURATION = COLUMNS["configuration"]
+JUDGED, DIFFERING = COLUMNS["runs"], Column("that differ or fail [-]", "differing")
 SHARE = Column("share that differs or fails", "share", percent=True, within="interval")
 
 
@@ -76,7 +63,7 @@ def page(result: Result) -> Page:
                 "Wilson intervals by record",
                 both,
                 NAME,
-                Column("kind", "tier"),
+                COLUMNS["tier"],
                 *counts,
             ),
         ),
@@ -94,10 +81,10 @@ def page(result: Result) -> Page:
                 summaries,
                 NAME,
                 CONFIGURATION,
-                Column("peak tilt, common", "tilt_error", percent=True),
-                Column("peak base displacement, common", "displacement_error", percent=True),
-                Column("peak tilt, own", "own_tilt_error", percent=True),
-                Column("peak base displacement, own", "own_displacement_error", percent=True),
+                COLUMNS["tilt_error"],
+                COLUMNS["displacement_error"],
+                COLUMNS["own_tilt_error"],
+                COLUMNS["own_displacement_error"],
             ),
             table(
                 "Runs that differ or fail; tilt over slenderness",
@@ -105,9 +92,9 @@ def page(result: Result) -> Page:
                 NAME,
                 RECORD,
                 CONFIGURATION,
-                Column("model", "model_outcome"),
-                Column("engine", "outcome"),
-                Column("peak tilt, model [-]", "model_tilt"),
+                COLUMNS["model_outcome"],
+                COLUMNS["outcome"],
+                COLUMNS["model_tilt"],
                 Column("peak tilt, engine [-]", lambda row: row.get("tilt")),
                 Column("in what", lambda row: typeset("; ".join(row.get("differences", ()))) or None),
             ),

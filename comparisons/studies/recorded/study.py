@@ -12,23 +12,74 @@ from typing import Any
 import numpy as np
 
 from analytic import Base, Bearings, Response, SampledMotion, Scene, SceneError, simulate
-from analytic.bearing import BearingLaw
-from analytic.caryatid import MASS, caryatid_block
-from analytic.design import design_bearings
-from analytic.records.fema import PREFIX
+from analytic.records.content import PREFIX
 from analytic.records.folder import folder_motions
 from analytic.response import OUTCOMES
+from analytic.rocking import BearingLaw, design_bearings
+from analytic.scene import MASS, caryatid_block
 from engines import get_engine
 from engines.comparison import END, LEAST_DISPLACEMENT, Reference, compare
-from engines.matching import LEAST_TILT
+from engines.events import LEAST_TILT
 
-from ...ensembles.motions import Folder, peak_velocity, source_of
-from ...measuring.horizon import PERTURBATION, SAMPLES_PER_PERIOD, sensitivity_horizon, solver_horizon
-from ...measuring.statistics import EQUAL, class_of
-from ...running.cases import Case, variant_settings
-from ...running.plan import Batch, Computed, Plan, Request
-from ...running.provenance import Result
-from ...running.sweep import Row
+from ...ensembles import Folder, peak_velocity, source_of
+from ...execution.cases import Case, variant_settings
+from ...execution.plan import Batch, Computed, Plan, Request
+from ...execution.provenance import Result
+from ...execution.sweep import Row
+from ...metrics.errors import PERTURBATION, SAMPLES_PER_PERIOD, sensitivity_horizon, solver_horizon
+from ...metrics.statistics import EQUAL, class_of
+from ...schemas.columns import declared, number_of, word_of
+from ..rows import SHARED
+
+# What its rows have; see `comparisons.studies.rows`.
+COLUMNS = SHARED | declared(
+    word_of("record", "record", "name of the record, of both its components"),
+    word_of("component", "component", 'of the record: "a" or "b"'),
+    word_of("configuration", "configuration", '"free-standing" or "isolated"'),
+    number_of("intensity", "intensity", "peak ground velocity times omega_r over g tan(slenderness), as scaled"),
+    number_of("scale", "scale", "factor on the motion as it was recorded"),
+    number_of("base_mass", "base mass", "of the base over the block's"),
+    number_of("period", "period", "of block and base on the bearings, secant at x_max of the settings", "s"),
+    number_of("damping", "damping", "equivalent viscous damping of the bearings there, over the critical one"),
+    word_of("law", "law", "of the bearings"),
+    number_of("tilt", "tilt", "peak tilt of the run over the slenderness"),
+    number_of("displacement", "displacement", "peak base displacement of the run", "m"),
+    number_of("horizon", "horizon", "time up to which peaks are compared in all engines", "s"),
+    number_of("own_horizon", "own horizon", "time up to which the engine's own errors let peaks be compared", "s"),
+    word_of("class", "class", '"right" or "differs" (how the block ends, and when), "failed" or "left out"'),
+    word_of("model_outcome", "model", "of the analytic model"),
+    number_of("model_tilt", "peak tilt, model", "peak tilt of the analytic model over the slenderness"),
+    number_of("model_displacement", "model displacement", "peak base displacement of the analytic model", "m"),
+    number_of(
+        "tilt_error", "peak tilt, common", "relative error of the peak tilt up to the common horizon", percent=True
+    ),
+    number_of(
+        "displacement_error",
+        "peak base displacement, common",
+        "relative error of the peak base displacement up to the common horizon",
+        percent=True,
+    ),
+    number_of(
+        "own_tilt_error",
+        "peak tilt, own",
+        "relative error of the peak tilt up to the engine's own horizon",
+        percent=True,
+    ),
+    number_of(
+        "own_displacement_error",
+        "peak base displacement, own",
+        "relative error of the peak base displacement up to the engine's own horizon",
+        percent=True,
+    ),
+)
+PARTS = {
+    "scene": """engine variant record component configuration slenderness intensity scale outcome tilt displacement
+            comparable horizon""",
+    "run": """engine variant tier record component configuration class comparable horizon model_outcome model_tilt
+            model_displacement outcome | differences quantities tilt displacement own_horizon tilt_error?
+            displacement_error? own_tilt_error? own_displacement_error?""",
+    "absent": "engine variant reason",
+}
 
 SEED = 695
 X_MAX = 0.30  # m, at which period and damping of the bearings hold

@@ -1,48 +1,295 @@
-"""What is shown of the restitution study."""
+"""What is shown of the restitution study.
 
+Columns of the study's tables and axes.
+
+What is shown of the causes of errors, each changed alone, and of eq. (8).
+
+What is shown of why engines err: the first impact of a block released, taken apart.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
-from ...running.provenance import Result
-from ...showing.figures import as_it_comes, beside, lines, shades, subject
-from ...showing.parts import (
-    NAME,
-    RESTITUTION,
-    Column,
-    Head,
-    Judgement,
-    Mark,
-    Page,
-    grouped,
-    number,
-    setting_of,
-    short,
-    table,
-    where,
-)
-from ...showing.wording import TRUSTED, USABLE, rating, trust, with_counts
-from .causes import causes, equation_8
-from .columns import (
-    BASE,
-    BASE_RATIO,
-    CPU,
-    DRAWN_ERROR,
-    ERROR,
-    FAILED,
-    GAMMA,
-    GROUND,
-    JUMP,
-    LATE,
-    LOST,
-    MEAN,
-    PERIOD,
-    STATE,
-    WORST,
-    WORST_JUMP,
-    WORST_STATE,
-    ground,
-)
-from .contact import contact
+import numpy as np
+
+from ...execution.provenance import Result
+from ...metrics.errors import rms
+from ...plotting.charts import Axis, Chart, figure, key_of
+from ...plotting.figures import as_it_comes, beside, kind, lines, shades, subject
+from ...plotting.parts import RESTITUTION, Figure, Head, Judgement, Mark, Page, Table, grouped, setting_of, table, where
+from ...plotting.wording import TRUSTED, USABLE, rating, trust, with_counts
+from ...schemas.columns import NAME, Column, Row, number, percent, short
+from .study import COLUMNS
+
+FLOOR = 1e-9  # errors below are drawn here
+
+ERROR = COLUMNS["rms"]
+DRAWN_ERROR = Column(ERROR.head, lambda row: row["rms"] and max(row["rms"], FLOOR))
+MEAN, WORST = COLUMNS["bias"], COLUMNS["worst"]
+JUMP = COLUMNS["jump_rms"]
+STATE = COLUMNS["rms_state"]
+WORST_STATE = COLUMNS["worst_state"]
+WORST_JUMP = COLUMNS["jump_worst"]
+LATE = COLUMNS["time_rms"]
+LOST = COLUMNS["lost"]
+CPU = COLUMNS["cpu_per_second"]
+FAILED = Column("failed runs [-]", "{failed} of {runs}")
+GROUND = COLUMNS["ground"]
+GAMMA = COLUMNS["slenderness"]
+BASE_RATIO, PERIOD = COLUMNS["ratio"], Column("isolation period [s]", "period")
+BASE = Column("base mass over block mass [-]", lambda row: "rigid" if row["ratio"] is None else short(row["ratio"]))
+
+
+def ground(row: Row) -> str:
+    """What the block of a row stands on."""
+    return "rigid ground" if row["ratio"] is None else "sliding base"
+
+
+def causes(result: Result, variants: Mapping[str, Row]) -> Iterator[Figure | Table | str | None]:
+    """Experiments that change one suspected cause: step phase, settings, friction, damping in flight."""
+    phases, damped = where(result.rows, part="phase"), where(result.rows, part="flight damping")
+    points = [
+        {**row, "phase": phase, "error": error / row["step"], "by": f"step {1e3 * row['step']:g} ms"}
+        for row in phases
+        for key in (f"phase/{row['engine']}/{row['variant']}/{row['step']:g}",)
+        for phase, error in zip(result.arrays[f"{key}/phase"], result.arrays[f"{key}/error"], strict=True)
+    ]
+    yield lines(
+        points,
+        Column("place of the impact within the step [-]", "phase"),
+        Column("error of restitution over step [1/s]", "error"),
+        "Step phase: with a fixed step the error depends on where in the step the impact falls.",
+        panel=NAME.of,
+        by="by",
+        joined=False,
+    )
+    yield table(
+        "Step phase: a sawtooth of the impact's place within the step, fitted to the error by swings",
+        phases,
+        NAME,
+        Column("step [ms]", lambda row: 1e3 * row["step"]),
+        COLUMNS["explained"],
+        Column("least error [-]", lambda row: row["least"] * row["step"]),
+        Column("greatest error [-]", lambda row: row["most"] * row["step"]),
+    )
+    settings = [{**row, "ground": ground(row)} for row in where(result.rows, part="experiment")]
+    changed: dict[str, Any] = dict(panel=lambda row: f"{row['experiment']}: {NAME.of(row)}", by="ground", log="xy")
+    needed = [("x", mu, f"{ground}: {number(mu, 2)}") for ground, mu in result.settings["friction_needed"].items()]
+    yield beside(
+        lines(
+            where(settings, experiment="stiffness"),
+            COLUMNS["value"].called("contact stiffness [N/m]"),
+            DRAWN_ERROR,
+            f"One setting changed alone, at slenderness {result.settings['experiment_slenderness']:g}.",
+            **changed,
+        ),
+        lines(
+            where(settings, experiment="friction"),
+            COLUMNS["value"].called("friction coefficient [-]"),
+            DRAWN_ERROR,
+            "Dashed: friction that the model's impact needs, horizontal over vertical impulse.",
+            rules=needed,
+            **changed,
+        ),
+    )
+    yield from _damping(damped, variants)
+    yield table(
+        "One setting changed at a time",
+        settings,
+        COLUMNS["experiment"],
+        NAME,
+        BASE,
+        COLUMNS["value"],
+        ERROR,
+        MEAN,
+        JUMP,
+        COLUMNS["jump_8"],
+        COLUMNS["jump_8_printed"],
+        CPU,
+        FAILED,
+    )
+    sought = {row["engine"] for row in (*phases, *damped, *result.settings["experiments"])}
+    if without := [engine for engine in result.settings["engines"] if engine not in sought]:
+        yield (
+            f"No cause was looked for in {', '.join(without)}: that takes a setting beside the accuracy parameter that "
+            "the engine's record names as one to change alone, or a tuned variant with a fixed step."
+        )
+
+
+def _damping(damped, variants):
+    """Blocks that need more friction than the variant's slide: they are in the table only."""
+    rows = [{**variants[NAME.of(row)], **row, "whose": NAME.of(row)} for row in damped]
+    stick = [row for row in rows if row["friction"] is None or row["friction_needed"] < row["friction"]]
+    predicted = [
+        {**same[0], "engine": "analytic", "by": "damped as it is", "error": same[0]["predicted"]}
+        for same in grouped(stick, "whose", "slenderness").values()
+    ]
+    yield lines(
+        [*predicted, *({**row, "error": row["measured"], "by": setting_of(row)} for row in stick)],
+        GAMMA,
+        Column("mean error of restitution [-]", "error"),
+        "Damping in flight, built into the engine: the error it gives the model alone, and the error measured, where "
+        "the block does not slide.",
+        panel="whose",
+        by="by",
+    )
+    yield table(
+        "Damping in flight, on rigid ground",
+        rows,
+        NAME,
+        Column("setting", setting_of),
+        GAMMA,
+        COLUMNS["predicted"],
+        COLUMNS["measured"],
+        COLUMNS["friction_needed"],
+        COLUMNS["friction"],
+    )
+
+
+def equation_8(result: Result, cells: Iterable[Row], ratings: Mapping[str, Row]) -> Iterator[Figure | None]:
+    """The base velocity jump against both forms, over slenderness and over the block's size."""
+    forms = {"jump_8": "(8) corrected", "jump_8_printed": "(8) as printed"}
+    defaults = result.settings["default_variants"]
+    own = [row for row in cells if defaults[row["engine"]] == row["variant"] and row["jump_8"] is not None]
+    sizes = [row for row in where(result.rows, experiment="size") if row["jump_8"] is not None]
+    over_slenderness = [
+        {"engine": engine, "slenderness": gamma, "error": rms([row[form] for row in rows]), "by": words}
+        for form, words in forms.items()
+        for (engine, gamma), rows in grouped(own, "engine", "slenderness").items()
+    ]
+    over_size = [{**row, "error": row[form], "by": words} for form, words in forms.items() for row in sizes]
+    trusted = [row for row in sizes if ratings[NAME.of(row)]["rating"] == "may be trusted"]
+    found = [percent(max((row[form] for row in trusted), default=None)) for form in forms]
+    jump = Column("jump over eq. (8), less 1, rms [-]", "error")
+    size = Column("size of the block R [m]", lambda row: row["value"] * result.settings["radius"])
+    yield beside(
+        lines(over_slenderness, GAMMA, jump, "Base velocity jump against eq. (8).", by="by", log="y"),
+        lines(
+            over_size,
+            size,
+            jump,
+            f"Over the block's size, in the variants that may be trusted, it is off by at most {found[0]} from the "
+            f"corrected form and by up to {found[1]} from the printed one, which has a factor R cos γ [m] too many. "
+            "The engines know nothing of the equation.",
+            by="by",
+            log="xy",
+        ),
+    )
+
+
+RIGID = "rigid ground"
+WINDOW = 20.0  # ms before and after the landing that are drawn
+MARKED = 40  # values of a line, at most, to mark each
+# frame: (its title, key of its values, unit of the page, label)
+FRAMES = {
+    "straddle": ("1. the steps straddle the impact", "landing", 1e3, "height of the corner [mm]"),
+    "penetration": ("2. the corner sinks in", "landing", 1e3, "height of the corner [mm]"),
+    "rebound": ("3. it is pushed out again", "speed", 1.0, "speed away from the ground [-]"),
+    "energy": ("4. energy is lost or gained", "energy", 1.0, "energy over that before [-]"),
+}
+CONTACT_ERROR = COLUMNS["error"]
+
+
+def contact(result: Result) -> Page:
+    """The parts of the study's page that say why, as if they were a page of their own."""
+    settings, rows = result.settings["why"], where(result.rows, part="why")
+    told = [row for row in rows if row["failure"] is None and "why_not" not in row]
+    ranked = sorted(told, key=lambda row: -abs(row["error"]))
+    wrong, best = [row for row in ranked if row["cause"]], where(ranked, best=True)
+    sound = where(best, cause=None)
+    columns = (
+        NAME,
+        COLUMNS["ground"],
+        CONTACT_ERROR,
+        Column("cause", lambda row: row["cause"] or f"none (below {settings['least']:g})"),
+        COLUMNS["steps"],
+        Column("deepest [mm]", lambda row: 1e3 * row["deepest"] if "deepest" in row else None),
+        COLUMNS["energy_lost"],
+        Column("main variant", lambda row: "yes" if row["best"] else "no"),
+    )
+    causes = ", ".join(dict.fromkeys(row["cause"] for row in wrong)) or "none"
+    return Page(
+        f"Why engines err: {len(sound)} of {len(best)} impacts of main variants are within {settings['least']:g}; "
+        f"causes found: {causes}",
+        (
+            "Newton’s laws give the impulses that an engine must have applied between two steps. These impulses split "
+            "the error of restitution into parts that add up to it. The parts show the cause without knowledge of the "
+            "solver or its settings.",
+        ),
+        first=(
+            _frames([row for row in where(told, ground=RIGID) if row["best"] or row["tier"] == "defaults"]),
+            table(
+                "The first impact: those with a cause, and all of the engines’ main variants",
+                [*wrong, *sound],
+                *columns,
+            ),
+        ),
+        more=(
+            table("The other impacts", where(ranked, cause=None, best=False), *columns),
+            table(
+                "Causes",
+                [{"cause": cause, "words": words} for cause, words in settings["causes"].items()],
+                COLUMNS["cause"],
+                COLUMNS["words"],
+            ),
+        ),
+        how=(
+            f"A block of slenderness {settings['slenderness']:g} rad is released from {settings['start']:g} of it, on "
+            "rigid ground and on the Caryatid’s base sliding freely. Its first impact is taken apart in every engine "
+            f"and variant at its default level. A cause is named for errors from {settings['least']:g} on.",
+        ),
+        evidence=tuple(
+            (f"{NAME.of(row)}, {row['ground']}", row.get("why_not") or row["failure"]["reason"])
+            for row in rows
+            if row["failure"] is not None or "why_not" in row
+        ),
+    )
+
+
+def _frames(rows):
+    """The contact in four frames; not as `lines`: hundreds of values are a curve, and their ends lie outside."""
+    charts = []
+    for name, (title, key, unit, label) in FRAMES.items():
+        series = []
+        for row in sorted(rows, key=_coloured):
+            frame = row["frames"].get(name, {"time": []})
+            time = 1e3 * np.array(frame["time"])
+            near = np.abs(time) <= 1.5 * WINDOW
+            if near.any():
+                series.append((row, time[near], unit * np.array(frame[key])[near]))
+        if not series:
+            continue
+        low, high = np.percentile(np.concatenate([values for *_, values in series]), (1, 99))
+        room = 0.08 * float(high - low) or 1.0
+        chart = Chart(
+            Axis("time from the landing [ms]", -WINDOW, WINDOW),
+            Axis(label, float(low) - room, float(high) + room),
+            f"{title}: {label} in {', '.join(dict.fromkeys(row['engine'] for row, *_ in series))}.",
+            title=title,
+            height=260,
+            left=70,
+        )
+        for row, time, values in series:
+            grey, who, inside = not _coloured(row), kind(row), np.abs(time) <= WINDOW
+            chart.line(time, values, who, grey=grey)
+            if len(values) <= MARKED:
+                says = [f"{NAME.of(row)}: {value:.3g}" for value in values[inside]]
+                filled = not as_it_comes(row)
+                chart.dots(time[inside], values[inside], who, grey=grey, filled=filled, says=says, beyond=True)
+        charts.append(chart)
+    caption = (
+        "First impact on rigid ground. Coloured: main variants, and defaults of the engines in question. Grey: other "
+        "defaults. Open marks: defaults; arrowheads: beyond the frame. Frames 2 and 3 show only engines whose block "
+        "position is read."
+    )
+    keys = {kind(row): key_of(kind(row), filled=not as_it_comes(row)) for row in rows if _coloured(row)}
+    return figure(charts, caption, keys, keys)
+
+
+def _coloured(row):
+    return row["best"] or subject(row)
+
 
 BOUNDS = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1)
 
@@ -95,7 +342,7 @@ def page(result: Result) -> Page:
                 "All variants at their default level; assisted: the adapter applies eqs (7) and (8) itself",
                 ratings.values(),
                 NAME,
-                Column("kind", "tier"),
+                COLUMNS["tier"],
                 Column("rating", "rating"),
                 Column("default level", setting_of),
             ),
@@ -111,9 +358,9 @@ def page(result: Result) -> Page:
                 WORST,
                 STATE,
                 JUMP,
-                Column("against (8) as printed [-]", "jump_8_printed"),
+                COLUMNS["jump_8_printed"].called("against (8) as printed"),
                 LATE,
-                Column("order by swings [-]", "order"),
+                COLUMNS["order"],
                 CPU,
             ),
             *_on_bearings(result),
@@ -317,7 +564,7 @@ def _refinement(levels):
         ERROR,
         JUMP,
         CPU,
-        Column("steps per simulated second [1/s]", "steps_per_second", digits=3),
+        COLUMNS["steps_per_second"],
         FAILED,
     )
 

@@ -1,14 +1,23 @@
-"""The restitution study: what is measured in a run, and rows of errors of each cell, each level and each experiment."""
+"""The restitution study: what is measured in a run, and rows of errors of each cell, each level and each experiment.
+
+The runs of the restitution study: blocks released from rest, in every engine, variant and level.
+
+Four parts: the grid (slenderness x base x level), blocks on bearings, released or under a pulse (slenderness x base x
+isolation period, laws in turn), experiments that change one suspected cause of error at a time, and the first impact of
+a block, to be taken apart.
+"""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import product
 from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from analytic import Response, Scene, simulate
-from analytic.caryatid import MASS, RADIUS
+from analytic import Base, Bearings, Block, PulseMotion, Response, Scene, Start, simulate
+from analytic.checks.twin import Event
 from analytic.rocking import (
     RockingModel,
     base_jump_length,
@@ -16,31 +25,281 @@ from analytic.rocking import (
     momentum_restitution,
     restitution,
 )
-from analytic.twin import Event
+from analytic.scene import BASE, BEARINGS, MASS, RADIUS
 from engines import get_engine
+from engines.contract import Variant
 
-from ...measuring.autopsy import CAUSES, LEAST, diagnosis
-from ...measuring.errors import SLOWEST_IMPACT, impact_errors, lost_impacts, rms, strong_impacts, worst
-from ...running.cases import Case, variant_settings
-from ...running.plan import Batch, Computed, Plan, Request
-from ...running.sweep import Row
-from .cases import (
-    CARYATID_BASE,
-    EXPERIMENT_SLENDERNESS,
-    FULL,
-    GROUNDS,
-    IMPACT_START,
-    IMPACTS,
-    QUICK,
-    Grid,
-    bearing_cases,
-    experiment_cases,
-    experiments_of,
-    free_scene,
-    grid_cases,
-    impact_cases,
-    variants_of,
+from ...execution.cases import Case, variant_settings
+from ...execution.plan import Batch, Computed, Plan, Request
+from ...execution.sweep import Row
+from ...metrics.autopsy import CAUSES, LEAST, diagnosis
+from ...metrics.errors import SLOWEST_IMPACT, impact_errors, lost_impacts, rms, strong_impacts, worst
+from ...schemas.columns import declared, flag_of, number_of, table_of, whole_of, word_of
+from ..rows import SHARED
+
+# What its rows have; see `comparisons.studies.rows`.
+COLUMNS = SHARED | declared(
+    number_of("ratio", "base mass over block mass", "base mass over block mass; null: rigid ground"),
+    word_of("scope", "scope", 'of a summary: "all" cells at the default level, or the "levels" of levels'),
+    whole_of("impacts", "impacts", "strong impacts with a known error"),
+    number_of(
+        "bias", "mean error by swings", "error of restitution by swing energies, e less eq. (7): mean over impacts"
+    ),
+    number_of(
+        "rms",
+        "error of restitution by swings, rms",
+        "error of restitution by swing energies: root mean square over impacts",
+    ),
+    number_of("worst", "worst impact by swings", "error of restitution by swing energies: largest absolute value"),
+    number_of(
+        "rms_state",
+        "error of restitution by states, rms",
+        "error of restitution by the states at impacts: root mean square",
+    ),
+    number_of(
+        "worst_state", "worst impact by states", "error of restitution by the states at impacts: largest absolute value"
+    ),
+    word_of("factor", "factor", 'of blocks on bearings: what they have in common, or "all"'),
+    number_of("of", "of", "of blocks on bearings: the factor's value", "rad, 1 or s", type="number or word"),
+    number_of(
+        "jump_rms",
+        "base velocity jump, relative error, rms",
+        "error of the base's velocity jump against momentum, relative: root mean square",
+    ),
+    number_of(
+        "jump_worst",
+        "worst base velocity jump",
+        "error of the base's velocity jump against momentum, relative: largest",
+    ),
+    number_of(
+        "jump_8",
+        "against (8) corrected",
+        "error of the base's velocity jump against eq. (8) corrected, relative: root mean square",
+    ),
+    number_of("jump_8_printed", "as printed", "the same against eq. (8) as printed"),
+    number_of("time_rms", "impact times, relative, rms", "error of impact times, relative: root mean square"),
+    number_of("cpu_per_second", "CPU time per simulated second", "CPU time over simulated time", "s/s"),
+    number_of("steps_per_second", "steps per simulated second", "steps over simulated time", "1/s", digits=3),
+    number_of("order", "order by swings", "slope of log error over log accuracy parameter"),
+    word_of("experiment", "experiment", "setting that is varied by itself"),
+    number_of("value", "value (SI)", "of that setting", "of the setting", digits=None),
+    number_of("step", "step", "step size", "s"),
+    number_of(
+        "explained",
+        "variance explained",
+        "share of the error's variance that the phase within a step explains",
+        digits=3,
+        percent=True,
+    ),
+    number_of("least", "least", "end of that sawtooth nearer to zero, error over step", "1/s"),
+    number_of("most", "most", "its other end, error over step", "1/s"),
+    number_of("friction", "friction there", "coefficient of friction of the variant"),
+    number_of("friction_needed", "friction needed", "max |H|/N in the analytic model"),
+    number_of(
+        "predicted", "predicted by the damping alone", "error of restitution by damping in flight, computed", digits=3
+    ),
+    number_of("measured", "measured", "error of restitution that was measured", digits=3),
+    whole_of("count", "count", "runs that failed for this reason"),
+    table_of("tag", "tag", "which the first of these runs was"),
+    flag_of("best", "best", "whether the variant is its engine's main one"),
+    flag_of("placed", "placed", "whether the engine says where the block's centre is"),
+    number_of("error", "error of restitution", "error of restitution at the impact"),
+    word_of("cause", "cause", "of the error, one word; null below the least that has one"),
+    word_of("words", "how it shows: what it is", "the cause, in a sentence"),
+    table_of("parts", "parts", "of the error, by the impulses that made them; they add up to it"),
+    whole_of("steps", "steps in contact", "steps during which the engine was in contact"),
+    number_of("energy_lost", "energy lost", "in the impact, over the kinetic energy before", digits=3, percent=True),
+    table_of("frames", "frames", "what is drawn of the impact: times and values by frame"),
+    number_of("deepest", "deepest", "how deep the landing corner sinks in, at most", "m"),
+    word_of("why_not", "why not", "why the impact cannot be analysed"),
 )
+ERRORS = """runs failed impacts lost bias? rms? worst? rms_state? worst_state? jump_rms? jump_worst? jump_8?
+    jump_8_printed? time_rms? cpu_per_second? steps_per_second?"""
+PARTS = {
+    "cell": f"engine variant level ratio? slenderness {ERRORS}",
+    "summary": f"scope engine variant ground level {ERRORS}",
+    "order": "engine variant ground order?",
+    "bearings": """engine variant factor of? runs failed rms_state? jump_rms? jump_worst? time_rms? cpu_per_second?
+            impacts lost worst_state?""",
+    "experiment": f"engine variant experiment ratio? value {ERRORS}",
+    "phase": "engine variant step runs bias rms explained? least most",
+    "flight damping": "engine variant friction? level slenderness friction_needed predicted measured",
+    "failure": "engine variant reason count message tag",
+    "why": "engine variant ground failure? | tier best placed error cause? words? parts steps energy_lost frames",
+}
+
+CARYATID_BASE = BASE.mass / MASS  # its m_b/m
+IMPACTS = 3  # used of each run; on rigid ground the slowest is about as fast as the first from a third of the tilt
+
+
+@dataclass(frozen=True)
+class Grid:
+    """What the study covers: slendernesses [rad], m_b/m (None: rigid ground), starts (tilt over slenderness).
+
+    refined: (slenderness, m_b/m) where the accuracy parameters run through their levels. bearings: slendernesses [rad],
+    m_b/m and isolation periods [s] of blocks on bearings.
+    """
+
+    slendernesses: tuple
+    ratios: tuple
+    starts: tuple
+    refined: tuple
+    phase_starts: int  # of the experiment on the phase of the steps
+    bearings: tuple
+
+
+STARTS = tuple(round(float(start), 4) for start in np.linspace(0.3, 0.8, 4))
+FULL = Grid(
+    (0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45),
+    (None, 10.0, 1.0, 0.3, CARYATID_BASE, 0.01),
+    STARTS,
+    tuple((gamma, ratio) for gamma in (0.1, 0.2, 0.3, 0.45) for ratio in (None, 1.0, CARYATID_BASE)),
+    48,
+    ((0.15, 0.25, 0.35), (0.1, 1.0, 10.0), (1.0, 2.0, 4.0)),
+)
+QUICK = Grid(
+    (0.1, 0.2, 0.3, 0.45),
+    (None, 10.0, 1.0, CARYATID_BASE),
+    STARTS,
+    ((0.2, None), (0.2, CARYATID_BASE)),
+    16,
+    ((0.25,), (0.1, 1.0, 10.0), (2.0,)),
+)
+LAWS = ("algebraic", "bouc-wen", "linear")
+EXCITATIONS = ("let go", "pulse")
+LET_GO = 0.5  # tilt over slenderness
+PULSE = (0.5, 3.0)
+
+EXPERIMENT_SLENDERNESS = 0.2
+EXPERIMENT_RATIOS = (None, CARYATID_BASE)
+PHASE_STEPS = (4e-3, 1e-3, 2.5e-4)  # s
+SCALES = (0.25, 1.0, 4.0)  # of the block, to tell (8) from (8) as printed
+
+# Of the block whose first impact is taken apart: tilt over slenderness; duration [s], past the swing after that impact.
+IMPACT_START, IMPACT_SECONDS = 0.6, 1.6
+GROUNDS = {"rigid ground": None, "sliding base": Base(mass=BASE.mass)}
+
+
+def free_scene(slenderness: float, ratio: float | None, start: float, scale: float = 1.0) -> Scene:
+    """A block on rigid ground (ratio None) or on a freely sliding base of ratio times its mass, tilted and released.
+
+    It ends past the peak of the swing after the third impact of the model, or a little after coming to rest.
+    scale: size of the block over the Caryatid's.
+    """
+    scene = Scene(
+        block=Block(mass=MASS, radius=RADIUS * scale, slenderness=slenderness),
+        base=Base(mass=ratio * MASS) if ratio else None,
+        start=Start(tilt=start * slenderness),
+        duration=12.0 * math.sqrt(scale),
+    )
+    return _cut(scene, [impact.time for impact in simulate(scene, history=False).impacts], 0.2 * math.sqrt(scale))
+
+
+def _cut(scene, times, rest):
+    """The scene up to past the peak of the swing after the impact number `IMPACTS`, or `rest` [s] after the last."""
+    if len(times) > IMPACTS:
+        before, after = times[IMPACTS - 1 : IMPACTS + 1]
+        return scene.with_(duration=before + 0.75 * (after - before))
+    return scene.with_(duration=times[-1] + rest)
+
+
+def bearing_scene(slenderness: float, ratio: float, period: float, law: str, excitation: str) -> Scene:
+    """The Caryatid's block of a slenderness on bearings of a period [s], at the stiffness after yielding.
+
+    It is released at `LET_GO`, the ground at rest or under a pulse, (amplitude over g tan(slenderness), frequency over
+    omega_r) in `PULSE`. It ends as `free_scene` does.
+    """
+    base = Base(mass=ratio * MASS)
+    kb = (MASS + base.mass) * (2 * math.pi / period) ** 2 / BEARINGS.count
+    softening = {} if law == "linear" else {"kb": kb, "alpha": BEARINGS.alpha}
+    ka = kb if law == "linear" else kb * BEARINGS.ka / BEARINGS.kb
+    scene = Scene(
+        block=Block(mass=MASS, radius=RADIUS, slenderness=slenderness),
+        base=base,
+        bearings=Bearings(law=law, count=BEARINGS.count, ka=ka, **softening),
+        start=Start(tilt=LET_GO * slenderness),
+        duration=12.0,
+    )
+    if excitation == "pulse":
+        amplitude, frequency = PULSE[0] * scene.gravity * math.tan(slenderness), PULSE[1] * scene.rocking_frequency
+        scene = scene.with_(motion=PulseMotion("one-sine", amplitude, frequency, 0.0))
+    return _cut(scene, [impact.time for impact in strong_impacts(simulate(scene, history=False))], 0.2)
+
+
+def bearing_cases(grid: Grid, engines: Sequence[str]) -> Iterator[Case]:
+    """Blocks on bearings, at default levels; the laws take turns, so that each is combined with all other values."""
+    for places in product(*map(enumerate, grid.bearings)):
+        ranks, (slenderness, ratio, period) = zip(*places, strict=True)
+        law = LAWS[sum(ranks) % len(LAWS)]
+        for excitation in EXCITATIONS:
+            scene = bearing_scene(slenderness, ratio, period, law, excitation)
+            place = {"slenderness": slenderness, "ratio": ratio, "period": period, "law": law}
+            for engine, variant, _ in variants_of(engines):
+                yield Case(scene, engine, variant, {}, {"part": "bearings", **place, "excitation": excitation})
+
+
+def impact_scene(ground: str) -> Scene:
+    """The block whose first impact is taken apart, released on a ground of `GROUNDS`."""
+    scene = free_scene(EXPERIMENT_SLENDERNESS, None, IMPACT_START)
+    return scene.with_(name="one impact", base=GROUNDS[ground], duration=IMPACT_SECONDS)
+
+
+def impact_cases(engines: Sequence[str], grounds: Iterable[str]) -> Iterator[Case]:
+    """That block in every variant, tagged with the ground."""
+    for (engine, variant, _), ground in product(variants_of(engines), grounds):
+        yield Case(impact_scene(ground), engine, variant, tag={"ground": ground})
+
+
+def variants_of(engines: Sequence[str]) -> list[tuple[str, str, Variant]]:
+    """(engine, name, record) of every variant."""
+    return [(engine, name, kind) for engine in engines for name, kind in get_engine(engine).variants.items()]
+
+
+def grid_cases(grid: Grid, engines: Sequence[str]) -> Iterator[Case]:
+    """The grid as cases, tagged with part, ratio, slenderness, start and level."""
+    for ratio in grid.ratios:
+        for slenderness in grid.slendernesses:
+            scenes = {start: free_scene(slenderness, ratio, start) for start in grid.starts}
+            for engine, variant, kind in variants_of(engines):
+                for level in sorted(kind.levels) if (slenderness, ratio) in grid.refined else (kind.default,):
+                    settings = {} if level == kind.default else {kind.accuracy_parameter: level}
+                    for start, scene in scenes.items():
+                        tag = {"ratio": ratio, "slenderness": slenderness, "start": start, "level": level}
+                        yield Case(scene, engine, variant, settings, {"part": "grid", **tag})
+
+
+def experiments_of(engines: Sequence[str]) -> list[tuple[str, str, str, str, tuple[float, ...]]]:
+    """(name, engine, variant, setting, values) of the settings that variants name as worth changing one at a time."""
+    return [
+        (setting.replace("_", " "), engine, variant, setting, values)
+        for engine, variant, kind in variants_of(engines)
+        for setting, values in kind.varied.items()
+    ]
+
+
+def experiment_cases(grid: Grid, engines: Sequence[str]) -> Iterator[Case]:
+    """One suspected cause at a time; tagged with part, experiment, ratio, slenderness, start and value."""
+
+    def case(name, ratio, start, value, engine, variant, settings, scale=1.0):
+        tag = {"ratio": ratio, "slenderness": EXPERIMENT_SLENDERNESS, "start": start, "value": value}
+        scene = free_scene(EXPERIMENT_SLENDERNESS, ratio, start, scale)
+        return Case(scene, engine, variant, settings, {"part": "experiment", "experiment": name, **tag})
+
+    for name, engine, variant, setting, values in experiments_of(engines):
+        for ratio in EXPERIMENT_RATIOS:
+            for start in grid.starts[::2]:
+                for value in values:
+                    yield case(name, ratio, start, value, engine, variant, {setting: value})
+    # where the impact is decided with care at one step: starts so close that impacts lie within the longest step
+    for engine, variant, spec in variants_of(engines):
+        if spec.kind == "tuned" and spec.accuracy_parameter == "step":
+            for start in map(float, np.linspace(0.600, 0.604, grid.phase_starts)):
+                for step in PHASE_STEPS:
+                    yield case("phase", None, start, step, engine, variant, {"step": step})
+    for engine in engines:
+        for scale in SCALES:
+            yield case("size", CARYATID_BASE, 0.6, scale, engine, get_engine(engine).default_variant, {}, scale)
+
 
 FACTORS = ("slenderness", "ratio", "period", "law", "excitation")  # of blocks on bearings
 DIGITS = 4

@@ -1,16 +1,18 @@
 """What is shown of the study of what changes the outcome."""
 
-from ...measuring.statistics import wilson
-from ...running.provenance import Result
-from ...showing.charts import REFERENCE, Axis
-from ...showing.figures import ranks, shades
-from ...showing.parts import NAME, Column, Head, Page, grouped, percent, short, table, where
+from ...execution.provenance import Result
+from ...metrics.statistics import wilson
+from ...plotting.charts import REFERENCE, Axis
+from ...plotting.figures import ranks, shades
+from ...plotting.parts import Head, Page, grouped, table, where
+from ...schemas.columns import NAME, Column, percent, short
+from .study import COLUMNS
 
 LEAST = 5e-4  # share at which smaller ones are drawn
 TICKS = ((LEAST, "0"), (0.01, "1 %"), (0.1, "10 %"), (1.0, "100 %"))
 BOUNDS = (0.01, 0.03, 0.1, 0.2, 0.3)
 
-SCENE, RUNS = Column("scene", "scene"), Column("runs [-]", "runs")
+SCENE, RUNS = COLUMNS["scene"], COLUMNS["runs"].called("runs")
 ROTATED = {"direction turned by 30°": "motion rotated by 30°"}  # changes that rows name otherwise
 WHAT = Column("change or engine", lambda row: ROTATED.get(row["change"], row["change"]) or NAME.of(row))
 SHARE = Column(
@@ -20,8 +22,8 @@ SHARE = Column(
     within=lambda row: row["runs"] and "low" in row and (row["low"], row["high"]),
 )
 COUNT = Column("runs changed [-]", "{outcomes_changed} of {runs}")
-RATIO = Column("V/H [-]", "ratio", digits=None)
-FASTER = Column("vertical over horizontal frequency [-]", "faster")
+RATIO = COLUMNS["ratio"]
+FASTER = COLUMNS["faster"]
 
 
 def page(result: Result) -> Page:
@@ -37,11 +39,11 @@ def page(result: Result) -> Page:
             WHAT,
             SHARE,
             COUNT,
-            Column("to overturning [-]", "to_overturning"),
-            Column("p (McNemar) [-]", "p_value", digits=3),
-            Column("peak tilt", "tilt", percent=True),
-            Column("displacement", "displacement", percent=True),
-            Column("failed [-]", "failed"),
+            COLUMNS["to_overturning"],
+            COLUMNS["p_value"],
+            COLUMNS["tilt"],
+            COLUMNS["displacement"],
+            COLUMNS["failed"],
         )
         for scene, members in ranked.items()
     ]
@@ -72,7 +74,7 @@ def page(result: Result) -> Page:
             shades(
                 [row for row in vertical if row["ratio"]],
                 RATIO,
-                Column("times as fast [-]", "faster"),
+                COLUMNS["faster"].called("times as fast"),
                 Column(SHARE.head, SHARE.value, digits=1, percent=True),
                 "Share of outcomes that the vertical motion changes, over V/H, peak vertical over peak horizontal "
                 "acceleration, and over how many times as fast it is.",

@@ -13,15 +13,41 @@ import numpy as np
 from scipy.stats import norm
 
 from analytic import Response, SampledMotion, Scene, load_scene, simulate_many, synthetic_motion
-from analytic.bearing import BearingLaw
-from analytic.rocking import RockingModel
+from analytic.rocking import BearingLaw, RockingModel
 from engines import get_engine
 
-from ...ensembles.motions import OTHERS, USUAL_RATIO, with_vertical
-from ...measuring.statistics import confusion, mcnemar, wilson
-from ...running.cases import Case
-from ...running.plan import Batch, Computed, Plan, Request
-from ...running.progress import log
+from ...ensembles import OTHERS, USUAL_RATIO, with_vertical
+from ...execution.cases import Case
+from ...execution.plan import Batch, Computed, Plan, Request
+from ...execution.progress import log
+from ...metrics.statistics import confusion, mcnemar, wilson
+from ...schemas.columns import declared, number_of, whole_of, word_of
+from ..rows import SHARED
+
+# What its rows have; see `comparisons.studies.rows`.
+COLUMNS = SHARED | declared(
+    word_of("change", "change", "how the scene was changed; null: an engine in place of the model"),
+    whole_of("outcomes_changed", "outcomes changed", "runs with another outcome than before the change"),
+    whole_of("to_overturning", "to overturning", "of these, runs that overturn only after it"),
+    number_of("low", "low", "lower end of the 95 % Wilson interval of their share"),
+    number_of("high", "high", "upper end of the 95 % Wilson interval of their share"),
+    number_of(
+        "tilt", "peak tilt", "relative change of the peak tilt of blocks that stay upright: median", percent=True
+    ),
+    number_of("displacement", "displacement", "relative change of the peak base displacement: median", percent=True),
+    whole_of(
+        "faster",
+        "vertical over horizontal frequency",
+        "how many times as fast as the horizontal motion the vertical one is",
+    ),
+    number_of("ratio", "V/H", "peak vertical over peak horizontal acceleration", digits=None),
+    whole_of("lifts_off", "lifts off", "runs in which N reaches zero"),
+)
+CHANGED = "runs outcomes_changed? low? high?"
+PARTS = {
+    "change": f"scene engine variant change? failed to_overturning? p_value? tilt? displacement? {CHANGED}",
+    "vertical": f"scene faster ratio lifts_off {CHANGED}",
+}
 
 ARIAS = 0.95  # of the intensity, after which a tail is cut off
 # name, quantity, relative change

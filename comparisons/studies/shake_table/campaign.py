@@ -31,11 +31,10 @@ import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
 from analytic import Block, SampledMotion, Scene, SceneError, load_scene
-from analytic.errors import SettingError
-from analytic.files import read_plain
+from analytic.errors import SettingError, read_plain
 from analytic.records import UNITS, read_record
 
-from ...ensembles.motions import peak_velocity
+from ...ensembles import peak_velocity
 
 GRID = 61  # slendernesses of a grid
 ALL = "all"  # specimens together

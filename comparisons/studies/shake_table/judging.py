@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ...measuring.forecasts import (
+from ...metrics.statistics import (
     HALF,
     bent,
     brier,

@@ -6,29 +6,17 @@ from typing import Any
 
 import numpy as np
 
-from ...measuring.statistics import EQUAL, TOO_FEW, wilson
-from ...running.provenance import Result
-from ...showing.charts import Axis, Chart, curve, figure, key_of
-from ...showing.figures import as_it_comes, ranks
-from ...showing.glance import Endings, Glance
-from ...showing.parts import (
-    NAME,
-    Column,
-    Figure,
-    Head,
-    Judgement,
-    Page,
-    Table,
-    grouped,
-    number,
-    percent,
-    short,
-    table,
-    where,
-)
-from ...showing.wording import equal_mark, listed
+from ...execution.provenance import Result
+from ...metrics.statistics import EQUAL, TOO_FEW, wilson
+from ...plotting.charts import Axis, Chart, curve, figure, key_of
+from ...plotting.figures import as_it_comes, ranks
+from ...plotting.glance import Endings, Glance
+from ...plotting.parts import Figure, Head, Judgement, Page, Table, grouped, table, where
+from ...plotting.wording import equal_mark, listed
+from ...schemas.columns import NAME, Column, number, percent, short
 from .campaign import ALL, CORNER, TABLE
 from .judging import AS_IT_IS, AUTHORS, BEYOND, BY_RECORD, CURVE, EACH, FREQUENT, IN_SAMPLE, MODEL, ONE, THRESHOLD
+from .study import COLUMNS
 
 
 def agreement(specimens: Sequence[dict[str, Any]], right: dict[str, np.ndarray]) -> Figure | None:
@@ -274,14 +262,14 @@ def how(result: Result) -> tuple[str, ...]:
     )
 
 
-FORECAST, CHANGE = Column("predicted by", "forecast"), Column("change of the model", "change")
+FORECAST, CHANGE = COLUMNS["forecast"], COLUMNS["change"]
 SHARE = Column("right answers [%]", "share", percent=True, within="within")
 SHARE_RIGHT = Column(
     "", lambda row: row["right"] / row["size"], percent=True, within=lambda row: (row["low"], row["high"])
 )
 RIGHT = Column("right", lambda row: f"{row['right']}, {SHARE_RIGHT.text(row)}")
 ERRORS = Column("missed / false alarms", "{misses} / {false_alarms}")
-BRIER = Column("Brier score [-]", "brier", 2, within="brier_interval")
+BRIER = COLUMNS["brier"]
 BARS = (BEYOND, MODEL, CURVE, AUTHORS, THRESHOLD, "PGA, threshold", FREQUENT)  # besides the solvers
 
 
@@ -338,7 +326,7 @@ def _by_specimen(caption: str, rows: Sequence[dict[str, Any]], names: Sequence[C
 
 def _scores(caption, rows):
     ways = {row["judged"] for row in rows}
-    judged = (Column("judged on tests", "judged"),) if len(ways) > 1 else ()
+    judged = (COLUMNS["judged"],) if len(ways) > 1 else ()
     columns = (RIGHT, BRIER) if judged else (RIGHT, ERRORS, BRIER)
     return _by_specimen(caption, rows, (FORECAST, *judged), *columns)
 
@@ -350,10 +338,10 @@ def _pairs(result):
         "is a probability of 1 or 0), with 95 % intervals by record; and who is right where the two disagree",
         rows,
         FORECAST,
-        Column("compared with", "beside"),
-        Column("specimen", "specimen"),
+        COLUMNS["beside"],
+        COLUMNS["specimen"],
         Column("more right", more_right),
-        Column("Brier score smaller by [-]", "difference", within="interval"),
+        COLUMNS["difference"],
         Column("first right where they disagree", "{right} of {disagree}"),
     )
 
@@ -447,14 +435,14 @@ def _table_of_engines(result, engines):
         "own outcome or time of a fall",
         where(engines, specimen=ALL) or engines,
         NAME,
-        Column("kind", "tier"),
+        COLUMNS["tier"],
         Column("outcomes that differ", lambda row: f"{apart(row)} of {row['size']}"),
         Column("at most", lambda row: row["interval"][1], percent=True),
         *([equal] if judged else ()),
         Column("overturnings missed", "{only_a} ({records_a})"),
         Column("added", "{only_b} ({records_b})"),
-        Column("p, sign test by record", "p_records"),
-        Column("failed", "failed"),
+        COLUMNS["p_records"],
+        COLUMNS["failed"],
         Column("the model’s own end is sensitive", "{on_edge} of {near}"),
     )
 
@@ -466,10 +454,10 @@ def _right_of_engines(engines):
         [row for row in engines if row["specimen"] != ALL],
         (NAME,),
         Column("outcomes that differ", lambda row: f"{apart(row)} of {row['size']}"),
-        Column("right", "right"),
-        Column("model right", "model_right"),
+        COLUMNS["right"],
+        COLUMNS["model_right"],
         ERRORS,
-        Column("peak tilt over the model’s", "tilt", 3),
+        COLUMNS["tilt"],
     )
 
 
@@ -506,6 +494,6 @@ def _fits(result):
         (CHANGE,),
         Column("slenderness [deg]", _degrees("slenderness")),
         Column("mean, spread [deg]", lambda row: [math.degrees(row["centre"]), math.degrees(row["spread"])]),
-        Column("right", "right"),
+        COLUMNS["right"],
         BRIER,
     )

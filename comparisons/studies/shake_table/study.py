@@ -5,27 +5,236 @@ bootstrap over records, as tests under one record at several scales are alike; m
 sign of their differences to the model (exact test); of probabilities the Brier score, and differences of
 forecasts in pairs by the same bootstrap; who is right where two disagree. An engine is equal to the model where the
 upper end of the interval of the share of tests that it ends differently is below `EQUAL`.
+
+Rows of the engines that ran a campaign's tests, beside the model's and beside what was measured.
 """
 
+import time
 from collections.abc import Sequence
+from dataclasses import asdict
 from itertools import product
 from typing import Annotated, Any
 
 import numpy as np
 import typer
+from scipy.stats import binomtest
 
-from analytic import SceneError, SettingError
+from analytic import Response, Scene, SceneError, SettingError, simulate_many
+from analytic.rocking import RockingModel
 from engines import get_engine
+from engines.comparison import Reference
 
-from ...measuring.statistics import EQUAL
-from ...running.cases import Case, variant_settings
-from ...running.plan import Batch, Computed, Plan, Request
-from ...running.progress import bar
-from ...running.provenance import Result
-from ...running.sweep import Row
-from .campaign import WHERE, Campaign, outcomes_of, read_campaign, told
+from ...execution.cases import Case, variant_settings
+from ...execution.plan import Batch, Computed, Plan, Request
+from ...execution.progress import bar
+from ...execution.provenance import Result
+from ...execution.sweep import Row
+from ...metrics.statistics import EQUAL, Confusion, clustered, confusion, equality, mcnemar
+from ...schemas.columns import declared, list_of, number_of, whole_of, word_of
+from ..rows import SHARED
+from .campaign import ALL, WHERE, Campaign, outcomes_of, read_campaign, told
 from .judging import AS_IT_IS, Outcomes, pairs_of, rows_of
-from .runs import OVERTURNS, ended, ended_near, engine_rows, leaning, over_slendernesses
+
+# What its rows have; see `comparisons.studies.rows`.
+COLUMNS = SHARED | declared(
+    word_of("specimen", "specimen", "block that was tested"),
+    word_of("test", "test", "its name in the campaign"),
+    word_of("forecast", "predicted by", "what predicts the outcomes"),
+    word_of("judged", "judged on tests", "on which tests, beside those it was fitted to"),
+    whole_of("size", "size", "tests, five or more"),
+    whole_of("right", "right", "tests whose outcome is predicted; null: not told, see shake_table.campaign.told"),
+    whole_of("model_right", "model right", "of the same tests, those whose outcome the model predicts"),
+    whole_of("alone_right", "alone right", "right answers of the slenderness by itself, fitted to the same tests"),
+    number_of("low", "low", "lower end of the 95 % interval of their share (bootstrap over records)"),
+    number_of("high", "high", "upper end of the 95 % interval of their share (bootstrap over records)"),
+    whole_of("misses", "misses", "tests that overturned and were predicted to stand"),
+    whole_of("false_alarms", "false alarms", "tests that stood and were predicted to overturn"),
+    number_of(
+        "brier",
+        "Brier score",
+        "Brier score, the mean square error of the probability; null: the answer is yes or no",
+        digits=2,
+        within="brier_interval",
+    ),
+    list_of("brier_interval", "brier interval", "95 % interval of it (bootstrap over records): [low, high]"),
+    word_of("change", "change of the model", "of the model: what is otherwise than in the scene"),
+    number_of("slenderness", "slenderness", "that is right most often", "rad"),
+    number_of("centre", "centre", "mean of the normal spread of slendernesses of least Brier score", "rad"),
+    number_of("spread", "spread", "its standard deviation", "rad"),
+    word_of("beside", "compared with", "forecast that it is compared with"),
+    number_of("difference", "Brier score smaller by", "how much smaller its Brier score is, paired", within="interval"),
+    list_of(
+        "interval", "interval", "95 % interval: of that difference by bootstrap, of the share that differs Wilson's"
+    ),
+    whole_of("more_right", "more right", "how many more tests it is right in, paired"),
+    list_of("more_interval", "more interval", "95 % interval of that number (bootstrap over records)"),
+    whole_of("disagree", "disagree", "tests in which the two answer otherwise"),
+    whole_of(
+        "records_a", "records a", "records most of whose differences are of tests that overturn in the model alone"
+    ),
+    whole_of(
+        "records_b", "records b", "records most of whose differences are of tests that overturn in the engine alone"
+    ),
+    number_of("p_records", "p, sign test by record", "of a sign test of these two"),
+    list_of(
+        "neighbours", "neighbours", "tests that the model itself ends differently at the next slenderness of the grid"
+    ),
+    whole_of(
+        "near", "near", "tests in which a change of the scene by 1e-4 changes the model's outcome or time of a fall"
+    ),
+    whole_of("on_edge", "on edge", "differing tests among those"),
+    word_of(
+        "equal", "equal", "whether the engine ends as the model does, as comparisons.metrics.statistics.equality says"
+    ),
+    number_of(
+        "tilt",
+        "peak tilt over the model’s",
+        "peak tilt over the model's where both rock and stay upright: median over tests",
+        digits=3,
+    ),
+)
+PARTS = {
+    "score": """engine variant specimen forecast judged size right low high misses false_alarms brier?
+            brier_interval?""",
+    "fit": """engine variant specimen change slenderness centre spread alone_right neighbours size right brier
+            brier_interval misses false_alarms""",
+    "paired": """engine variant specimen forecast beside difference interval more_right more_interval disagree
+            right""",
+    "engine": """engine variant tier specimen size failed both_stand both_overturn only_a only_b p_value?
+            records_a records_b p_records? near on_edge equal interval right? low? high? misses? false_alarms?
+            model_right? tilt?""",
+    "failure": "engine variant specimen test kind reason message",
+    "absent": "engine variant reason",
+}
+
+OVERTURNS, STANDS, FAILED = "1", "0", "x"
+
+
+def leaning(
+    scene: Scene, slenderness: float, *, restitution: float = 1, inertia: float = 1, friction: float | None = None
+) -> Scene:
+    """A scene whose block has another slenderness [rad], its centre of mass as high as before.
+
+    restitution: factor on that of the block. inertia: factor on the moment about the centre of mass. friction: in place
+    of the scene's.
+    """
+    block = scene.block
+    radius = float(block.half_height / np.cos(slenderness))
+    corner = float(inertia * block.centre_inertia + block.mass * radius**2)
+    changed = scene.with_(block={"radius": radius, "slenderness": float(slenderness), "corner_inertia": corner})
+    if restitution != 1:
+        changed = changed.with_(block={"restitution": restitution * RockingModel.of(changed).restitution})
+    return changed if friction is None else changed.with_(friction=friction)
+
+
+def over_slendernesses(case: Case, response: Response) -> dict[str, Any]:
+    """Measure: a digit for each slenderness, for each kind of model."""
+    kinds, grid = case.tag["kinds"], case.tag["slendernesses"]
+    scenes = [leaning(case.scene, slenderness, **kind) for kind in kinds for slenderness in grid]
+    began = time.process_time()
+    found = simulate_many(scenes, workers=1)
+    seconds = time.process_time() - began
+    digits = np.where(found.failed, FAILED, np.where(found.overturns, OVERTURNS, STANDS))
+    return {
+        "outcomes": ["".join(one) for one in digits.reshape(len(kinds), -1).tolist()],
+        "cost": {"grid_seconds": seconds},
+    }
+
+
+def ended(case: Case, response: Response) -> dict[str, Any]:
+    """Measure: how a run ended, and its peak tilt over the slenderness."""
+    return {"outcome": response.outcome, "tilt": response.peak_tilt_ratio}
+
+
+def ended_near(case: Case, response: Response) -> dict[str, Any]:
+    """Measure of the model's run: `ended`, and whether a change of the scene by 1e-4 changes the outcome."""
+    return {**ended(case, response), "near": "outcome" in Reference.of(case.scene).near}
+
+
+NOT_RUN = "-"
+
+
+def engine_rows(campaign: Campaign, own: Sequence[Row], found: Sequence[Row]) -> list[dict[str, Any]]:
+    """Rows of an engine beside the model, of each specimen and of all together: in what their outcomes differ, and
+    right answers where they are told. own, found: runs of the model and of the engine."""
+    case, records, rows = found[0].case, [test.record for test in campaign.tests], []
+    variant = case.variant or ""
+    first = {"part": "engine", "engine": case.solver, "variant": variant}
+    first["tier"] = get_engine(case.solver).variants[variant].kind
+    sides = []
+    for k, specimen in enumerate(campaign.specimens):
+        ours, theirs = ([row for row in some if row.case.tag["specimen"] == specimen.name] for some in (own, found))
+        near = np.array([row.values["near"] for row in ours])
+        sides.append((_digits(campaign, theirs), _digits(campaign, ours), near))
+        said = answers(*sides[-1][:2], outcomes_of(campaign.tests, k), records)
+        differing = differences(*sides[-1], records)
+        rows.append({**first, "specimen": specimen.name, **differing, **said, "tilt": _tilts(ours, theirs)})
+    if len(sides) > 1:
+        engine, model, near = (np.concatenate(part) for part in zip(*sides, strict=True))
+        together = differences(engine, model, near, records * len(sides))
+        rows.append({**first, "specimen": ALL, **together, **dict.fromkeys((*said, "tilt"))})
+    return rows
+
+
+def _digits(campaign, rows):
+    """A digit for each test."""
+    digits = {"failed": FAILED, "overturns": OVERTURNS}
+    found = {row.case.tag["test"]: digits.get(row.values["outcome"], STANDS) for row in rows}
+    return np.array([found.get(test.name, NOT_RUN) for test in campaign.tests])
+
+
+def differences(engine: np.ndarray, model: np.ndarray, near: np.ndarray, records: Sequence[str]) -> dict[str, Any]:
+    """In what an engine's outcomes differ from the model's, which way, and whether the two are equal.
+
+    p_value: of a sign test over tests. records_a, records_b, p_records: of one over records, each by what most of its
+    differences say, as those under one record are alike. A failed run is no difference of a sign, but differs. near: of
+    each test, whether the model's own end is sensitive, see `ended_near`; on_edge: differences there.
+    """
+    sound, asked = np.isin(engine, [STANDS, OVERTURNS]), engine != NOT_RUN
+    names = np.array(records)
+    pair = confusion(model[sound] == OVERTURNS, engine[sound] == OVERTURNS) if sound.any() else Confusion(0, 0, 0, 0)
+    equal, interval = equality((engine != model)[asked], names[asked].tolist())
+    sign = np.where(sound, (model == OVERTURNS).astype(int) - (engine == OVERTURNS), 0)
+    by_record = [int(np.sign(sign[names == name].sum())) for name in dict.fromkeys(records)]
+    one, other = by_record.count(1), by_record.count(-1)
+    return {
+        "size": int(asked.sum()),
+        "failed": int((engine == FAILED).sum()),
+        **asdict(pair),
+        "p_value": mcnemar(pair) if sound.any() else None,
+        "records_a": one,
+        "records_b": other,
+        "p_records": float(binomtest(one, one + other).pvalue) if one + other else None,
+        "near": int((asked & near).sum()),
+        "on_edge": int((asked & near & (engine != model)).sum()),
+        "equal": equal,
+        "interval": list(interval),
+    }
+
+
+def answers(engine: np.ndarray, model: np.ndarray, measured: np.ndarray, records: Sequence[str]) -> dict[str, Any]:
+    """Right answers of an engine, and of the model on the same tests, with the interval of their share; a failed run is
+    not right. Their difference is a sum over the tests that differ; misses and false alarms say how failed ones ended.
+    """
+    truth, asked = np.where(measured, OVERTURNS, STANDS), engine != NOT_RUN
+    hit = (truth == engine)[asked]
+    low, high = clustered(hit, np.array(records)[asked].tolist())
+    right = {"right": int(hit.sum()), "low": low, "high": high, "model_right": int((truth == model)[asked].sum())}
+    wrong = {
+        "misses": int((measured & (engine == STANDS)).sum()),
+        "false_alarms": int((~measured & (engine == OVERTURNS)).sum()),
+    }
+    sizes = len(hit), int((engine != model)[asked].sum())
+    return told(right, *sizes) | told(wrong, *sizes, int((engine == FAILED).sum()))
+
+
+def _tilts(own, found):
+    """Median of the peak tilts of an engine over the model's, where both rock and stay upright; None: nowhere."""
+    model = {row.case.tag["test"]: row.values for row in own}
+    pairs = ((row.values, model[row.case.tag["test"]]) for row in found if not row.failed)
+    ratios = [a["tilt"] / b["tilt"] for a, b in pairs if a["outcome"] == b["outcome"] == "rocks"]
+    return float(np.median(ratios)) if ratios else None
+
 
 SEED = 0  # of the bootstrap
 QUICK = 20  # of so many tests one

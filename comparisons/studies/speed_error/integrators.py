@@ -2,7 +2,7 @@
 `solve_ivp`, set up by someone who wants it fast.
 
 There are no classes, the right-hand side uses floats instead of arrays, the set of events is the smallest possible, and
-the first step follows from the length of the next swing. The simple form to learn from is `analytic.twin`.
+the first step follows from the length of the next swing. The simple form to learn from is `analytic.checks.twin`.
 """
 
 import functools
@@ -16,13 +16,15 @@ from typing import Any
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from analytic import Response, Scene, State, kernel, layout
-from analytic.problems import problem_a, problem_b
+from analytic import Response, Scene, State
+from analytic.checks.twin import Event
+from analytic.kernel import layout
+from analytic.kernel import march as kernel
 from analytic.rocking import RockingModel
+from analytic.scene import problem_a, problem_b
 from analytic.solver import REST_RATE, ground, options, parameters
-from analytic.twin import Event
 
-from ...running.cases import Case
+from ...execution.cases import Case
 
 SOLVER = f"{__name__}:prepared"
 SHORT_HOP = 0.3  # in units of 1/omega_r: below it, the first step is the whole hop

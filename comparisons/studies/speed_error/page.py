@@ -1,40 +1,310 @@
-"""What is shown of the speed-error study."""
+"""What is shown of the speed-error study.
+
+What an error costs: the levels that were run as one row for each error, the cost at an equal error, and what the
+report's first screen says of it.
+"""
 
 import math
 import statistics
+from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from ...measuring.scripts import NAME as SCRIPT
-from ...running.age import timed_apart
-from ...running.provenance import Result
-from ...showing.figures import beside, lines, mains
-from ...showing.parts import NAME as SOLVER
-from ...showing.parts import Column, Head, Page, grouped, number, percent, short, table, where
-from .cases import NEEDED, PLAIN
-from .costs import (
-    APART,
-    ASKED,
-    CPU,
-    FINE,
-    FINE_LEVELS,
-    FINEST,
-    KERNEL,
-    MEASURES,
-    NOISE,
-    as_needed,
-    equal_cost_tables,
-    glance,
-    judgements,
-    level_words,
-    levels_run,
-    measures_of,
-    noise,
-    passing,
-    reached,
-    times,
-)
+from engines import ENGINES
+
+from ...execution.by_solver import timed_apart
+from ...execution.provenance import Result
+from ...metrics.scripts import NAME as SCRIPT
+from ...plotting.figures import beside, lines, mains
+from ...plotting.glance import Advised, Curve, Glance
+from ...plotting.parts import COST, Head, Judgement, Mark, Page, Table, cheapest, grouped, kept_from, table, where
+from ...plotting.wording import listed
+from ...schemas.columns import NAME, Column, Row, number, percent, short
+from ...schemas.columns import NAME as SOLVER
+from .study import COLUMNS, NEEDED, PLAIN
+
+FINE, FINE_LEVELS, FINEST = "horizon_tilt", (1e-6, 1e-9, 1e-12), 1e-16  # of integrators alone; the last is drawn
+KERNEL = "analytic, kernel"
+# What is shown of a scene: the errors that it has of the first line whose first it has. All are numbers without a unit.
+SHOWN = (("boundary_shift", "peak_tilt"), ("restitution", "peak_tilt"), ("peak_displacement",), (FINE,))
+MEASURES = {
+    "restitution": "error of restitution, rms [-]",
+    "peak_tilt": "error of peak tilt over slenderness [-]",
+    "peak_displacement": "error of peak displacement [-]",
+    "boundary_shift": "error of overturning boundary [-]",
+    FINE: "error of |tilt| at the horizon over slenderness [-]",
+}
+WANTED = (1e-2, 1e-3, 1e-4)  # errors at which costs are compared
+ASKED = 1e-3
+PEAK, BOUNDARY = "peak_tilt", "boundary_shift"
+CPU = COLUMNS["cpu_seconds"]
+TIMES = "cpu_seconds", "cpu_per_second", "cpu_per_step"
+NOISE = 95  # percentile of the levels
+NOT_REACHED = Mark("not reached", "none")
+APART = "timed apart"  # with another processor or the code of another commit than the model
+SHORT = {KERNEL: "analytic model", "time-stepping": "our time stepping"}
+
+
+def levels_run(result: Result) -> list[dict[str, Any]]:
+    """The rows of all solvers at their levels, one for each error shown: with name, title of the scene, measure, error.
+
+    CPU times are the least of the rounds, as what else the machine does only adds to them (Chen, Revels 2016, Robust
+    benchmarking in noisy environments). The error is None where the run failed, missed impacts or found no boundary.
+    principal: it is the scene's first.
+    """
+    scenes = result.settings["scenes"]
+    return [
+        {
+            **row,
+            **_least(row),
+            "name": NAME.of(row) + (", Bouc-Wen" if row["law"] == "bouc-wen" else ""),
+            "title": scenes[row["scene"]]["title"],
+            "measure": measure,
+            "principal": not place,
+            "error": None if row["failure"] or row["lost"] else row["errors"].get(measure),
+        }
+        for row in where(result.rows, part="work-precision")
+        for place, measure in enumerate(measures_of(scenes[row["scene"]]))
+    ]
+
+
+def _least(row):
+    """Its CPU times, of the round that took least."""
+    share = row["cpu_low"] / row["cpu_seconds"] if "cpu_seconds" in row else None
+    return {key: row[key] * share for key in TIMES if share and row.get(key)}
+
+
+def measures_of(scene: dict[str, Any]) -> list[str]:
+    """The errors shown of a scene."""
+    line = next(line for line in SHOWN if line[0] in scene["measures"])
+    return [measure for measure in line if measure in scene["measures"]]
+
+
+def as_needed(result: Result) -> list[dict[str, Any]]:
+    """Those of `levels_run` in which no more is modelled than the scene needs."""
+    return [row for row in where(levels_run(result), model=NEEDED) if row["law"] != "bouc-wen"]
+
+
+def passing(rows: Iterable[dict[str, Any]], level: float) -> dict[str, Row]:
+    """{name: the cheapest of its rows at which it and all finer ones keep an error}, cheapest first; of one scene and
+    one measure."""
+    return cheapest(rows, "name", lambda row: _within(row, level), CPU.of)
+
+
+def _within(row, error):
+    return row["error"] is not None and row["error"] <= error
+
+
+def level_costs(result: Result) -> dict[str, dict[tuple[str, str], dict[float, float]]]:
+    """{solver: {(scene, measure): {error: CPU time [s/s] of the cheapest level that, as all finer ones, keeps it}}} for
+    the errors `WANTED` that are reached, of all scenes but the problems."""
+    found: dict[str, dict[tuple[str, str], dict[float, float]]] = {}
+    for (scene, measure), rows in grouped(as_needed(result), "scene", "measure").items():
+        if measure != FINE:
+            for row in rows:
+                found.setdefault(row["name"], {}).setdefault((scene, measure), {})
+            for error in WANTED:
+                for name, row in passing(rows, error).items():
+                    found[name][scene, measure][error] = row["cpu_per_second"]
+    return found
+
+
+def equal_cost_tables(result: Result) -> list[Table | None]:
+    """A table for each error: what it costs every solver in every scene."""
+    costs, scenes, apart = level_costs(result), result.settings["scenes"], timed_apart(result)
+    places = list(dict.fromkeys(place for some in costs.values() for place in some))
+
+    def cell(place, error):
+        model = costs.get(KERNEL, {}).get(place, {}).get(error)
+
+        def text(row):
+            if place not in row["costs"]:
+                return "–"
+            if (cost := row["costs"][place].get(error)) is None:
+                return "not reached"
+            over = f" ({number(cost / model, 2)} ×)" if model and row["name"] != KERNEL else ""
+            over = f" ({APART})" if row["name"].split(", ")[0] in apart else over
+            return f"{number(1e3 * cost, 2)}{over}"
+
+        return Column(f"{scenes[place[0]]['title']}: {MEASURES[place[1]].removesuffix(' [-]')}", text)
+
+    return [
+        table(
+            "CPU time per simulated second [ms] (over the model’s) of the cheapest level that, as all finer ones, "
+            f"keeps an error of {percent(error, 1)}",
+            [{"name": name, "costs": some} for name, some in costs.items()],
+            Column("solver", "name"),
+            *(cell(place, error) for place in places),
+        )
+        for error in WANTED
+    ]
+
+
+def judgements(result: Result) -> tuple[Judgement, ...]:
+    """CPU time over the analytic model's at an equal error, by (engine, variant); none without that scene."""
+    kept, apart, marks = keeping(result, ASKED), timed_apart(result), {}
+    for name, *pair in grouped(_plain(result), "name", "engine", "variant") if KERNEL in kept else ():
+        ratio = name in kept and kept[name]["cpu_per_second"] / kept[KERNEL]["cpu_per_second"]
+        if name in {NAME.of(one) for one in result.settings["variants"]}:
+            mark = Mark(f"{number(ratio, 2)} ×", "none", value=ratio) if ratio else NOT_REACHED
+            marks[tuple(pair)] = Mark(APART, "none", apart[pair[0]]) if ratio and pair[0] in apart else mark
+    heading = f"CPU time over the analytic model's at {percent(ASKED, 1)} of peak tilt, isolated rocking"
+    return (Judgement(heading, marks, COST),) if marks else ()
+
+
+def level_words(row: Row) -> str:
+    return f"{row['parameter'].replace('_', ' ')} {short(row['level'])}" if row["parameter"] else "as written"
+
+
+def glance(result: Result) -> Glance | None:
+    """The curves of the first screen's chart of costs, and the recommendation by accuracy; None without the scene."""
+    rows = _plain(result)
+    if not rows:
+        return None
+    return Glance(
+        says={"cost": words} if (words := at_a_glance(result)) else {},
+        curves=tuple(_curves(result, rows)),
+        scene=result.settings["scenes"][PLAIN]["title"],
+        advice=tuple(one for error in WANTED for one in advice(result, error)),
+        asked=tuple(name for name, engine in ENGINES.items() if engine.subject),
+        alike=noise(result),
+    )
+
+
+def _plain(result):
+    """Rows of the scene in which engines are compared, with the error of their peak tilt."""
+    return where(as_needed(result), scene=PLAIN, measure=PEAK)
+
+
+def _curves(result, rows):
+    """Of every solver once: engines' main variants and those as they come, scripts, and the other solvers."""
+    listed = {NAME.of(one): one for one in result.settings["variants"]}
+    main, apart = mains(result.settings["variants"]), timed_apart(result)
+    for (who, engine, variant), some in grouped(rows, "name", "engine", "variant").items():
+        tier = listed[who]["tier"] if who in listed else ""
+        if who in listed and tier != "defaults" and main[engine] != variant:
+            continue
+        known = {"tuned": f"{engine}, tuned", "defaults": f"{engine}, defaults"}
+        name = known.get(tier, f"{engine}, script" if variant == SCRIPT else SHORT.get(who, engine))
+        name += f" ({APART})" if engine in apart else ""
+        points = tuple(
+            (row["cpu_per_second"], row["errors"]["peak_tilt"], not row["lost"], _says(row))
+            for row in some
+            if not row["failure"] and "peak_tilt" in row["errors"]
+        )
+        kind = tier or ("tuned" if engine in ENGINES else "model")
+        yield Curve(who, name, kind, engine in ENGINES and ENGINES[engine].subject, points)
+
+
+def _says(row):
+    lost = f", {row['lost']} impacts missed" if row["lost"] else ""
+    error, cost = number(row["errors"]["peak_tilt"], 2), number(1e3 * row["cpu_per_second"], 2)
+    return f"{row['name']}, {level_words(row)}: {error} in {cost} ms{lost}"
+
+
+def keeping(result: Result, error: float) -> dict[str, Row]:
+    """{solver: the row in `PLAIN` of its cheapest level that, as all finer ones, keeps an error}, cheapest first; the
+    error is that of the peak tilt there and of the overturning boundaries."""
+    found, rows = {}, as_needed(result)
+    judged = [*where(rows, scene=PLAIN, measure=PEAK), *where(rows, measure=BOUNDARY)]
+    for (name,), some in grouped(judged, "name").items():
+        by_scene = grouped(some, "scene")
+        kept = [{row["level"] for row in kept_from(one, lambda row: _within(row, error))} for one in by_scene.values()]
+        levels = [row for row in by_scene.get((PLAIN,), ()) if all(row["level"] in levels for levels in kept)]
+        if levels:
+            found[name] = min(levels, key=lambda row: row["cpu_per_second"])
+    return dict(sorted(found.items(), key=lambda item: item[1]["cpu_per_second"]))
+
+
+def advice(result: Result, error: float) -> list[Advised]:
+    """What keeps an error: of tuned variants of the engines in question, whose engine computes the impact, the cheapest
+    level of the cheapest, and that of every other that costs the same within the `noise`, or was timed apart."""
+    apart = timed_apart(result)
+    able = {
+        NAME.of(one)
+        for one in where(result.settings["variants"], tier="tuned", applies_impact=False)
+        if ENGINES[one["engine"]].subject
+    }
+    kept = [row for name, row in keeping(result, error).items() if name in able]
+    least = min((row["cpu_per_second"] for row in kept if row["engine"] not in apart), default=0.0)
+    alike = [row for row in kept if row["engine"] in apart or row["cpu_per_second"] <= noise(result) * least]
+    return [_advised(result, error, row) for row in alike] or [Advised(error)]
+
+
+def _advised(result, error, row):
+    main = mains(result.settings["variants"])[row["engine"]] == row["variant"]
+    variant = "" if main else f" --variant {row['variant']}"
+    level = f"{row['level']:.3g}".replace("e+", "e")
+    same = {key: row[key] for key in ("engine", "variant", "parameter", "level")}
+    peaks = where(as_needed(result), **same, measure=PEAK)
+    elsewhere = {other["title"]: other["error"] for other in peaks if other["scene"] != PLAIN}
+    command = f"rocking run SCENE --engine {row['engine']}{variant} --set {row['parameter']}={level}"
+    return Advised(error, **same, cost=row["cpu_per_second"], command=command, elsewhere=elsewhere)
+
+
+def times(result: Result) -> str:
+    """CPU time of the engines in question, tuned, over the model's at the error `ASKED`: "94 (a) and 200 (b) times the
+    analytic model’s CPU time"; "" where none reaches it."""
+    told = [f"{number(cost / model, 2)} ({engine})" for engine, cost, model in _asked(result)]
+    return f"{listed(told)} times the analytic model’s CPU time" if told else ""
+
+
+def at_a_glance(result: Result) -> str:
+    """The same in sentences with the times themselves, and what a script costs; "" where none reaches it."""
+    found = _asked(result)
+    if not found:
+        return ""
+    own = listed([f"{number(1e3 * cost, 2)} ms ({engine})" for engine, cost, _ in found])
+    over = listed([number(cost / model, 2) for _, cost, model in found])
+    alike = max(cost for _, cost, _ in found) <= noise(result) * min(cost for _, cost, _ in found)
+    words = (
+        f"a peak tilt within {percent(ASKED, 1)} of the slenderness takes tuned engines {own} of CPU time per "
+        f"simulated second. The analytic model takes {number(1e3 * found[0][2], 2)} ms: tuned engines take {over} "
+        "times as long."
+    )
+    if alike and len(found) > 1:
+        words += f" Costs within a factor of {number(noise(result), 2)} are not distinguished, so these are the same."
+    scripts = [
+        f"{number(1e3 * row['cpu_per_second'], 2)} ms with an error of {percent(row['error'])} ({row['engine']})"
+        for row in _plain(result)
+        if row["variant"] == SCRIPT and row["error"] is not None
+    ]
+    return f"{words} A script written by rocking script has one level: {listed(scripts)}." if scripts else words
+
+
+def _asked(result):
+    """(engine, CPU time, the model's) of the engines in question, tuned, that reach the error `ASKED`, but those timed
+    apart."""
+    kept, apart = keeping(result, ASKED), timed_apart(result)
+    model = kept.get(KERNEL)
+    return [
+        (row["engine"], row["cpu_per_second"], model["cpu_per_second"])
+        for row in reached(result)
+        if model and row["engine"] not in apart
+    ]
+
+
+def reached(result: Result) -> list[Row]:
+    """The levels `keeping` the error `ASKED` of main variants, tuned, of the engines in question."""
+    kept, main = keeping(result, ASKED), mains(result.settings["variants"])
+    return [
+        kept[NAME.of(one)]
+        for one in where(result.settings["variants"], tier="tuned")
+        if ENGINES[one["engine"]].subject and main[one["engine"]] == one["variant"] and NAME.of(one) in kept
+    ]
+
+
+def noise(result: Result) -> float:
+    """The factor below which two costs are not distinguished: of the median round over the least, without the largest.
+
+    Had the round that took least not been run, the cost would be higher by this factor at most.
+    """
+    rows = where(result.rows, part="work-precision")
+    known = [row["cpu_seconds"] / row["cpu_low"] for row in rows if "cpu_seconds" in row]
+    return float(np.percentile(known or [1], NOISE))
+
 
 __all__ = ["glance", "judgements", "page"]
 LEVELS = (1e-2, 1e-3, 1e-4, 1e-5)  # of an error
@@ -45,7 +315,7 @@ FIRST = (("free-rigid", "restitution"), (PLAIN, "restitution"), ("near-overturni
 PANELS = {"restitution": "restitution", "peak_tilt": "peak tilt", "peak_displacement": "displacement",
           "boundary_shift": "amplitude", FINE: "tilt"}  # fmt: skip
 
-NAME = Column("solver", "name")
+NAME_COLUMN = Column("solver", "name")
 SCENE = Column("scene", "title")
 
 
@@ -75,7 +345,7 @@ def page(result: Result) -> Page:
             *(_costs(result, some) for some in errors.values()),
             _without_error(every),
             Head("Step and order"),
-            _figure(rows, Column("mean step [s]", "step"), "Mean step: simulated time over steps.", rows),
+            _figure(rows, COLUMNS["step"], "Mean step: simulated time over steps.", rows),
             *(
                 _orders(measure, some, result.settings["scenes"])
                 for (measure,), some in grouped(rows, "measure").items()
@@ -83,7 +353,7 @@ def page(result: Result) -> Page:
             table(
                 "Cost over all scenes and levels, lowest to highest",
                 [{"name": name, "rows": some} for (name,), some in grouped(rows, "name").items()],
-                NAME,
+                NAME_COLUMN,
                 Column("CPU time per simulated second [s/s]", lambda row: _range(row["rows"], "cpu_per_second", 1)),
                 Column("CPU time per step [µs]", lambda row: _range(row["rows"], "cpu_per_step", 1e6)),
             ),
@@ -213,11 +483,11 @@ def _without_error(every):
     return table(
         "Levels without an error, of those run",
         [row for row in counted if row["failed"] or row["lost"] or row["none"]],
-        NAME,
+        NAME_COLUMN,
         SCENE,
         Column("levels [-]", "all"),
-        Column("failed [-]", "failed"),
-        Column("impacts missed [-]", "lost"),
+        COLUMNS["failed"],
+        COLUMNS["lost"].called("impacts missed"),
         Column("no overturning boundary near the reference's [-]", "none"),
     )
 
@@ -234,7 +504,7 @@ def _orders(measure, rows, scenes):
         f"Observed order q, ± its standard error: the {MEASURES[measure]} grows as the accuracy parameter to the power "
         "q; of three levels or more above rounding",
         [{"name": name, **orders} for name, orders in fits.items()],
-        NAME,
+        NAME_COLUMN,
         *(Column(scenes[scene]["title"], scene) for (scene,) in grouped(rows, "scene")),
     )
 
@@ -278,8 +548,8 @@ def _more_than_needed(result, every):
         "A scene modelled with more than it needs, at the same level: ratio of CPU times, errors as in the tables "
         "above, missed impacts",
         [row for row in pairs if row["model"] != NEEDED],
-        Column("modelled", "model"),
-        NAME,
+        COLUMNS["model"],
+        NAME_COLUMN,
         Column("level", level_words),
         SCENE,
         Column("CPU time ratio [-]", "ratio", digits=3),
@@ -291,7 +561,7 @@ def _more_than_needed(result, every):
         "That it costs more is not confirmed here; the paper's own case (sub-stepped inside a time-step scheme) is not "
         "tested",
         laws,
-        NAME,
+        NAME_COLUMN,
         SCENE,
         Column("CPU time ratio, median [-]", lambda row: statistics.median(row["ratios"]), digits=3),
         Column("lowest [-]", lambda row: min(row["ratios"]), digits=3),

@@ -1,17 +1,390 @@
-"""The named hard cases: a scene each, and what is known about it."""
+"""The named hard cases: a scene each, and what is known about it.
+
+What a hard case is, and the block and the motions that several share.
+
+Hard cases without friction of one extreme quantity: of the start, the motion, the bearings or the block.
+
+Hard cases with friction: the block slides, or nearly so.
+"""
 
 import functools
 import math
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
-from analytic import Base, Block, PulseMotion, SampledMotion, Scene, Start
-from analytic.caryatid import BEARINGS
+from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start
+from analytic.scene import BASE, BEARINGS, MASS, benchmark_block, caryatid_block
+from analytic.sliding.run import slipping_friction
+from analytic.solver import parameters
 
-from .basis import BLOCK, GAMMA, ISOLATED, STATUE, THRESHOLD, HardCase, sampled, times
-from .extremes import extremes
-from .sliding import sliding
+BLOCK = benchmark_block()  # omega_r = 2.60 rad/s, slenderness 0.25
+GAMMA = BLOCK.slenderness
+THRESHOLD = 9.81 * math.tan(GAMMA)  # uplift acceleration on rigid ground [m/s2]
+STATUE = caryatid_block(0.28)
+ISOLATED = Scene(block=STATUE, base=BASE, bearings=BEARINGS, duration=8.0)
+
+FREE, SLIDING = "free rocking", "model and Moreau"
+
+
+@dataclass(frozen=True, eq=False)
+class HardCase:
+    """One hard case.
+
+    title: what is hard about it. closed: the solution is known in closed form. expected: measure -> value known
+    beforehand, slips in m. step [s]: what every solver that steps has to take. tolerances: kind of solver -> measure ->
+    (value, reason), in place of the general ones. twin_until: the twin is slow, and judges the kernel up to this time
+    [s] only. quick: part of the quick study.
+    """
+
+    title: str
+    scene: Scene
+    closed: bool = False
+    expected: dict = field(default_factory=dict)
+    step: float | None = None
+    tolerances: dict = field(default_factory=dict)
+    twin_until: float = math.inf
+    quick: bool = False
+
+    @property
+    def name(self) -> str:
+        return self.scene.name
+
+    @property
+    def oracle(self) -> str:
+        """Who judges: with friction the model all others, and Moreau's time stepping the model; else the closed form of
+        free rocking, or kernel and twin each other, and the kernel all others."""
+        if self.scene.friction is not None:
+            return SLIDING
+        return FREE if self.closed else "kernel and twin"
+
+
+def sampled(values: npt.ArrayLike, dt: float = 0.01) -> SampledMotion:
+    return SampledMotion(dt, np.asarray(values, dtype=float))
+
+
+def times(seconds: float, dt: float = 0.01) -> np.ndarray:
+    return np.arange(round(seconds / dt) + 1) * dt
+
+
+SPEED = 0.8  # m/s, gained by the ground in a pulse or a spike that makes the block rock without overturning it
+# Damper of each bearing [N s/m] that is critical for block and base on the stiffness after yielding.
+CRITICAL = 2 * math.sqrt(BEARINGS.given("kb") * ISOLATED.total_mass / BEARINGS.count)
+# The other laws with the stiffnesses of BEARINGS; bilinear with a characteristic strength near theirs, 640 N.
+LAWS = {
+    "bilinear": Bearings(law="bilinear", count=4, ka=BEARINGS.ka, kb=BEARINGS.kb, yield_force=700.0),
+    "bouc-wen": Bearings(law="bouc-wen", count=4, ka=BEARINGS.ka, kb=BEARINGS.kb, alpha=BEARINGS.alpha),
+    "linear": Bearings(law="linear", count=4, ka=BEARINGS.ka),
+}
+
+
+def extremes() -> list[HardCase]:
+    return [*_starts(), *_pulses(), *_samples(), *_vertical(), *_extreme_bearings(), *_inertias()]
+
+
+def _starts():
+    # Time to |tilt| = pi/2 of a block at rest just beyond the unstable point: its distance grows as cosh(omega_r t),
+    # then as the separatrix of a pendulum, tan(distance/4) ~ exp(omega_r t); off by the square of the share.
+    share = 1e-9
+    beyond = GAMMA * (1 + share) - GAMMA  # as rounded
+    falls = math.log(8 * math.tan((math.pi / 2 - GAMMA) / 4) / beyond)
+    known: dict[int, dict] = {
+        -1: {"outcome": "rocks"},
+        1: {"outcome": "overturns", "overturning time": falls / Scene(block=BLOCK).rocking_frequency},
+    }
+    return [
+        HardCase(
+            "released at the unstable point, but for 1e-9 of the slenderness",
+            Scene(
+                name=f"unstable point {sign * share:+g}",
+                block=BLOCK,
+                start=Start(tilt=GAMMA * (1 + sign * share)),
+                duration=12.0,
+            ),
+            expected=expected,
+        )
+        for sign, expected in known.items()
+    ]
+
+
+def _pulses():
+    return [
+        *(
+            HardCase(
+                f"ground acceleration jumps to {share:g} of what lifts the block",
+                Scene(
+                    name=f"jump to {share:g}",
+                    block=BLOCK,
+                    motion=PulseMotion("rectangular", share * THRESHOLD, 1.5),
+                    duration=6.0,
+                ),
+                expected=expected,
+                quick=True,
+            )
+            for share, expected in ((0.999, {"outcome": "stands"}), (1.001, {"outcome": "rocks", "uplift time": 0.0}))
+        ),
+        *(
+            HardCase(
+                f"pulse of {math.pi / frequency:.2g} s",
+                Scene(
+                    name=f"pulse of {frequency:g} rad/s",
+                    block=BLOCK,
+                    motion=PulseMotion("half-sine", 0.5 * SPEED * frequency, frequency),
+                    duration=4.0,
+                ),
+                expected={
+                    "outcome": "rocks",
+                    "uplift time": math.asin(THRESHOLD / (0.5 * SPEED * frequency)) / frequency,
+                },
+                quick=frequency == 1e4,
+            )
+            for frequency in (1e2, 1e4)
+        ),
+    ]
+
+
+def _samples():
+    spike = np.zeros(100)
+    spike[20] = SPEED / 0.01
+    return [
+        *(
+            HardCase(
+                "each sample of the ground acceleration is the opposite of the last one",
+                Scene(
+                    name=f"alternating at {dt:g} s",
+                    block=BLOCK,
+                    motion=sampled(height * THRESHOLD * (-1.0) ** np.arange(1 + round(2 / dt)), dt),
+                    duration=4.0,
+                ),
+            )
+            for dt, height in ((0.01, 3.0), (0.05, 10.0))
+        ),
+        HardCase(
+            "one sample of 8 g among zeros",
+            Scene(name="one sample", block=BLOCK, motion=sampled(spike), duration=4.0),
+            expected={"outcome": "rocks"},
+            quick=True,
+        ),
+    ]
+
+
+def _vertical():
+    return [
+        HardCase(
+            "the vertical motion leaves 1 % of gravity",
+            Scene(
+                name=f"1 % of gravity, {shape}",
+                block=BLOCK,
+                motion=PulseMotion(shape, amplitude, 6.0, vertical=PulseMotion(shape, -0.99 * 9.81, 6.0)),
+                duration=3.0,
+            ),
+            quick=shape == "rectangular",
+        )
+        for shape, amplitude in (("one-sine", 1.0), ("rectangular", 0.3))
+    ]
+
+
+def _extreme_bearings():
+    rocking = ISOLATED.with_(motion=PulseMotion("one-sine", 3.0, 6.0), start=Start(tilt=0.1), duration=6.0)
+    return [
+        *(
+            HardCase(f"{law} bearings, rocking", rocking.with_(name=f"{law} bearings", bearings=bearings))
+            for law, bearings in LAWS.items()
+        ),
+        *(
+            HardCase(
+                f"dampers of {share:g} times critical, rocking",
+                rocking.with_(name=f"damping {share:g}", bearings={"damping": share * CRITICAL}),
+            )
+            for share in (0.99, 100)
+        ),
+    ]
+
+
+def _inertias():
+    def block(ratio):
+        return BLOCK.model_copy(update={"corner_inertia": ratio * BLOCK.mass * BLOCK.radius**2})
+
+    return [
+        case
+        for ratio, duration in ((1.0001, 6.0), (100.0, 24.0))
+        for case in (
+            HardCase(
+                f"moment of inertia {ratio:g} m R2 about a corner, free rocking",
+                Scene(
+                    name=f"inertia {ratio:g}, free rocking",
+                    block=block(ratio),
+                    start=Start(tilt=0.6 * GAMMA),
+                    duration=duration,
+                ),
+                closed=True,
+                quick=ratio < 2,
+            ),
+            HardCase(
+                f"moment of inertia {ratio:g} m R2 about a corner, pulse",
+                Scene(
+                    name=f"inertia {ratio:g}, pulse",
+                    block=block(ratio),
+                    motion=PulseMotion("one-sine", 1.3 * THRESHOLD, 2 * Scene(block=block(ratio)).rocking_frequency),
+                    duration=duration,
+                ),
+            ),
+        )
+    ]
+
+
+G = 9.81
+# One cosine of 4.6 THRESHOLD at 3.2 rad/s on BLOCK: the friction from which the corner that lands slips on, and the
+# slips [m] of a block that slides to and fro, from its equations of motion (the tests find both again).
+SLIPS_FROM = 0.2633756360465358
+TO_AND_FRO = {"peak slip": 0.29498304635961, "end slip": 0.27196034003751}
+
+
+def sliding() -> list[HardCase]:
+    return [*_level(), *_near_slenderness(), *_impacts(), *_swings(), *_isolated()]
+
+
+def _case(title, name, mu, *, expected=None, quick=False, scene=None, **parts):
+    scene = Scene(block=BLOCK, duration=6.0) if scene is None else scene
+    return HardCase(title, scene.with_(name=name, friction=mu, **parts), expected=expected or {}, quick=quick)
+
+
+def _slides(slip):
+    return {"outcome": "slides", "peak slip": slip, "end slip": -slip}
+
+
+def _level():
+    a, mu, T = 4.0, 0.2, 0.5
+    v = (a - mu * G) * T
+    stops = v * T / 2 + v**2 / (2 * mu * G)
+    hop, T_hop = PulseMotion("rectangular", -2 * G, math.pi / 0.1), 0.1
+    # it flies until sqrt(2) T later, as its vertical velocity is g T at T; what it lands with takes mu of itself
+    v = a * T_hop - mu * G * math.sqrt(2) * T_hop
+    flies = a * T_hop**2 * (1.5 + math.sqrt(2)) + v**2 / (2 * mu * G)
+    return [
+        _case(
+            "slides from rest to rest under a jump of the ground acceleration",
+            "slides",
+            mu,
+            motion=PulseMotion("rectangular", a, math.pi / T),
+            expected=_slides(stops),
+            quick=True,
+        ),
+        _case(
+            "turns round twice while it slides, without sticking",
+            "slides to and fro",
+            mu,
+            motion=PulseMotion("one-cosine", 4 * mu * G, 6.0),
+            expected={"outcome": "slides"} | TO_AND_FRO,
+            quick=True,
+        ),
+        _case(
+            "flies under a vertical motion of 2 g, and slides where it lands",
+            "flies and slides",
+            mu,
+            motion=PulseMotion("rectangular", a, hop.frequency, vertical=hop),
+            duration=2.0,
+            expected=_slides(flies),
+        ),
+    ]
+
+
+def _near_slenderness():
+    """A half-sine of twice the acceleration that lifts the block if it does not slide before."""
+    w, share = 3.0, 0.999
+    pulse = PulseMotion("half-sine", 2 * THRESHOLD, w)
+    begins = math.asin(share / 2)
+    # of the ground under the block until the pulse ends, less what friction takes of it; then it stops
+    v = 2 * THRESHOLD / w * (math.cos(begins) + 1) - share * THRESHOLD * (math.pi - begins) / w
+    way = 2 * THRESHOLD * (math.cos(begins) * (math.pi - begins) + math.sin(begins)) / w**2
+    way += v**2 / (2 * share * THRESHOLD) - share * THRESHOLD * ((math.pi - begins) / w) ** 2 / 2
+    lifts = {"outcome": "rocks", "uplift time": math.asin(0.5) / w}
+    return [
+        _case(
+            f"friction of {factor:g} tan(slenderness): {words}",
+            f"friction {factor:g} of uplift",
+            factor * math.tan(GAMMA),
+            motion=pulse,
+            expected=expected,
+            quick=True,
+        )
+        for factor, words, expected in ((share, "it only slides", _slides(way)), (1.001, "it lifts, and slides", lifts))
+    ]
+
+
+def _impacts():
+    released = Scene(block=BLOCK, start=Start(tilt=0.6 * GAMMA), friction=1.0, duration=6.0)
+    cosine = PulseMotion("one-cosine", 4.6 * THRESHOLD, 3.2)
+    return [
+        _case(
+            "friction 0.1 % above that at which the impacts slip",
+            "impacts nearly slip",
+            1.001 * slipping_friction(parameters(released)),
+            scene=released,
+            expected={"outcome": "rocks", "peak slip": 0.0, "end slip": 0.0},
+        ),
+        *(
+            _case(
+                f"slides into an impact after which the corner just {words}",
+                f"impact just {words}",
+                factor * SLIPS_FROM,
+                motion=cosine,
+                duration=2.5,
+            )
+            for factor, words in ((0.999, "sticks"), (1.001, "slips"))
+        ),
+    ]
+
+
+def _swings():
+    tall, broad = (
+        Scene(block=BLOCK.model_copy(update={"mass": MASS, "radius": radius, "slenderness": slenderness}), duration=4.0)
+        for radius, slenderness in ((1.86, 0.348), (1.044, 0.449))
+    )
+    return [
+        _case(
+            "slides and sticks within a swing; overturns without sliding",
+            "saved by sliding",
+            0.4,
+            scene=tall,
+            motion=PulseMotion("half-sine", 9.38, 6.34),
+            duration=6.0,
+            quick=True,
+        ),
+        _case(
+            "slides through an impact; stays upright without sliding",
+            "overturned by sliding",
+            0.5,
+            scene=broad,
+            motion=PulseMotion("one-sine", 17.39, 10.13),
+        ),
+    ]
+
+
+def _isolated():
+    return [
+        _case(
+            "on bearings, slides and never lifts",
+            "isolated, slides",
+            0.25,
+            scene=ISOLATED,
+            motion=PulseMotion("one-sine", 5.0, 5.0),
+            duration=5.0,
+            expected={"outcome": "slides"},
+        ),
+        _case(
+            "on bearings, slides while it lifts and overturns",
+            "isolated, slides and rocks",
+            0.25,
+            scene=ISOLATED,
+            block=caryatid_block(0.2),
+            motion=PulseMotion("one-sine", 6.0, 4.0),
+            duration=3.0,
+        ),
+    ]
+
 
 # One sine of 7.8 rad/s on BLOCK: amplitudes over THRESHOLD at which the outcome changes, from bisection with the kernel
 # (the tests bisect again).

@@ -7,19 +7,16 @@ import math
 import numpy as np
 
 from analytic import Response, SampledMotion, Scene, simulate
-from analytic.closed_form import free_rocking_tilt, rest_time
+from analytic.checks.closed_form import free_rocking_tilt, rest_time
+from analytic.checks.time_stepping import simulate_time_stepping
+from analytic.checks.twin import simulate_twin
 from analytic.rocking import restitution
 from analytic.solver import HISTORY_POINTS
-from analytic.time_stepping import simulate_time_stepping
-from analytic.twin import simulate_twin
-from engines.comparison import outcome_of
-from engines.copies import changed_copies
-from engines.statue_range import outside
+from engines.comparison import changed_copies, outcome_of
+from engines.simulating import outside
 
-from ...measuring.errors import energy_errors
-from ...measuring.horizon import PERTURBATION, sensitivity_horizon
-from .basis import FREE, HardCase
-from .cases import hard_cases
+from ...metrics.errors import PERTURBATION, energy_errors, sensitivity_horizon
+from .cases import FREE, HardCase, hard_cases
 
 JUDGE_TOLERANCE = 1e-15  # of the kernel where it judges others
 LEAST_RESTITUTION = 1e-30  # stands for none in the closed form, which divides by its logarithm

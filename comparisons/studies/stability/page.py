@@ -3,15 +3,16 @@
 import re
 from itertools import product
 
-from engines.statue_range import in_words
+from engines.simulating import in_words
 
-from ...running.provenance import Result
-from ...showing.charts import REFERENCE, Axis, Chart, broad, figure, room
-from ...showing.figures import as_it_comes, kind, subject
-from ...showing.parts import NAME as ENGINE
-from ...showing.parts import Column, Head, Judgement, Mark, Page, grouped, short, table, where
-from .basis import FREE, SLIDING
-from .study import DEFAULT, DIFFERS, FAILED, FINER, RIGHT, may_slide, worst
+from ...execution.provenance import Result
+from ...plotting.charts import REFERENCE, Axis, Chart, broad, figure, room
+from ...plotting.figures import as_it_comes, kind, subject
+from ...plotting.parts import Head, Judgement, Mark, Page, grouped, table, where
+from ...schemas.columns import NAME as ENGINE
+from ...schemas.columns import Column, short
+from .cases import FREE, SLIDING
+from .study import COLUMNS, DEFAULT, DIFFERS, FAILED, FINER, RIGHT, may_slide, worst
 
 WRONG = "wrong"  # a run that differs in its outcome: never the colour of a small error
 # sign in a cell, its class in the style sheet
@@ -100,7 +101,7 @@ def page(result: Result) -> Page:
                 wrong,
                 CASE,
                 NAME,
-                Column("result", "result"),
+                COLUMNS["result"],
                 Column("measure farthest outside", "measure"),
                 Column("value", "value", digits=None),
                 TOLERANCE,

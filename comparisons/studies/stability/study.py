@@ -11,13 +11,14 @@ from analytic import Response
 from engines import get_engine
 from engines.comparison import outcome_of
 
-from ...measuring.errors import energy_errors
-from ...running.cases import Case
-from ...running.plan import Batch, Computed, Plan, Request
-from ...running.provenance import scrub
-from ...running.sweep import Row
-from .basis import SLIDING, HardCase
-from .cases import hard_cases
+from ...execution.cases import Case
+from ...execution.plan import Batch, Computed, Plan, Request
+from ...execution.provenance import scrub
+from ...execution.sweep import Row
+from ...metrics.errors import energy_errors
+from ...schemas.columns import declared, list_of, number_of, table_of, whole_of, word_of
+from ..rows import SHARED
+from .cases import SLIDING, HardCase, hard_cases
 from .oracle import (
     LAST_PART,
     Oracle,
@@ -30,6 +31,21 @@ from .oracle import (
     stepping_errors,
     twin_step,
 )
+
+# What its rows have; see `comparisons.studies.rows`.
+COLUMNS = SHARED | declared(
+    word_of("case", "case", "name of the hard case"),
+    table_of("set", "set", "settings that differ from the default"),
+    word_of("result", "result", '"right", "differs" or "failed"'),
+    list_of("outside", "outside", "measures that are outside their tolerance"),
+    table_of("errors", "errors", "by measure: [error, tolerance], each in the measure's unit"),
+    number_of("until", "until", "time up to which the motion is compared", "s"),
+    whole_of("impacts", "impacts", "impacts of the run"),
+    whole_of("steps", "steps", "steps of the run"),
+    table_of("settings", "settings", "all settings of the run"),
+)
+CASE = "case engine variant level? set cpu_seconds? result outcome | outside errors until? impacts steps"
+PARTS = {"default settings": CASE, "finer settings": CASE}
 
 QUICK_LIMIT, TIME_LIMIT = 60.0, 300.0  # s, of one run; of those that end the longest takes 75 s of CPU time
 # s; only in the engines' main variants are scenes longer than the first run at finer levels, and scenes longer than

@@ -10,42 +10,33 @@ from analytic.response import EDGE
 from engines.comparison import END, PEAK
 from engines.comparison import RESTITUTION as RESTITUTION_LIMIT
 
-from ...measuring.errors import rms
-from ...measuring.statistics import wilson
-from ...running.provenance import Result
-from ...showing.boundaries import (
+from ...execution.provenance import Result
+from ...metrics.errors import rms
+from ...metrics.statistics import wilson
+from ...plotting.charts import Axis, Chart, curve, figure, key_of
+from ...plotting.figures import (
     FOUND,
     LARGEST,
     MEDIAN,
     RATINGS,
+    as_it_comes,
+    beside,
     failures,
     judged,
     largest,
+    leading,
     listing,
     missing,
+    ranks,
     rated,
     strip,
     under_jumps,
 )
-from ...showing.charts import Axis, Chart, curve, figure, key_of
-from ...showing.figures import as_it_comes, beside, leading, ranks
-from ...showing.glance import Glance, counted
-from ...showing.parts import (
-    NAME,
-    Column,
-    Figure,
-    Judgement,
-    Mark,
-    Page,
-    grouped,
-    number,
-    percent,
-    table,
-    typeset,
-    where,
-)
-from ...showing.wording import TRUSTED, ends, left_out, listed, tally
-from .study import APART, FREQUENCY
+from ...plotting.glance import Glance, counted
+from ...plotting.parts import Figure, Judgement, Mark, Page, grouped, table, where
+from ...plotting.wording import TRUSTED, ends, left_out, listed, tally
+from ...schemas.columns import NAME, Column, number, percent, typeset
+from .study import APART, COLUMNS, FREQUENCY
 
 LEAST_RIGHT = 0.95  # share of right runs, of those not left out, from which an engine is good
 LEAST = 1e-3  # that the figure's axis begins at
@@ -95,7 +86,7 @@ def page(result: Result) -> Page:
                 f"of peaks and slip, {RESTITUTION_LIMIT:g} of the restitution and 10 % of an impact's loss",
                 counts,
                 NAME,
-                Column("kind", "tier"),
+                COLUMNS["tier"],
                 Column("scenes", "friction"),
                 Column("right [-]", "right"),
                 *ends(counts),
@@ -104,7 +95,7 @@ def page(result: Result) -> Page:
                 Column("error of the slip, median", "slip", percent=True),
                 Column("worst", "slip_worst", percent=True),
                 Column("error of restitution by states at slipping impacts, rms [-]", "slipping"),
-                Column("of these missed [-]", "lost"),
+                COLUMNS["lost"].called("of these missed"),
                 Column("CPU time over the model's [-]", lambda row: row["cpu"] and f"{number(row['cpu'], 2)} ×"),
             ),
             table(
@@ -122,21 +113,21 @@ def page(result: Result) -> Page:
                 "Runs that differ, without the variants “defaults”",
                 [row for row in _runs(result) if row["class"] == "differs" and row["tier"] != "defaults"],
                 NAME,
-                Column("scene", "index"),
-                Column("friction [-]", "friction", digits=3),
+                COLUMNS["index"],
+                COLUMNS["friction"],
                 Column("in what", lambda row: typeset("; ".join(row["differences"]))),
             ),
             listing(
                 "Each drawn statue under one pulse: shift of its lowest boundary",
                 where(result.rows, part="drawn edge"),
                 where(result.rows, part="drawn shift"),
-                Column("slenderness γ [rad]", "slenderness", 3),
-                Column("R [m]", "radius", 3),
+                COLUMNS["slenderness"].called("slenderness γ", digits=3),
+                COLUMNS["radius"],
                 Column(
                     "base over block mass [-]", lambda row: "rigid" if row["base_mass"] is None else row["base_mass"]
                 ),
                 Column("bearings", lambda row: row["law"] or "–"),
-                Column("period [s]", "period", 3),
+                COLUMNS["period"],
             ),
             missing(result),
             _shares(cells),
@@ -288,9 +279,9 @@ def _sliding(rows):
         "intervals",
         rows,
         Column("support", "name"),
-        Column("scenes [-]", "runs"),
-        Column("that lift or slide [-]", "moves"),
-        Column("that need more than the friction [-]", "lacking"),
+        COLUMNS["runs"],
+        COLUMNS["moves"],
+        COLUMNS["lacking"],
         *shares,
         Column("undecided, failed [-]", "{undecided}, {failed}"),
     )

@@ -11,24 +11,94 @@ import numpy as np
 import typer
 
 from analytic import Response, SampledMotion, Scene, SceneError, Start, simulate, simulate_many
-from analytic.bearing import BearingLaw
-from analytic.records.fema import PREFIX
+from analytic.records.content import PREFIX
 from analytic.records.folder import folder_motions
+from analytic.rocking import BearingLaw
 from engines import get_engine
 from engines.checks import LEAST_SLIP
 from engines.comparison import LAST, PEAK, Reference, compare
-from engines.matching import LEAST_TILT, impacts_of, matched
-from engines.statue_range import RANGE, in_words
+from engines.events import LEAST_TILT, impacts_of, matched
+from engines.simulating import RANGE, in_words
 
-from ...ensembles.motions import USUAL_RATIO, Folder, source_of
-from ...ensembles.statues import FRICTION, MOTIONS, PEAKS, SHAPES, VERTICAL, random_scene, random_slider
-from ...measuring.boundaries import TOLERANCE, Edge, Runs, edges
-from ...measuring.statistics import class_of
-from ...running.cases import Case, variant_settings
-from ...running.plan import Batch, Computed, Plan, Request
-from ...running.progress import log
-from ...running.provenance import commit_seed
-from ...running.sweep import Row
+from ...ensembles import (
+    FRICTION,
+    MOTIONS,
+    PEAKS,
+    SHAPES,
+    USUAL_RATIO,
+    VERTICAL,
+    Folder,
+    random_scene,
+    random_slider,
+    source_of,
+)
+from ...execution.cases import Case, variant_settings
+from ...execution.plan import Batch, Computed, Plan, Request
+from ...execution.progress import log
+from ...execution.provenance import commit_seed
+from ...execution.sweep import Row
+from ...metrics.boundaries import TOLERANCE, Edge, Runs, edges
+from ...metrics.statistics import class_of
+from ...schemas.columns import declared, flag_of, list_of, number_of, whole_of, word_of
+from ..rows import BOUNDARY, BOUNDARY_ROW, EDGE, SHARED, SOUGHT
+
+# What its rows have; see `comparisons.studies.rows`.
+COLUMNS = (
+    SHARED
+    | BOUNDARY
+    | declared(
+        number_of("radius", "R", "of a drawn block, base corner to centre of mass", "m", digits=3),
+        number_of("base_mass", "base mass", "of a drawn block: of its base over its own; null: rigid ground"),
+        word_of("law", "law", "of a drawn block's bearings; null: none"),
+        number_of(
+            "period", "period", "of a drawn block on its bearings, at their stiffness after yielding", "s", digits=3
+        ),
+        whole_of("runs", "scenes", "scenes that the row sums up; of a boundary, runs that the search took"),
+        whole_of("index", "scene", "number of the scene in its ensemble: one without a friction, one with", ""),
+        word_of("support", "support", "what the block's base is: rigid ground, or isolated"),
+        word_of("motion", "motion", "pulse, synthetic or recorded"),
+        number_of(
+            "friction",
+            "friction",
+            "coefficient, null: none; of a cell its interval [low, high]",
+            type="number or list",
+            digits=3,
+        ),
+        whole_of("undecided", "undecided", "of the runs, those whose end is not certain, with friction or without"),
+        whole_of(
+            "moves",
+            "that lift or slide",
+            "of the runs, those in which the block lifts or slides, with friction or without",
+        ),
+        whole_of(
+            "lacking",
+            "that need more than the friction",
+            "of the runs, those that need more than the friction, before any last fall",
+        ),
+        whole_of("slides", "slides", "of the runs, those in which the block slides and never lifts"),
+        whole_of("falls_without", "falls without", "of the runs, those that overturn where the block cannot slide"),
+        whole_of("saved", "saved", "of these, those that stay upright as the block slides"),
+        whole_of("overturned", "overturned", "of the runs, those that overturn only as the block slides"),
+        flag_of("raised", "raised", "whether the motion has a vertical component"),
+        number_of("slip", "slip", "largest slip over the block's half width"),
+        number_of("tilt", "tilt", "peak tilt over the slenderness"),
+        number_of("slip_error", "slip error", "relative error of the largest slip, of a block that stays upright"),
+        number_of("tilt_error", "tilt error", "relative error of the peak tilt, of a block that stays upright"),
+        list_of("slipping", "slipping", "errors of the restitution at impacts in which the corner slides"),
+        list_of("sticking", "sticking", "errors of the restitution at other impacts"),
+        number_of("cpu_per_second", "CPU time per simulated second", "CPU time over simulated time", "s/s"),
+        number_of("cpu_ratio", "cpu ratio", "CPU time over the analytic model's"),
+    )
+)
+PARTS = {
+    "cell": """engine variant support motion friction runs failed undecided moves lacking slides falls_without saved
+            overturned""",
+    "scene": "engine variant index support motion friction slenderness raised outcome comparable slip tilt",
+    "run": "engine variant tier index friction? class comparable | differences quantities",
+    "drawn edge": f"{EDGE} slenderness radius base_mass? law? period?",
+    "drawn shift": BOUNDARY_ROW,
+    "failure": SOUGHT,
+}
 
 # scenes without friction; with it, and how many of these engines run; statues whose boundaries are sought
 FULL, QUICK = (500, 20_000, 50, 20), (20, 400, 10, 2)

@@ -9,7 +9,8 @@ import pytest
 
 from analytic import PulseMotion, SceneError, SettingError, load_scene, simulate
 from analytic.motion import SampledMotion
-from analytic.records import G, fema, read_channels, read_record
+from analytic.records import G, read_channels, read_record
+from analytic.records import content as fema
 from analytic.records.folder import directions_of, folder_motions, reversed_sign, same_reversed, turned
 
 FIRST, SECOND = np.array([0.0, 1.0, -2.0, 0.5]), np.array([0.0, 0.5, 1.5, -1.0])
@@ -337,7 +338,7 @@ def test_a_set_is_a_folder_of_pairs():
 def test_commands_take_it_by_name(tmp_path, monkeypatch):
     from typer.testing import CliRunner
 
-    from comparisons.cli.application import app
+    from comparisons.commands import app
 
     monkeypatch.chdir(tmp_path)
     new = "new own.toml --height 1.9 --width 0.55 --material marble --record"

@@ -10,14 +10,14 @@ from sliding_scenes import GRAVITY, random_slider, scene_of, slider_of
 
 import analytic.sliding.run as sliding
 from analytic import PulseMotion, SceneError, load_scene, overturning_map, simulate, simulate_many
-from analytic import layout as S
-from analytic.decision import RIGID_BEARINGS
+from analytic.checks.time_stepping import simulate_time_stepping
+from analytic.kernel import layout as S
+from analytic.kernel.decision import RIGID_BEARINGS
+from analytic.records.synthetic import synthetic_motion
 from analytic.response import Response
 from analytic.rocking import RockingModel
 from analytic.sliding.run import contact_of, marched, slipping_friction
 from analytic.solver import ground, options, parameters
-from analytic.synthetic import synthetic_motion
-from analytic.time_stepping import simulate_time_stepping
 
 
 def march_of(scene, **settings):

@@ -9,11 +9,11 @@ from sliding_scenes import SAVED, SLIDES
 
 from analytic import PulseMotion, SampledMotion, Start, load_scene, simulate
 from analytic.errors import SettingError
-from comparisons.advice import choose, criteria
-from comparisons.advice.choose import Search, problem
-from comparisons.running.cases import Case
-from comparisons.running.sweep import Row
-from comparisons.sheet.problems import PROBLEMS
+from comparisons.advice import criteria
+from comparisons.advice.choose import Search, choose, problem
+from comparisons.execution.cases import Case
+from comparisons.execution.sweep import Row
+from comparisons.sheet.pages import PROBLEMS
 from engines import ENGINES, get_engine
 
 RIGID = load_scene("free-rocking-rigid")

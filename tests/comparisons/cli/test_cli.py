@@ -18,9 +18,9 @@ from own_scenes import BRONZE, CLIFF
 
 from analytic import Caution, Failure, load_scene, simulate, solver
 from comparisons import cli, commands
-from comparisons.cli.application import app
-from comparisons.running import progress, solving
-from comparisons.running.readable import readable
+from comparisons.commands import app
+from comparisons.execution import progress, solving
+from comparisons.execution.files import readable
 from engines import ENGINES, get_engine, guard, installed_engines
 
 PNG = b"\x89PNG\r\n"
@@ -220,7 +220,7 @@ def test_warnings_and_undecided_outcomes_are_shown(rocking, monkeypatch, tmp_pat
         warnings=(Caution("model", "N <= 0 [at 1 s]."),),
         decided=False,
     )
-    monkeypatch.setattr("comparisons.running.solving._analytic", lambda *_: odd)
+    monkeypatch.setattr("comparisons.execution.solving._analytic", lambda *_: odd)
     for command in (("compare", "--engine", "analytic"), ("run",)):
         _, out, _ = rocking(*command, "free-rocking-rigid", "--json", tmp_path / "r.json")
         assert "undecided" in out and "(rocks so far)" in out and "Warning, analytic: N <= 0 [at 1 s]." in out

@@ -8,9 +8,9 @@ from own_scenes import BUST
 
 from analytic import PulseMotion, bearing_scan, load_scene, simulate
 from analytic.bearing_scan import BearingScan
-from analytic.design import design_bearings, properties
-from comparisons.showing.margins import nothing_holds
-from comparisons.showing.parts import percent
+from analytic.rocking import design_bearings, properties
+from comparisons.plotting.margins import nothing_holds
+from comparisons.schemas.columns import percent
 
 
 @pytest.fixture(autouse=True)

@@ -13,11 +13,11 @@ import pytest
 from forks import fork
 
 from analytic import load_scene, simulate
-from comparisons.cli.interrupts import stoppable
-from comparisons.report.study import UNFINISHED
-from comparisons.running import study
-from comparisons.running.files import TemporaryFolder
-from comparisons.running.provenance import RESULTS
+from comparisons.cli import stoppable
+from comparisons.execution import study
+from comparisons.execution.files import TemporaryFolder
+from comparisons.execution.provenance import RESULTS
+from comparisons.report.runs import UNFINISHED
 from engines.guard import run_apart
 
 # On bearings without loss the block lifts again and again: minutes.

@@ -7,9 +7,9 @@ import pytest
 
 from analytic import PulseMotion, SampledMotion, Scene, load_scene, simulate
 from analytic.margins import Band, Contact, Margin, margins
-from comparisons.measuring.statistics import wilson
-from comparisons.running.options import OWN
-from comparisons.showing.margins import LIFTED, draw_margins, odds, print_margins
+from comparisons.execution.solving import OWN
+from comparisons.metrics.statistics import wilson
+from comparisons.plotting.margins import LIFTED, draw_margins, odds, print_margins
 from comparisons.studies.stability.cases import BLOCK, GAP, THRESHOLD
 
 BLOCK_100 = "[block]\nmass = 100.0\nradius = 1.0\nslenderness = 0.25\n"
@@ -26,7 +26,7 @@ def columns(peak, head="t [s],a [m/s2]"):
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     """A pair of components, a weak single one, and a file that is none; the scans of margins are coarse."""
-    monkeypatch.setattr("comparisons.commands.margin.STEPS", 20)
+    monkeypatch.setattr("comparisons.commands.advice.STEPS", 20)
     monkeypatch.setattr("analytic.margins.BISECTIONS", 3)
     (tmp_path / "records").mkdir()
     for name, peak in [*PEAKS.items()][:3]:
@@ -92,7 +92,7 @@ def test_every_motion_has_its_row_as_a_run_of_its_own_finds_it_and_each_record_c
 def test_the_page_reads_a_folder_by_the_unit_given(rocking, folder, monkeypatch):
     """It was said to belong to a record of its own."""
     found = {}
-    monkeypatch.setattr("comparisons.report.study.make_own_results", lambda *_, motions, **__: found.update(motions))
+    monkeypatch.setattr("comparisons.report.runs.make_own_results", lambda *_, motions, **__: found.update(motions))
     monkeypatch.setattr("comparisons.report.write.write_page", lambda *_: 1 / 0)
     for file in folder.glob("*.csv"):
         file.write_text(file.read_text().replace("a [m/s2]", "a"))

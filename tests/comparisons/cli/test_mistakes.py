@@ -9,7 +9,7 @@ import typer
 from made_up_records import VALUES as SAMPLES
 from made_up_records import csmip
 
-from comparisons.cli.application import app
+from comparisons.commands import app
 from engines import ENGINES, get_engine
 
 VALUES = ("-1", "0", "nan", "1e308", "1e-320", "100000000000000000000", "")
@@ -174,13 +174,13 @@ def place(tmp_path, monkeypatch):
     (tmp_path / "plain.txt").write_text("0.1\n0.4\n-0.2\n")
     (tmp_path / "channels.v2").write_text(csmip(SAMPLES))
     for work in (
-        "comparisons.report.study.make_own_results",
-        "comparisons.report.study.make_results",
+        "comparisons.report.runs.make_own_results",
+        "comparisons.report.runs.make_results",
         "comparisons.report.write.write_page",
-        "comparisons.running.study.compute",
-        "comparisons.measuring.tolerances.measure_all",
-        "comparisons.advice.choose",
-        "comparisons.measuring.horizon.solver_horizon",
+        "comparisons.execution.study.compute",
+        "comparisons.metrics.agreement.measure_all",
+        "comparisons.advice.choose.choose",
+        "comparisons.metrics.errors.solver_horizon",
         "analytic.margins.margins",
     ):
         monkeypatch.setattr(work, _cut_short)

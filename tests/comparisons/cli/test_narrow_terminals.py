@@ -9,9 +9,9 @@ from own_scenes import BRONZE, BUST, CLIFF
 from record_files import pairs
 from rich.console import Console
 
-from comparisons.measuring import tolerances
-from comparisons.showing import terminal
-from comparisons.showing.terminal import Grid, grid
+from comparisons.metrics import agreement as tolerances
+from comparisons.plotting import terminal
+from comparisons.plotting.terminal import Grid, grid
 
 NUMBER = re.compile(r"(?<![\w.])[-+−]?\d[\d.]*(?:e[-+]?\d+)?")
 MORE = re.compile(r"A terminal of (\d+) columns \(or COLUMNS=\1\) shows more: (.*)\.$")

@@ -9,7 +9,7 @@ from made_up_records import VALUES, cosmos
 
 from analytic import load_scene
 from analytic.records import read_record
-from comparisons.sheet.problems import PROBLEMS
+from comparisons.sheet.pages import PROBLEMS
 
 BUST = ("--height", "1.9", "--width", "0.55", "--material", "marble")
 

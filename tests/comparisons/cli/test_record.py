@@ -9,7 +9,7 @@ from made_up_records import VALUES, csmip, knet
 
 from analytic import SampledMotion
 from analytic.records import G, read_record, two_columns
-from comparisons.showing.plots import DAMPING, PERIODS, spectrum
+from comparisons.plotting.plots import DAMPING, PERIODS, spectrum
 
 
 @pytest.fixture

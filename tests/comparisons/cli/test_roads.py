@@ -18,21 +18,20 @@ from lying_engine import FAULTS, LIES, SHARE, liars
 from roads import KINDS, REFUSED, write_records
 
 from analytic import Base, Bearings, bearing_scan, load_scene, margins, simulate
-from analytic.design import properties
 from analytic.response import DIFFERENCES, JUDGED, Difference, Failure
-from analytic.rocking import restitution
-from comparisons.commands import margin
-from comparisons.report import next_step, statue
-from comparisons.running import solving
-from comparisons.running.options import OWN
-from comparisons.running.provenance import RESULTS
+from analytic.rocking import properties, restitution
+from comparisons.commands import advice as margin
+from comparisons.execution import solving
+from comparisons.execution.provenance import RESULTS
+from comparisons.execution.solving import OWN
+from comparisons.report import statue
 from comparisons.schemas.__main__ import schemas
 from engines import BUILT_IN, ENGINES, get_engine, guard
 
 USUAL = {
     "margin": (margin.STEPS, margins.BISECTIONS),
     "design": (bearing_scan.PERIOD_STEP, bearing_scan.DAMPING_STEP),
-    "report": (statue.STEP, next_step.STEP, margins.STEP),
+    "report": (statue.STEP, statue.PLATE_STEP, margins.STEP),
 }
 ERROR = re.compile(r"^Error: (?P<file>\S+): (?P<field>[\w.]+)(?: = (?P<value>.+?))?: (?P<problem>.+); (?P<remedy>.+)$")
 RECORDS = 3  # of the folder that are earthquakes
@@ -51,21 +50,23 @@ def here(function, *arguments, **_):
 # what is coarse here, done in this process (so that it finds these engines), or no road: what the code is
 HERE = {
     "engines.guard.run_apart": here,
-    "comparisons.running.solving.compile_kernels": lambda *_: None,
-    "comparisons.commands.margin.STEPS": 6,
+    "comparisons.execution.solving.compile_kernels": lambda *_: None,
+    "comparisons.commands.advice.STEPS": 6,
     "analytic.margins.BISECTIONS": 3,
     "analytic.margins.STEP": 0.0125,
     "analytic.bearing_scan.PERIOD_STEP": 0.4,
     "analytic.bearing_scan.DAMPING_STEP": 0.05,
     "comparisons.report.statue.STEP": 0.1,
-    "comparisons.report.next_step.STEP": 0.2,
-    **dict.fromkeys(("comparisons.running.study.Processes", "comparisons.advice.choose.Processes"), lambda *_: Here()),
+    "comparisons.report.statue.PLATE_STEP": 0.2,
+    **dict.fromkeys(
+        ("comparisons.execution.study.Processes", "comparisons.advice.choose.Processes"), lambda *_: Here()
+    ),
     **{
-        f"comparisons.running.{place}": lambda *_: {}
+        f"comparisons.execution.{place}": lambda *_: {}
         for place in ("study.source_digests", "cases.source_digests", "provenance.kept_digests", "study.digests_of_all")
     },
     **dict.fromkeys(("comparisons.report.answer.age", "comparisons.report.write.age"), lambda *_: None),
-    "comparisons.running.cases.version_of": lambda _: "1",
+    "comparisons.execution.cases.version_of": lambda _: "1",
 }
 
 

@@ -11,15 +11,15 @@ import pytest
 from engine_cases import ACCURATE
 
 from comparisons.commands import study as command
-from comparisons.measuring import agreement, tolerances
+from comparisons.execution import study as module
+from comparisons.execution.by_solver import read
+from comparisons.execution.plan import Computed, Study
+from comparisons.execution.provenance import RESULTS
+from comparisons.execution.study import Check, compute
+from comparisons.metrics import agreement
+from comparisons.metrics import agreement as tolerances
+from comparisons.plotting.parts import Page
 from comparisons.report.answer import stored_studies
-from comparisons.running import check as module
-from comparisons.running.by_solver import read
-from comparisons.running.check import Check
-from comparisons.running.plan import Computed, Study
-from comparisons.running.provenance import RESULTS
-from comparisons.running.study import compute
-from comparisons.showing.parts import Page
 from comparisons.studies.rows import read_study
 
 

@@ -3,17 +3,8 @@
 import math
 
 from analytic import synthetic_motion
-from comparisons.ensembles.statues import (
-    FRICTION,
-    MOTIONS,
-    PEAKS,
-    PULSE,
-    RECORDED,
-    SYNTHETIC,
-    random_scene,
-    random_slider,
-)
-from engines.statue_range import RANGE
+from comparisons.ensembles import FRICTION, MOTIONS, PEAKS, PULSE, RECORDED, SYNTHETIC, random_scene, random_slider
+from engines.simulating import RANGE
 
 RECORDS = (synthetic_motion(seed=1).scaled(0.5), synthetic_motion(seed=2))
 

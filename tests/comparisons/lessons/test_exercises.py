@@ -10,14 +10,14 @@ from scipy.integrate import solve_ivp
 from scripts import run_alone, written
 
 from analytic import PulseMotion, Scene, load_scene, simulate, synthetic_motion
-from analytic.caryatid import BASE, BEARINGS, MASS, RADIUS, caryatid_block
-from analytic.closed_form import swing_energy
+from analytic.checks.closed_form import swing_energy
+from analytic.checks.twin import simulate_twin
 from analytic.rocking import RockingModel, restitution
-from analytic.twin import simulate_twin
-from comparisons.lessons import engine_runs
+from analytic.scene import BASE, BEARINGS, MASS, RADIUS, caryatid_block
+from comparisons.execution.provenance import RESULTS
+from comparisons.lessons import lesson as engine_runs
 from comparisons.lessons.notebook import answer
 from comparisons.lessons.topics import bearing, caryatid, chaos, checks, corner, cost, impacts, lessons, tipping
-from comparisons.running.provenance import RESULTS
 from comparisons.studies.rows import read_study
 
 

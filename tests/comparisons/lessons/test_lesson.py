@@ -8,12 +8,12 @@ import xml.etree.ElementTree as xml
 
 import pytest
 
-from comparisons.lessons import engine_runs
+from comparisons.lessons import lesson as engine_runs
 from comparisons.lessons.export import PAGES, _environment
 from comparisons.lessons.lesson import SYMBOLS
 from comparisons.lessons.notebook import code_of, notebook_of, open_notebook
 from comparisons.lessons.topics import NAMES, corner, cost, lesson, lessons
-from comparisons.showing.mathml import mathml, prose
+from comparisons.plotting.diagrams import mathml, prose
 
 WORDS = re.compile(r"\\text\{[^}]*\}|\\(?:frac|sin|cos|tan|exp|left|right|quad|approx|propto|ddot|dot|[,;!])")
 NAME = re.compile(r"\\tilde\{m\}|\\Delta (?:\\phi|t)|(?:\\[a-z]+|[A-Za-z])(?:_(?:\{[a-z]+\}|\\phi|[A-Za-z0-9]))?")

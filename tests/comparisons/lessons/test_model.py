@@ -7,9 +7,9 @@ import pytest
 from javascript import evaluate
 
 from analytic import Base, Bearings, Block, PulseMotion, Scene, Start, overturning_map, simulate, synthetic_motion
-from analytic.caryatid import MASS, RADIUS
-from analytic.time_stepping import simulate_time_stepping
-from comparisons.lessons.playground import sources
+from analytic.checks.time_stepping import simulate_time_stepping
+from analytic.scene import MASS, RADIUS
+from comparisons.lessons.export import sources
 
 BEARINGS = {
     "rigid": None,

@@ -7,7 +7,7 @@ from javascript import quiet_page
 
 from analytic import PulseMotion, load_scene, simulate
 from comparisons.lessons import export
-from comparisons.lessons.playground import PAGE, playground_page
+from comparisons.lessons.export import PAGE, playground_page
 from comparisons.lessons.topics import lessons
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("lessons in a browser")]

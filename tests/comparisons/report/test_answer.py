@@ -6,14 +6,23 @@ from types import SimpleNamespace
 import pytest
 
 from analytic import Block, Scene, Start, simulate
-from comparisons.report.answer import Stored, judgements_of, own_restitution, setups_of
-from comparisons.report.first import QUESTION, advice, lines, shown, title
+from comparisons.plotting.glance import Advised, Endings, Glance, Peaks, counted
+from comparisons.plotting.parts import RESTITUTION, Judgement, Mark, Section
+from comparisons.plotting.wording import rating
+from comparisons.report.answer import (
+    QUESTION,
+    Stored,
+    advice,
+    judgements_of,
+    lines,
+    own_restitution,
+    setups_of,
+    shown,
+    title,
+)
 from comparisons.report.runs import restitution_computed
 from comparisons.report.sections import restitution_section
 from comparisons.report.write import _outside
-from comparisons.showing.glance import Advised, Endings, Glance, Peaks, counted
-from comparisons.showing.parts import RESTITUTION, Judgement, Mark, Section
-from comparisons.showing.wording import rating
 
 FINE, COARSE, GIVEN, OTHER = ("exudyn", "fine"), ("exudyn", "coarse"), ("exudyn", "given"), ("mujoco", "fine")
 TIERS = {FINE: "tuned", COARSE: "defaults", GIVEN: "assisted", OTHER: "tuned"}

@@ -12,18 +12,19 @@ from page_numbers import number_in
 from sliding_scenes import SAVED
 
 from analytic import EngineNotInstalled, load_scene, simulate, synthetic_motion
+from analytic.checks.time_stepping import simulate_time_stepping
 from analytic.response import History
-from analytic.time_stepping import simulate_time_stepping
-from comparisons.lessons.engine_runs import SCENE
-from comparisons.report import histories, runs
-from comparisons.report.equations import STEP, frames
-from comparisons.report.study import make_results
+from comparisons.execution.cases import Case
+from comparisons.execution.files import PlaceError
+from comparisons.execution.provenance import ResultError, read_result
+from comparisons.execution.sweep import Task, lines_of
+from comparisons.lessons.lesson import SCENE
+from comparisons.plotting.parts import where
+from comparisons.report import figures as histories
+from comparisons.report import runs
+from comparisons.report.detail import STEP, frames
+from comparisons.report.runs import make_results
 from comparisons.report.write import write_page
-from comparisons.running.cases import Case
-from comparisons.running.executors import Task, lines_of
-from comparisons.running.files import PlaceError
-from comparisons.running.provenance import ResultError, read_result
-from comparisons.showing.parts import where
 
 PROJECT = Path(__file__).parents[3]
 NAMES = ("exudyn", "pybullet")

@@ -16,14 +16,12 @@ from analytic import Bearings, PulseMotion, SampledMotion, load_scene, simulate,
 from analytic.errors import SceneError
 from analytic.response import COMPARED, EDGE, OUTCOMES
 from comparisons.commands.report import form
+from comparisons.execution.provenance import RESULTS, read_result
 from comparisons.report import statue
 from comparisons.report.detail import assets, environment
-from comparisons.report.next_step import needed_by, next_step, on_plate
-from comparisons.report.runs import RESTITUTION, SCENES, load_scenes
-from comparisons.report.statue import _by_record, _engines, _worst, statue_of
-from comparisons.report.study import make_own_results
+from comparisons.report.runs import RESTITUTION, SCENES, load_scenes, make_own_results
+from comparisons.report.statue import _by_record, _engines, _worst, needed_by, next_step, on_plate, statue_of
 from comparisons.report.write import PAGE, write_page
-from comparisons.running.provenance import RESULTS, read_result
 
 GROUND = load_scene("caryatid-rigid")
 ISOLATED = load_scene("caryatid-isolated")

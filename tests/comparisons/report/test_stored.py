@@ -6,6 +6,8 @@ from xml.etree import ElementTree
 import pytest
 
 from analytic import EngineNotInstalled
+from comparisons.execution.by_solver import read, results_in
+from comparisons.execution.provenance import RESULTS
 from comparisons.report.answer import stored_studies
 from comparisons.report.gallery import (
     GALLERY,
@@ -17,8 +19,6 @@ from comparisons.report.gallery import (
     origins,
     with_findings,
 )
-from comparisons.running.by_solver import read, results_in
-from comparisons.running.provenance import RESULTS
 from engines import ENGINES
 from engines.contract import Engine
 

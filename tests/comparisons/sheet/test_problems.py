@@ -5,9 +5,8 @@ import re
 import numpy as np
 import pytest
 
-from analytic.twin import simulate_twin
-from comparisons.sheet.pages import markdown, write_sheet
-from comparisons.sheet.problems import PROBLEMS, UNITS
+from analytic.checks.twin import simulate_twin
+from comparisons.sheet.pages import PROBLEMS, UNITS, markdown, write_sheet
 
 EXACT = 1e-7  # of the tolerance: so well the answers are known, as index.md says
 

@@ -6,40 +6,38 @@ import numpy as np
 import pytest
 
 from analytic import PulseMotion, SampledMotion, load_scene, simulate, synthetic_motion
-from analytic.linear_oscillator import displacement_spectrum
+from analytic.bearing_scan import displacement_spectrum
 from analytic.rocking import restitution
-from comparisons.running.by_solver import read
-from comparisons.running.provenance import RESULTS
-from comparisons.running.refine import Transition
-from comparisons.running.study import compute
-from comparisons.showing.parts import where
+from comparisons.execution.by_solver import read
+from comparisons.execution.plan import Transition
+from comparisons.execution.provenance import RESULTS
+from comparisons.execution.study import compute
+from comparisons.plotting.parts import where
 from comparisons.studies import get_study
-from comparisons.studies.caryatid.formulas import formulas
-from comparisons.studies.caryatid.runs import (
+from comparisons.studies.caryatid.study import (
+    BOTH,
     CORRECTED,
     DERIVED,
     FREE,
     ISOLATED,
+    NEITHER,
     NOT_CHECKABLE,
     NOT_REPRODUCIBLE,
+    ONLY_FREE,
+    ONLY_ISOLATED,
     OTHER_MOTION,
     REPRODUCED,
+    _intervals,
+    _overlap,
+    benefit,
     caryatid,
+    claims,
+    formulas,
     is_papers_motion,
     judged,
     motion_values,
     oscillator,
     slender_block,
-)
-from comparisons.studies.caryatid.variations import (
-    BOTH,
-    NEITHER,
-    ONLY_FREE,
-    ONLY_ISOLATED,
-    _intervals,
-    _overlap,
-    benefit,
-    claims,
     uplift_slenderness,
 )
 from engines import ENGINES, installed_engines

@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from comparisons.measuring.statistics import wilson
-from comparisons.running.provenance import Result
+from comparisons.execution.provenance import Result
+from comparisons.metrics.statistics import wilson
 from comparisons.studies import get_study
 from comparisons.studies.shake_table.campaign import ALL
 from comparisons.studies.shake_table.judging import BY_RECORD, CURVE, FREQUENT, IN_SAMPLE, MODEL, ONE, THRESHOLD

@@ -12,15 +12,15 @@ import pytest
 from installed_package import install, install_fake_engine
 
 from comparisons import studies
-from comparisons.running.provenance import PROJECT_FOLDER
+from comparisons.execution.provenance import PROJECT_FOLDER
 
 SOURCE = '''
 """How high does a released block swing back after one impact?"""
 from analytic import Block, Scene, Start
-from comparisons.running.cases import Case
-from comparisons.running.plan import Batch, Computed, Study
-from comparisons.showing.parts import Page
-from comparisons.showing.parts import Column, table
+from comparisons.execution.cases import Case
+from comparisons.execution.plan import Batch, Computed, Study
+from comparisons.plotting.parts import Page
+from comparisons.plotting.parts import Column, table
 
 
 def measure(case, response):
@@ -85,7 +85,7 @@ def test_a_study_of_another_package_gets_command_resumption_and_section(tmp_path
     "source, words",
     [
         ("raise ValueError('no licence')", "it cannot be imported (ValueError: no licence)"),
-        ("STUDY = 3", "it is no comparisons.running.plan.Study called 'swings'"),
+        ("STUDY = 3", "it is no comparisons.execution.plan.Study called 'swings'"),
     ],
 )
 def test_a_broken_one_is_one_message_that_names_who_declares_it(tmp_path, source, words):

@@ -7,14 +7,14 @@ import pytest
 from answered import answered, by_model, stored
 
 from analytic import simulate
-from analytic.linear_oscillator import displacement_spectrum
+from analytic.bearing_scan import displacement_spectrum
 from analytic.response import COMPARED
-from comparisons.measuring.statistics import fit_fragility
-from comparisons.running.plan import Request
-from comparisons.running.provenance import Result
-from comparisons.showing.parts import where
+from comparisons.execution.plan import Request
+from comparisons.execution.provenance import Result
+from comparisons.metrics.statistics import fit_fragility
+from comparisons.plotting.parts import where
 from comparisons.studies import get_study
-from comparisons.studies.fragility import fits
+from comparisons.studies.fragility import study as fits
 from comparisons.studies.fragility.study import NEAR, PERIOD, SCENES, cloud, plan
 
 STUDY = get_study("fragility")
@@ -44,7 +44,7 @@ def study(folder, work, scenes=FREE, runs=RUNS):
 
 @pytest.fixture(autouse=True, scope="module")
 def few_draws():
-    """Bootstrap of fewer samples than the study's: `tests/comparisons/measuring/test_statistics.py` tests it."""
+    """Bootstrap of fewer samples than the study's: `tests/comparisons/metrics/test_statistics.py` tests it."""
     with pytest.MonkeyPatch.context() as patch:
         for name in ("DRAWS", "PAIRED_DRAWS"):
             patch.setattr(fits, name, 60)

@@ -5,16 +5,16 @@ import math
 import pytest
 from answered import answered, by_model, by_runs, stored
 
-from comparisons.measuring.scripts import ScriptFailed, run_script
-from comparisons.running.by_solver import read
-from comparisons.running.cases import Case
-from comparisons.running.plan import Request
-from comparisons.running.provenance import RESULTS
-from comparisons.showing.parts import where
+from comparisons.execution.by_solver import read
+from comparisons.execution.cases import Case
+from comparisons.execution.plan import Request
+from comparisons.execution.provenance import RESULTS
+from comparisons.metrics.scripts import ScriptFailed, run_script
+from comparisons.plotting.parts import where
 from comparisons.studies import get_study
 from comparisons.studies.mistakes import study
 from engines import ENGINES, get_engine
-from engines.mistakes import NO_MATTER, Mistake
+from engines.contract import NO_MATTER, Mistake
 
 ABLE = [name for name, engine in ENGINES.items() if engine.mistakes]
 STUDY = get_study("mistakes")

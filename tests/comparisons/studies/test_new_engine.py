@@ -17,20 +17,20 @@ from table_tests import published
 
 import engines
 from analytic import synthetic_motion
+from comparisons.execution.by_solver import read
+from comparisons.execution.plan import Request
+from comparisons.execution.provenance import RESULTS, json_ready
+from comparisons.plotting.parts import where
 from comparisons.report.runs import restitution_cases
-from comparisons.running.by_solver import read
-from comparisons.running.plan import Request
-from comparisons.running.provenance import RESULTS, json_ready
-from comparisons.showing.parts import where
 from comparisons.studies import BUILT_IN, get_study
-from comparisons.studies.caryatid.runs import simulations
+from comparisons.studies.caryatid.study import simulations
 from comparisons.studies.overturning import study as overturning
-from comparisons.studies.restitution.cases import CARYATID_BASE, Grid
+from comparisons.studies.restitution.study import CARYATID_BASE, Grid
 from comparisons.studies.rows import wrong_with
 from comparisons.studies.shake_table import campaign
 from comparisons.studies.shake_table import study as shake_table
-from comparisons.studies.speed_error.cases import near_overturning
-from engines.plugins import find_engines
+from comparisons.studies.speed_error.study import near_overturning
+from engines.contract import find_engines
 from engines.simulating import Simulator
 
 ASK = Request(("crude",), quick=True)

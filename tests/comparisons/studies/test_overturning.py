@@ -6,8 +6,8 @@ import pytest
 from answered import answered, by_model, stored
 
 from analytic import simulate
-from comparisons.running.plan import Request
-from comparisons.showing.parts import where
+from comparisons.execution.plan import Request
+from comparisons.plotting.parts import where
 from comparisons.studies import get_study
 from comparisons.studies.overturning.study import QUICK
 

@@ -13,20 +13,19 @@ from record_files import pairs, write
 from analytic import SceneError, SettingError, simulate
 from analytic.records import read_record
 from analytic.response import COMPARED, EDGE
-from comparisons.ensembles.motions import peak_velocity
-from comparisons.measuring.statistics import equality
-from comparisons.running.cases import Case
-from comparisons.running.plan import Request
-from comparisons.running.sweep import Row
-from comparisons.showing.parts import where
-from comparisons.showing.wording import ENDS
+from comparisons.ensembles import peak_velocity
+from comparisons.execution.cases import Case
+from comparisons.execution.plan import Request
+from comparisons.execution.sweep import Row
+from comparisons.metrics.statistics import equality
+from comparisons.plotting.parts import where
+from comparisons.plotting.wording import ENDS
 from comparisons.studies import get_study
 from comparisons.studies.recorded.page import summary
 from comparisons.studies.recorded.study import LAWS, RANGES, _errors, _run_row, drawn_scene, of_engine, plan
 from comparisons.studies.shake_table import campaign
 from engines import ENGINES, get_engine, installed_engines
-from engines.comparison import END
-from engines.copies import near_copies
+from engines.comparison import END, near_copies
 
 pytestmark = pytest.mark.xdist_group("recorded")  # its runs are made once
 

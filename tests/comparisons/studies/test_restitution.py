@@ -9,14 +9,15 @@ from page_numbers import number_in
 
 from analytic import simulate
 from analytic.rocking import restitution
-from comparisons.running.by_solver import read
-from comparisons.running.plan import Request
-from comparisons.running.provenance import Result
-from comparisons.running.study import compute
-from comparisons.running.sweep import Row
-from comparisons.showing.parts import where
+from comparisons.execution.by_solver import read
+from comparisons.execution.plan import Request
+from comparisons.execution.provenance import Result
+from comparisons.execution.study import compute
+from comparisons.execution.sweep import Row
+from comparisons.plotting.parts import where
 from comparisons.studies import get_study
-from comparisons.studies.restitution.cases import (
+from comparisons.studies.restitution.page import contact
+from comparisons.studies.restitution.study import (
     CARYATID_BASE,
     FULL,
     GROUNDS,
@@ -25,12 +26,13 @@ from comparisons.studies.restitution.cases import (
     LAWS,
     Grid,
     bearing_cases,
+    damped_error,
     free_scene,
+    friction_needed,
     grid_cases,
     impact_scene,
+    plan,
 )
-from comparisons.studies.restitution.contact import contact
-from comparisons.studies.restitution.study import damped_error, friction_needed, plan
 from engines import get_engine
 
 STUDY = get_study("restitution")

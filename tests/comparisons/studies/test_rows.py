@@ -9,18 +9,17 @@ from answered import answered, by_model, edit
 from record_files import pairs
 from table_tests import published
 
-from comparisons.measuring.tolerances import TABLE
-from comparisons.running.by_solver import read, results_in
-from comparisons.running.cases import name_of
-from comparisons.running.plan import Request
-from comparisons.running.provenance import RESULTS, Result, ResultError, read_result, write_result
-from comparisons.running.sources import source_digests
-from comparisons.showing.parts import where
-from comparisons.studies import BUILT_IN, TOLERANCES, get_study, study_names
-from comparisons.studies.explained import SHARED, TYPES, Explained
-from comparisons.studies.rows import ROWS, _columns, read_study, wrong_with
+from comparisons.execution.by_solver import read, results_in
+from comparisons.execution.cases import name_of
+from comparisons.execution.plan import Request
+from comparisons.execution.provenance import RESULTS, Result, ResultError, read_result, write_result
+from comparisons.execution.sources import source_digests
+from comparisons.metrics.agreement import TABLE
+from comparisons.plotting.parts import where
+from comparisons.schemas.columns import FACTORS, TYPES, Declaration, declared, number_of
+from comparisons.studies import BUILT_IN, STUDIES, TOLERANCES, get_study, study_names
+from comparisons.studies.rows import SHARED, columns_of, fields_of, read_study, wrong_with
 from comparisons.studies.shake_table import campaign
-from comparisons.studies.vocabulary import OWN, columns_of
 from engines import installed_engines
 
 CELL = {**{"part": "order", "engine": "exudyn", "variant": "step", "ground": "rigid ground"}, "order": 2.0}
@@ -29,17 +28,20 @@ CELL = {**{"part": "order", "engine": "exudyn", "variant": "step", "ground": "ri
 @pytest.mark.parametrize("file", results_in(RESULTS), ids=lambda path: path.name)
 def test_rows_of_every_stored_result_are_those_of_its_study(file):
     result = read_study(file)
-    assert result.rows == read(file).rows and result.kind in ROWS
+    assert result.rows == read(file).rows and get_study(result.kind).parts
     assert all(isinstance(words, str) for words in get_study(result.kind).problems(result))
 
 
 def test_every_study_declares_rows_of_columns_that_are_explained():
-    assert ROWS.keys() == {*BUILT_IN, TOLERANCES}
-    for kind, parts in ROWS.items():
-        known = columns_of(kind)
-        for part in parts:
-            assert all(known.keys() >= columns.keys() for columns in _columns(kind, part)), (kind, part)
-        assert all(set(one.type.split(" or ")) <= TYPES.keys() for one in known.values())
+    for kind in STUDIES:
+        study, known = get_study(kind), columns_of(kind)
+        assert study.parts and all(
+            known.keys() >= columns.keys() for part in study.parts.values() for columns in fields_of(part)
+        ), kind
+        assert all(
+            column.declaration.meaning and set(column.declaration.type.split(" or ")) <= TYPES.keys()
+            for column in known.values()
+        )
 
 
 @pytest.mark.parametrize(
@@ -107,8 +109,19 @@ def test_a_wrong_row_is_named_by_its_file_and_its_place_there(tmp_path):
 
 
 def test_a_type_is_that_of_json():
-    assert Explained("what").holds(1) and Explained("what").holds(1.5) and not Explained("what").holds(True)
-    assert Explained("what", type="number or list").holds([]) and not Explained("what", type="flag").holds(1)
+    assert Declaration("what").holds(1) and Declaration("what").holds(1.5) and not Declaration("what").holds(True)
+    assert Declaration("what", type="number or list").holds([]) and not Declaration("what", type="flag").holds(1)
+
+
+def test_a_unit_a_name_and_digits_are_those_of_the_declaration_wherever_a_column_is_shown():
+    time = number_of("time", "time", "of an impact", "s", shown="ms", digits=3, within="range")
+    row = {"time": 0.25, "range": [0.2, 0.3]}
+    assert (time.head, time.text(row), time.of({})) == ("time [ms]", "250 (200 to 300)", None)
+    assert (time.called("first").head, time.called("first", digits=1).digits) == ("first [ms]", 1)
+    assert number_of("share", "share", "", percent=True).head == "share"
+    assert all(factor > 0 for factor in FACTORS.values())
+    with pytest.raises(AssertionError, match="declared twice"):
+        declared(time, time)
 
 
 # Of no stored result: an impact about which nothing can be determined.
@@ -135,11 +148,11 @@ def columns(tmp_path_factory):
 
 @pytest.mark.slow
 def test_every_column_is_explained_and_every_explained_one_is_a_column(columns):
-    assert {*BUILT_IN, TOLERANCES} == set(OWN) == columns.keys()
+    assert {*STUDIES} == columns.keys()
     for kind, own in columns.items():
         known = columns_of(kind)
-        assert own and own <= known.keys() and all(one.what and one.unit for one in known.values()), kind
-        assert OWN[kind].keys() - own == UNSEEN.get(kind, set()), kind
+        assert own and own <= known.keys() and own, kind
+        assert known.keys() - SHARED.keys() - own == UNSEEN.get(kind, set()), kind
     uses = Counter(column for found in columns.values() for column in found)
     assert {column for column in SHARED if uses[column] < 2} == UNSEEN_OF_ANY  # else it is one study's own
 
@@ -147,7 +160,7 @@ def test_every_column_is_explained_and_every_explained_one_is_a_column(columns):
 @pytest.mark.parametrize("name", BUILT_IN)
 def test_what_shows_is_no_part_of_what_a_result_depends_on(name):
     behind = source_digests([name_of(get_study(name).plan)])
-    assert behind and not [module for module in behind if module.endswith(".page") or ".showing" in module]
+    assert behind and not [module for module in behind if module.endswith(".page") or ".plotting" in module]
 
 
 @pytest.mark.parametrize("found, bound, holds", [(0.1, 0.2, "yes"), (0.3, 0.2, "no"), (0.1, None, "no bound stated")])

@@ -6,11 +6,10 @@ from answered import answered, by_runs
 from scipy.stats import norm
 
 from analytic import load_scene, simulate, synthetic_motion
-from analytic.bearing import BearingLaw
-from analytic.rocking import RockingModel
-from comparisons.ensembles.motions import with_vertical
-from comparisons.running.plan import Request
-from comparisons.showing.parts import where
+from analytic.rocking import BearingLaw, RockingModel
+from comparisons.ensembles import with_vertical
+from comparisons.execution.plan import Request
+from comparisons.plotting.parts import where
 from comparisons.studies import get_study
 from comparisons.studies.sensitivity.study import FASTER, RATIOS, SPREAD, changes
 

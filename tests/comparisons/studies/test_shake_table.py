@@ -32,14 +32,14 @@ from table_tests import (
 from analytic import SceneError, SettingError, simulate
 from analytic.records import G
 from analytic.rocking import RockingModel
-from comparisons.measuring.statistics import wilson
-from comparisons.running import provenance
-from comparisons.running.by_solver import check_same, split
-from comparisons.running.plan import Request
-from comparisons.running.run_sample import sample_of
-from comparisons.showing.parts import where
+from comparisons.execution import provenance
+from comparisons.execution.by_solver import check_same, split
+from comparisons.execution.plan import Request
+from comparisons.execution.study import sample_of
+from comparisons.metrics.statistics import wilson
+from comparisons.plotting.parts import where
 from comparisons.studies import get_study
-from comparisons.studies.rows import ROWS, read_study, wrong_with
+from comparisons.studies.rows import read_study, wrong_with
 from comparisons.studies.shake_table import campaign, study
 from comparisons.studies.shake_table.campaign import ALL, FEWEST, PADDED, outcomes_of, read_campaign, told
 from comparisons.studies.shake_table.judging import (
@@ -52,7 +52,7 @@ from comparisons.studies.shake_table.judging import (
     paired,
     score,
 )
-from comparisons.studies.shake_table.runs import answers, differences, leaning, over_slendernesses
+from comparisons.studies.shake_table.study import answers, differences, leaning, over_slendernesses
 from engines import ENGINES
 
 pytestmark = pytest.mark.xdist_group("shake table")  # its runs are made once
@@ -316,7 +316,7 @@ def kept(request):
 
 
 def test_nothing_is_stored_that_could_hold_what_was_measured_in_one_test(kept):
-    assert ROWS["shake-table"].keys() == {"score", "fit", "paired", "engine", "failure", "absent"}
+    assert get_study("shake-table").parts.keys() == {"score", "fit", "paired", "engine", "failure", "absent"}
     for row in kept.rows:
         assert wrong_with(row, "shake-table") is None and row.get("size", FEWEST) >= FEWEST
         assert all(len(value) <= 2 for value in row.values() if isinstance(value, list))  # no series by test

@@ -8,24 +8,34 @@ import pytest
 from answered import answered, by_runs
 
 from analytic import simulate
+from analytic.checks.time_stepping import simulate_time_stepping
+from analytic.checks.twin import METHODS as OFFERED
 from analytic.errors import SettingError
 from analytic.rocking import restitution
-from analytic.time_stepping import simulate_time_stepping
-from analytic.twin import METHODS as OFFERED
-from comparisons.measuring import models, scripts
-from comparisons.running.by_solver import read
-from comparisons.running.cases import Case, solver
-from comparisons.running.plan import Request
-from comparisons.running.provenance import Result
-from comparisons.running.study import compute
-from comparisons.showing.parts import where
+from comparisons.execution.by_solver import read
+from comparisons.execution.cases import Case, solver
+from comparisons.execution.plan import Request
+from comparisons.execution.provenance import Result
+from comparisons.execution.study import compute
+from comparisons.metrics import errors as models
+from comparisons.metrics import scripts
+from comparisons.plotting.parts import where
 from comparisons.studies import get_study
 from comparisons.studies.speed_error import integrators
-from comparisons.studies.speed_error.cases import NEEDED, entries, margin, problem_trials, searched, trials
-from comparisons.studies.speed_error.costs import APART, KERNEL, advice, keeping, level_costs, levels_run, passing
 from comparisons.studies.speed_error.integrators import METHODS, PROBLEMS, run_of
-from comparisons.studies.speed_error.page import fit
-from comparisons.studies.speed_error.study import TICK, errors, measure, plan
+from comparisons.studies.speed_error.page import APART, KERNEL, advice, fit, keeping, level_costs, levels_run, passing
+from comparisons.studies.speed_error.study import (
+    NEEDED,
+    TICK,
+    entries,
+    errors,
+    margin,
+    measure,
+    plan,
+    problem_trials,
+    searched,
+    trials,
+)
 from engines import get_engine
 
 STUDY = get_study("speed-error")

@@ -8,23 +8,33 @@ import pytest
 from answered import answered, by_runs, stored
 from scipy.optimize import brentq
 
-from analytic import PulseMotion, Scene, SceneError, layout, simulate
+from analytic import PulseMotion, Scene, SceneError, simulate
+from analytic.kernel import layout
 from analytic.response import Failure
 from analytic.rocking import momentum_restitution, restitution
 from analytic.sliding.run import contact_of, marched, slipping_friction
 from analytic.solver import TOLERANCE, ground, options, parameters
-from comparisons.running.by_solver import read
-from comparisons.running.plan import Request
-from comparisons.running.provenance import RESULTS
-from comparisons.running.sweep import Row
-from comparisons.showing.parts import where
+from comparisons.execution.by_solver import read
+from comparisons.execution.plan import Request
+from comparisons.execution.provenance import RESULTS
+from comparisons.execution.sweep import Row
+from comparisons.plotting.parts import where
 from comparisons.studies import get_study
 from comparisons.studies.rows import wrong_with
-from comparisons.studies.stability.basis import BLOCK, GAMMA, SLIDING, THRESHOLD
-from comparisons.studies.stability.cases import GAP, OVERTURNS_FROM, hard_cases
+from comparisons.studies.stability.cases import (
+    BLOCK,
+    GAMMA,
+    GAP,
+    OVERTURNS_FROM,
+    SLIDING,
+    SLIPS_FROM,
+    THRESHOLD,
+    TO_AND_FRO,
+    G,
+    hard_cases,
+)
 from comparisons.studies.stability.oracle import beyond_range, oracle
 from comparisons.studies.stability.page import judgements
-from comparisons.studies.stability.sliding import SLIPS_FROM, TO_AND_FRO, G
 from comparisons.studies.stability.study import (
     DIFFERS,
     FAILED,

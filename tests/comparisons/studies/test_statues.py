@@ -9,17 +9,17 @@ from sliding_scenes import LOST, SAVED, SLIDES, scene_of
 
 from analytic import Block, PulseMotion, Scene, SceneError, Start, simulate, synthetic_motion
 from analytic.response import COMPARED
-from comparisons.ensembles.statues import SHAPES, random_slider
-from comparisons.measuring.boundaries import pulse
-from comparisons.running.cases import Case
-from comparisons.running.plan import Request
-from comparisons.running.sweep import Row
-from comparisons.showing.parts import where
+from comparisons.ensembles import SHAPES, random_slider
+from comparisons.execution.cases import Case
+from comparisons.execution.plan import Request
+from comparisons.execution.sweep import Row
+from comparisons.metrics.boundaries import pulse
+from comparisons.plotting.parts import where
 from comparisons.studies import get_study
 from comparisons.studies.statues import study
 from comparisons.studies.statues.study import fates
 from engines import ENGINES, get_engine
-from engines.statue_range import outside
+from engines.simulating import outside
 
 pytestmark = pytest.mark.xdist_group("statues")  # its runs are made once
 

@@ -1,0 +1,443 @@
+"""``rocking choose``: the cheapest variant and level that are accurate enough for a scene.
+
+``rocking margin``: the margins of a scene against other limit states and another outcome.
+
+``rocking design``: bearings from target period, damping and displacement, or bearings for a scene.
+"""
+
+import dataclasses
+import math
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import typer
+
+from analytic.errors import SceneError, SettingError
+
+from ..execution.files import check_writable
+from ..execution.progress import bar, compile_kernels, spinner
+from ..execution.solving import (
+    DEFINITION,
+    OPTIONS,
+    RATIO,
+    BothSigns,
+    Directions,
+    Records,
+    Units,
+    check_time_limit,
+    end_with,
+    in_file,
+    motions_of,
+    named_by_options,
+    other_motions,
+    read_row,
+    rows_of,
+    scene_of,
+)
+from .output import write_output
+
+
+def choose(
+    scene: Annotated[str, typer.Argument(help="Scene file (TOML), or the name of a shipped scene.")],
+    error: Annotated[
+        float, typer.Option(help="Largest error; for outcomes the share of neighbours that differ.")
+    ] = 1e-3,
+    criterion: Annotated[
+        str | None,
+        typer.Option(
+            "--for",
+            help="restitution, tilt, displacement, slip or outcome. Default: restitution; tilt or slip of a block that "
+            "slides; where the block never hits, displacement of its base.",
+        ),
+    ] = None,
+    engine: Annotated[
+        list[str] | None, typer.Option(help="An engine to try; may be repeated. Default: all that are installed.")
+    ] = None,
+    plot: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Draw error over CPU time (.png, .svg or .pdf).")
+    ] = None,
+    every_level: Annotated[bool, typer.Option("--all", help="Show every level that was run.")] = False,
+    json_file: Annotated[
+        str | None, typer.Option("--json", metavar="FILE", help="Write the choice; - prints it.")
+    ] = None,
+    time_limit: Annotated[
+        float, typer.Option(metavar="SECONDS", help="A level whose run takes longer does not pass.")
+    ] = 60.0,
+) -> None:
+    """Find the cheapest variant and level that are accurate enough for a scene, and what need not be modelled.
+
+    The variants are run at their levels on the scene and on neighbours of it, with start and motion scaled by up to
+    5 %, and compared with the analytic model; tilt and displacement only up to the sensitivity horizon. Status 1: none
+    passes.
+    Example: rocking choose caryatid-isolated --for displacement --error 1e-3
+    """
+    from analytic.scene_file import load_scene
+
+    from ..advice.choose import choose
+    from ..advice.criteria import fitting
+    from ..execution.files import check_writable
+    from ..execution.progress import compile_kernels, say, stdout_to_stderr
+    from ..plotting.choices import draw_choice, print_choice
+
+    check_time_limit(time_limit)
+    check_writable([json_file], picture=plot, inputs=[scene])
+    what = load_scene(scene)
+    compile_kernels()
+    with in_file(scene):
+        shown = fitting(what) if criterion is None and engine else "restitution"
+    if shown != "restitution":
+        given = what.block.restitution is not None and shown == "tilt"
+        why = (
+            "it slides"
+            if what.friction is not None and shown in ("tilt", "slip")
+            else ("its restitution is given" if given else "it never has an impact: there is no restitution")
+        )
+        say(f"the block of {what.name}: {why}; the criterion is {shown}")
+    with stdout_to_stderr(), in_file(scene):  # engines print on import
+        choice = choose(
+            what,
+            error=error,
+            criterion=criterion,
+            engines=engine or None,
+            time_limit=time_limit,
+            progress=True,
+            source=scene,
+        )
+    write_output({json_file: choice}, lambda: print_choice(choice, every_level), plot, lambda: draw_choice(choice))
+    if choice.chosen is None:
+        raise typer.Exit(1)
+
+
+LEAST_SPAN = 0.1  # per cent
+STEPS = 400  # of a scan, from no change to the largest
+
+
+def margin(
+    scene: Annotated[str, typer.Argument(help="Scene file (TOML), or the name of a shipped scene.")],
+    span: Annotated[
+        float, typer.Option(metavar="PERCENT", help="Largest change of a quantity; up to 900, ten times its value.")
+    ] = 20.0,
+    tilt: Annotated[
+        float, typer.Option(metavar="SHARE", help="Limit of the peak tilt, as a share of the slenderness.")
+    ] = 0.5,
+    plot: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Draw the outcomes over the changes (.png, .svg or .pdf).")
+    ] = None,
+    records: Records = None,
+    both_signs: BothSigns = False,
+    directions: Directions = None,
+    units: Units = None,
+    json_file: Annotated[
+        str | None, typer.Option("--json", metavar="FILE", help="Write the margins; - prints them.")
+    ] = None,
+) -> None:
+    """Find the changes of slenderness, restitution, motion, bearings ... at which the block lifts or overturns.
+
+    Two further limit states are a peak tilt above --tilt, and a base displacement beyond the x_max of the bearings.
+    One quantity is changed at a time, in steps of a four-hundredth of the span, in the analytic model. Changes that
+    give no valid scene (a restitution above 1, ka below kb) or leave the model's validity end the range. The vertical
+    stiffness of bearings is taken as infinite. Status 1: the model failed on the scene, or under one of its motions.
+
+    Example: rocking margin caryatid-isolated --plot margins.svg
+    """
+    from analytic.errors import SettingError
+    from analytic.margins import LARGEST_SPAN, Contact, margins
+    from analytic.response import scene_warnings
+    from analytic.scene_file import load_scene
+
+    from ..execution.files import check_writable
+    from ..plotting.margins import draw_margins, named, print_margins, print_motions
+
+    if not LEAST_SPAN <= span <= 100 * LARGEST_SPAN:
+        raise SettingError(f"--span {span:g}: give per cent, from {LEAST_SPAN:g} to {100 * LARGEST_SPAN:g}")
+    if not 0 < tilt <= 1:
+        raise SettingError(f"--tilt {tilt:g}: give a share of the slenderness, above 0 and up to 1")
+    check_writable([json_file], picture=plot, inputs=[scene])
+    what = load_scene(scene)
+    groups, left = other_motions(what, records, both_signs, directions, units)
+    compile_kernels()
+    scan: dict[str, Any] = {"tilt": tilt, "span": span / 100, "step": span / 100 / STEPS}
+    with spinner(f"{what.name}: margins") as tell, in_file(scene):
+        nearest = margins(what, **scan, progress=lambda name: tell(f"{what.name}: {name}"))
+        response = _decided(what)
+    contact, warnings = Contact.of(what, response), (*scene_warnings(what), *response.warnings)
+    rows = rows_of(what, groups, _decided, lambda scene: _changes(scene, scan))
+
+    def show():
+        print_margins(what, nearest, contact, span, tilt, warnings)
+        print_motions(what, [{**row, "changes": named(row, tilt)} for row in rows], left)
+
+    form = _margin_form(what, nearest, contact, warnings, rows, left, span, tilt)
+    write_output({json_file: form}, show, plot, lambda: draw_margins(what, nearest, tilt))
+    end_with(rows, response)
+
+
+def _decided(scene):
+    """The model's run until the outcome is decided."""
+    from analytic import simulate
+
+    return simulate(scene.with_(duration=None), history=False)
+
+
+def _margin_form(scene, nearest, contact, warnings, rows, left, span, tilt):
+    """Content of the JSON file."""
+    from analytic.margins import limit_states
+
+    from ..plotting.margins import headline
+    from ..schemas.advice import Contact, Margin, Margins, MotionMargin
+    from ..schemas.runs import Warned
+
+    return Margins(
+        scene=scene.name,
+        outcome=nearest[0].outcome,
+        tilt=tilt,
+        span=span / 100,
+        reached=_reached(nearest[0]),
+        margins=[Margin.of(margin, limit_states(scene)) for margin in nearest],
+        contact=Contact(**dataclasses.asdict(contact)),
+        warnings=[Warned(**dataclasses.asdict(one)) for one in warnings],
+        motions=[MotionMargin(**row) for row in rows],
+        left_out=left,
+        headline=headline(rows, left),
+    )
+
+
+def _reached(margin):
+    """The limit states that the unchanged scene reaches."""
+    from analytic.margins import LIMIT_STATES
+
+    return [state for state in LIMIT_STATES if margin.reached(state)]
+
+
+def _changes(scene, scan):
+    """The limit states that a scene reaches, and the change of its motion that reaches each."""
+    from analytic.margins import limit_states, margins
+
+    (found,) = margins(scene, **scan, only=("motion",))
+    changes = {state: found.change(state) for state in limit_states(scene)}
+    return {"reached": _reached(found), "changes": changes, "interleaved": found.interleaved}
+
+
+LEAST, SOFTEST = "least-stroke", "softest"
+WRITTEN = ("ka", "kb", "alpha")  # numbers written with six digits
+OF_SCENE = {  # names in errors of the search, and their options
+    **{"stroke": "--stroke", "x_max": "--stroke", "tilt": "--tilt"},
+    **{name: OPTIONS[name] for name in ("count", "stiffness_ratio", "definition")},
+}
+
+
+def design(
+    scene: Annotated[
+        str | None, typer.Argument(help="Scene file for which bearings are found. Without one, give four targets.")
+    ] = None,
+    stroke: Annotated[float | None, typer.Option(help="Scene: largest displacement of the base [m].")] = None,
+    base_mass: Annotated[
+        float | None, typer.Option(help="Scene of a block on the ground: mass of the base to add [kg].")
+    ] = None,
+    tilt: Annotated[
+        float, typer.Option(help="Scene: largest peak tilt over the slenderness; 0: the block must not lift.")
+    ] = 0.0,
+    write: Annotated[
+        Literal["least-stroke", "softest"] | None, typer.Option(help="Write these bearings into the scene file.")
+    ] = None,
+    plot: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Scene: draw the suitable bearings (.png, .svg or .pdf).")
+    ] = None,
+    records: Records = None,
+    both_signs: BothSigns = False,
+    directions: Directions = None,
+    units: Units = None,
+    period: Annotated[float | None, typer.Option(help="Target: secant period at --xmax [s].")] = None,
+    damping: Annotated[float | None, typer.Option(help="Target: damping ratio at --xmax, e.g. 0.30.")] = None,
+    xmax: Annotated[float | None, typer.Option(help="Target: design displacement [m].")] = None,
+    mass: Annotated[float | None, typer.Option(help="Target: mass of block and base together [kg].")] = None,
+    count: Annotated[int, typer.Option(help="Number of bearings.")] = 4,
+    ratio: Annotated[float, typer.Option(help=RATIO)] = 10.0,
+    definition: Annotated[str, typer.Option(help=DEFINITION)] = "equivalent",
+    json_file: Annotated[
+        str | None, typer.Option("--json", metavar="FILE", help="Write the design; - prints it.")
+    ] = None,
+) -> None:
+    """Design bearings: those with which a scene's block does not lift within a stroke, or constants from targets.
+
+    Where the scene gives a friction, the block must not slide on its base, either.
+
+    For a block on the ground, give the mass of a base, which --write adds to the file, too. Status 1: on the bearings
+    found, the model failed under a motion.
+    Example: rocking design bust.toml --stroke 0.25 --plot bearings.svg --write least-stroke
+    Example: rocking design --period 2 --damping 0.30 --definition paper --xmax 0.30 --mass 3384.05
+    """
+    targets = {"period": period, "damping": damping, "xmax": xmax, "mass": mass}
+    given = [f"--{name}" for name, value in targets.items() if value is not None]
+    made: dict[str, Any] = {"count": count, "stiffness_ratio": ratio, "definition": definition}
+    if scene is None:
+        of_scene = {"--stroke": stroke, "--write": write, "--plot": plot, "--records": records, "--tilt": tilt or None}
+        of_scene["--base-mass"] = base_mass
+        wrong = [name for name, value in of_scene.items() if value is not None]
+        if wrong:
+            raise SettingError(f"{wrong[0]}: belongs to a scene; rocking design SCENE --stroke METRES")
+        if len(given) < len(targets):
+            missing = next(f"--{name}" for name, value in targets.items() if value is None)
+            raise SettingError(f"{missing} is missing; give all four targets, or a scene and --stroke")
+        return _by_targets(targets, made, json_file)
+    if given:
+        raise SettingError(f"{given[0]}: a target, which does not go with a scene; give --stroke only")
+    if stroke is None:
+        raise SettingError("--stroke is missing: give the largest displacement of the base [m]")
+    many = {"records": records, "both_signs": both_signs, "directions": directions, "units": units}
+    _for_scene(scene, base_mass, stroke, tilt, made, many, write, plot, json_file)
+
+
+def _by_targets(targets, made, json_file):
+    """Constants for four targets."""
+    from rich.text import Text
+
+    from analytic.rocking import design_bearings, properties
+
+    from ..plotting.terminal import echo
+    from ..schemas.advice import Constants, Design, Properties
+    from ..schemas.columns import percent
+
+    check_writable([json_file])
+    mass, xmax = targets["mass"], targets["xmax"]
+    with named_by_options(OPTIONS):
+        bearings = design_bearings(mass, targets["period"], targets["damping"], xmax, **made)
+    back = properties(bearings, mass, xmax)
+    constants, given = Constants(**bearings.model_dump()), Properties(**dataclasses.asdict(back))
+    lines = (
+        Text.from_markup(
+            f"[bold]ka[/bold] = {bearings.ka:.5g} N/m   [bold]kb[/bold] = {bearings.kb:.5g} N/m   "
+            f"[bold]alpha[/bold] = {bearings.alpha:.4f}   for each of {bearings.count} bearings"
+        ),
+        f"back: secant period {back.period:.5g} s at {xmax:g} m ({back.period_kb:.4g} s with kb alone); "
+        f"damping {percent(back.damping_paper, 4)} as W_D/(2 pi E_s), "
+        f"{percent(back.damping_equivalent, 4)} as W_D/(4 pi E_s); "
+        f"loss {back.cycle_loss:.5g} J a cycle and bearing",
+    )
+    write_output({json_file: Design(bearings=constants, properties=given)}, lambda: echo(*lines))
+
+
+def _for_scene(place, base_mass, stroke, tilt, made, many, write, plot, json_file):
+    """Find suitable bearings by a scan; show, draw and write them."""
+    from analytic.bearing_scan import scan_bearings
+    from analytic.response import scene_warnings
+    from analytic.scene_file import load_scene, shipped_scenes
+
+    from ..plotting.margins import draw_bearings, nothing_holds, print_bearings
+
+    check_writable([json_file], picture=plot, inputs=[place])
+    scene = _on_base(load_scene(place), base_mass, place)
+    if write and place in shipped_scenes() and not Path(place).exists():
+        raise SettingError(f"--write: {place} comes with the package; give a scene file of your own")
+    groups, left = motions_of(scene, **many)
+    motions = [motion for group in groups.values() for motion in group]
+    compile_kernels(any(motion.vertical for motion in motions))
+    with bar(f"{scene.name}: bearings") as progress, named_by_options(OF_SCENE), in_file(place):
+        scan = scan_bearings(scene, motions, stroke, tilt=tilt, **made, progress=progress)
+    points = {LEAST: scan.least_stroke, SOFTEST: scan.softest}  # (period, damping), None without any
+    chosen = {name: _chosen(scene, scan, point, groups, left) for name, point in points.items() if point is not None}
+    nothing = "" if chosen else nothing_holds(scene, scan, stroke, tilt, motions)
+    if write and nothing:
+        raise SettingError(f"--write: {nothing}")
+    read = [read_row(record, motion) for record, group in groups.items() for motion in group]
+    warnings = scene_warnings(scene.with_(bearings=scan.designs[0]))  # it is to have some
+    results = {json_file: _design_form(scene, stroke, tilt, read, left, scan, chosen, warnings)}
+    if write:
+        results[place] = _written(place, chosen[write]["bearings"], None if base_mass is None else scene.base)
+    write_output(
+        results,
+        lambda: print_bearings(scene, scan, stroke, tilt, read, chosen, warnings, nothing),
+        plot,
+        lambda: draw_bearings(scene, scan, stroke, tilt),
+    )
+    if write and json_file != "-":
+        print(f"written into {place}: {write}")
+    end_with([row for one in chosen.values() for row in one["motions"]])
+
+
+def _on_base(scene, mass, place):
+    """The scene with a base under its block; mass [kg]: of the base of a scene without one."""
+    from analytic.scene import Base
+
+    if mass is None and scene.base is None:
+        raise SettingError(
+            f"--base-mass is missing: in {place} the block stands on the ground; give its base's mass [kg]"
+        )
+    if mass is not None and scene.base is not None:
+        raise SettingError(f"--base-mass {mass:g}: {place} has a base, of {scene.base.mass:g} kg; leave it out")
+    with named_by_options(OPTIONS):
+        return scene if mass is None else scene.with_(base=Base(mass=float(f"{mass:.6g}")))  # rounded as in the file
+
+
+def _chosen(scene, scan, point, groups, left=()):
+    """The bearings at a point, rounded as in a file, and what each motion does on them, from new runs."""
+    from analytic import simulate
+    from analytic.scene import Bearings
+
+    from ..plotting.margins import LIFTED, headline
+
+    exact = scan.bearings(*point)
+    bearings = Bearings(**{**exact.model_dump(), **{name: float(f"{exact.given(name):.6g}") for name in WRITTEN}})
+    borne = scene.with_(bearings=bearings, duration=None)
+    rows = rows_of(borne, groups, lambda one: simulate(one, history=False), _demand)
+    demand, worst = max(row.pop("demand", math.inf) for row in rows), max(rows, key=lambda row: row["stroke"])
+    return {
+        "period": point[0],
+        "damping": point[1],
+        "bearings": bearings,
+        "stroke": worst["stroke"],
+        "lifts": sum(row["outcome"] in LIFTED for row in rows),
+        "slides": sum(bool(row["slip"]) for row in rows),
+        "friction": scene.friction and demand / scene.friction,
+        "uplift": demand / math.tan(scene.block.slenderness),
+        "tilt": max(row["tilt"] for row in rows),
+        "worst": worst["motion"],
+        "motions": rows,
+        "headline": headline(rows, left),
+    }
+
+
+def _demand(scene):
+    """The friction demand of a block that does not slide, as the search has it."""
+    from analytic import simulate_many
+
+    return {"demand": float(simulate_many([scene], contact=True).friction_demand[0])}
+
+
+def _written(place, bearings, base):
+    """The text of the scene file with these bearings, and a base if it has none; an error if the file has its bearings
+    in another form."""
+    from analytic.scene_file import with_bearings
+
+    text = with_bearings(Path(place).read_text(encoding="utf-8-sig"), bearings, base)
+    try:
+        found = scene_of(text, place)
+        same = found.bearings == bearings and base in (None, found.base)
+    except SceneError:
+        same = False
+    if not same:
+        raise SettingError(f"--write: {place} holds its bearings in another form; write them as a table [bearings]")
+    return text
+
+
+def _design_form(scene, stroke, tilt, motions, left, scan, chosen, warnings):
+    """Content of the JSON file."""
+    from ..schemas.advice import BearingProposal, BearingSearch, Constants
+    from ..schemas.runs import Warned
+
+    return BearingSearch(
+        scene=scene.name,
+        base_mass=scene.base.mass,
+        stroke=stroke,
+        tilt=tilt,
+        motions=motions,
+        left_out=left,
+        warnings=[Warned(**dataclasses.asdict(one)) for one in warnings],
+        periods=scan.periods.tolist(),
+        dampings=scan.dampings.tolist(),
+        holds=(scan.demand <= 1).tolist(),
+        chosen={
+            name: BearingProposal(**{**one, "bearings": Constants(**one["bearings"].model_dump())})
+            for name, one in chosen.items()
+        },
+    )

@@ -1,0 +1,598 @@
+"""One run as a user asks for it: ground motion, solver and settings by name, checked.
+
+Options that commands share (of a record, of the many motions a scene is tried under), and messages that name them:
+options, not the parameters or the keys behind them.
+
+Implausible numbers in a new scene: centimetres for metres, an impossible density, a tilt past the balance, bearings
+that do not yield.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import inspect
+import json
+import math
+import re
+import sys
+import tempfile
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from analytic.errors import SceneError, SettingError
+from analytic.scene import Scene
+from analytic.scene_file import MATERIALS, UPLIFT, YIELD, derived
+from engines.simulating import RANGE
+
+from .files import readable
+from .progress import compile_kernels, say, spinner
+
+if TYPE_CHECKING:
+    from analytic import Caution, Response, SampledMotion, Scene
+
+ANALYTIC, KERNEL = "analytic", "kernel"  # and the variant that its runs are told as
+TIME_LIMIT = 300.0  # s, of one run
+TIME_LIMIT_HELP = "A run that takes longer is ended, and counts as failed."
+
+
+def parse_settings(pairs: Iterable[str]) -> dict[str, Any]:
+    """``["step=1e-4"]`` -> ``{"step": 0.0001}``; values are JSON, anything else is text.
+
+    Raises
+    ------
+    SettingError
+        A pair without "=", or a number that is not finite.
+    """
+    settings = {}
+    for pair in pairs:
+        name, equals, text = pair.partition("=")
+        if not (equals and name):
+            raise SettingError(f"--set {pair}: write name=value")
+        name = name.strip()
+        try:
+            settings[name] = json.loads(text)
+        except (ValueError, RecursionError):  # no JSON, or nested too deep for a setting
+            settings[name] = text
+        if isinstance(settings[name], int | float):
+            _check_size(name, settings[name])
+    return settings
+
+
+def ground_motion(record: str | PathLike[str] | None = None, **said: Any) -> SampledMotion:
+    """The motion in the file `record`, or the shipped synthetic one without it.
+
+    said : units, dt, column, channel
+        What the file does not say itself (see `analytic.records.read_record`); None: nothing.
+
+    Raises
+    ------
+    SettingError
+        Something is said of a record, and there is none.
+    SceneError
+        The record cannot be read.
+    """
+    from analytic import synthetic_motion
+    from analytic.records import read_record
+
+    if record is not None:
+        return read_record(record, **said)
+    for name, value in said.items():
+        if value is not None:
+            raise SettingError(f"--{name} {value}: belongs to a record; give --record FILE")
+    return synthetic_motion()
+
+
+def scene_of(text: str, file: str) -> Scene:
+    """The scene that a text makes as the file called `file`, before it is one.
+
+    Raises
+    ------
+    SceneError
+        As of that file.
+    """
+    from analytic.scene_file import load_scene
+
+    with tempfile.NamedTemporaryFile("w", suffix=".toml", dir=Path(file).resolve().parent, encoding="utf-8") as part:
+        part.write(text)
+        part.flush()
+        try:
+            return load_scene(part.name)
+        except SceneError as error:
+            raise error.in_file(file) from None
+
+
+@contextlib.contextmanager
+def in_file(place: str) -> Iterator[None]:
+    """What a model refuses inside is a mistake in the scene file called `place`."""
+    try:
+        yield
+    except SceneError as error:
+        raise error.in_file(place) from None
+
+
+def simulate(
+    scene: Scene,
+    solver: str = ANALYTIC,
+    variant: str | None = None,
+    settings: Mapping[str, Any] | None = None,
+    history: bool = True,
+    time_limit: float = TIME_LIMIT,
+    words: str | None = None,
+    compare: bool = False,
+) -> Response:
+    """The `Response` of the solver called `solver`, run in a process of its own while `words` are shown.
+
+    compare: an engine's run with the analytic model (`engines.comparison`); of the model itself, whether a change as
+    small as its own errors is another outcome.
+
+    What is odd about the record stands among its warnings. A run that crashes, or takes more than `time_limit` [s], is
+    a response of outcome "failed" with the evidence.
+
+    Raises
+    ------
+    SettingError
+        Unknown solver, variant or setting, or a setting of the wrong type.
+    EngineNotInstalled
+        The engine cannot be imported here; says how to install it.
+    """
+    from analytic.response import about_record
+    from engines.guard import OUT_OF_TIME, RAISED, run_apart
+
+    settings = settings or {}
+    check_solver(solver)
+    compile_kernels(scene.motion is not None and scene.motion.vertical is not None)
+    response, failure = run_apart(
+        _simulate,
+        scene,
+        solver,
+        variant,
+        settings,
+        history,
+        compare,
+        time_limit=time_limit,
+        meanwhile=spinner(words) if words else None,
+    )
+    if failure and failure.reason == RAISED and solver == ANALYTIC:
+        raise RuntimeError(f"the analytic model raised {failure.message}")  # a mistake of this project, not a result
+    if failure:
+        from engines.observe import failed_response
+
+        from .cases import versions
+
+        if failure.reason == OUT_OF_TIME:
+            first, end, rest = failure.message.partition("\n")
+            failure = dataclasses.replace(failure, message=f"{first}; --time-limit allows more{end}{rest}")
+        response = failed_response(
+            scene, failure, engine=solver, variant=variant or "", settings=dict(settings), versions=versions(solver)
+        )
+    odd = dict.fromkeys((*about_record(scene.motion), *response.warnings))
+    return dataclasses.replace(response, warnings=tuple(odd))
+
+
+def near_motion(scene: Scene) -> tuple[Caution, ...]:
+    """`near` a scene's motion, shown while it is looked for; none without a motion."""
+    from analytic.margins import SHARE
+
+    if scene.motion is None:
+        return ()
+    with spinner(f"{scene.name}: within {SHARE:.0%} of the motion"):
+        return near(scene)
+
+
+def near(scene: Scene) -> tuple[Caution, ...]:
+    """`analytic.margins.cliffs` of a scene with a motion, or that it was not looked for."""
+    from analytic.margins import SHARE, cliffs, nearby
+    from analytic.response import Caution
+
+    try:
+        return cliffs(scene, *nearby(scene))
+    except SceneError as error:
+        text = f"How the outcome depends on {SHARE:.0%} of the motion was not tested: {error.remedy}."
+        return (Caution("motion", text),)
+
+
+def with_near(scene: Scene, response: Response) -> Response:
+    """The response of a scene with the warnings that `near` adds to a single run's, too."""
+    return dataclasses.replace(response, warnings=(*response.warnings, *near(scene)))
+
+
+def check_solver(name: str) -> None:
+    """Raise `SettingError` if no solver is called `name`."""
+    from engines import BROKEN, ENGINES
+
+    if name in BROKEN:
+        raise BROKEN[name]
+    if name != ANALYTIC and name not in ENGINES:
+        raise SettingError(f"unknown engine {name!r}: choose one of {', '.join(ENGINES)}, or {ANALYTIC}")
+
+
+def named_engines(names: Iterable[str]) -> tuple[str, ...]:
+    """The engines of these names, each once.
+
+    Raises
+    ------
+    SettingError
+        An engine has no such name; lists the known ones.
+    EngineNotInstalled
+        As `engines.get_engine`.
+    """
+    from engines import get_engine
+
+    names = tuple(dict.fromkeys(names))
+    for name in names:
+        try:
+            get_engine(name)
+        except KeyError as error:
+            raise SettingError(error.args[0]) from None
+    return names
+
+
+def check_time_limit(seconds: float) -> None:
+    """Raise `SettingError` if a run cannot be given so many seconds."""
+    from engines.guard import check_time_limit
+
+    try:
+        check_time_limit(seconds)
+    except ValueError as error:
+        raise SettingError(f"--{error}".replace("time_limit", "time-limit", 1)) from None
+
+
+def _simulate(scene, solver, variant, settings, history, compare):
+    if solver != ANALYTIC:
+        from engines import get_engine
+        from engines.simulating import choose
+
+        engine = get_engine(solver)
+        if settings:  # else one called as an argument of `simulate` would be taken for that
+            choose(engine, variant, settings)
+            if "friction" in settings and scene.friction is not None:
+                words = f"{solver}: friction = {settings['friction']!r}"
+                raise SettingError(f"{words}: the scene's, {scene.friction:g}, is used in its place; leave it out")
+        return engine.simulate(scene, variant=variant, history=history, compare=compare, **settings)
+    response = _analytic(scene, variant, settings, history)
+    if compare and response.decided:
+        from ..metrics.errors import unsure_outcome
+
+        doubt = unsure_outcome(scene, response.outcome)
+        return dataclasses.replace(response, warnings=(*response.warnings, *filter(None, [doubt])))
+    return response
+
+
+def _analytic(scene, variant, settings, history):
+    import analytic
+
+    if variant not in (None, KERNEL):
+        raise SettingError(f"the analytic model has no variant {variant!r}: leave --variant out, or give {KERNEL}")
+    parameters = inspect.signature(analytic.simulate).parameters
+    known = [name for name in parameters if name not in ("scene", "history")]
+    for name, value in settings.items():
+        if name not in known:
+            raise SettingError(f"the analytic model has no setting {name!r}: its settings are {', '.join(known)}")
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise SettingError(f"{name} = {value!r}: give a number")
+    return analytic.simulate(scene, history=history, **settings)
+
+
+def _check_size(name, value):
+    """Numbers a solver can take: those that are finite as a double."""
+    try:
+        finite = math.isfinite(value)
+    except OverflowError:  # a whole number beyond the doubles, with hundreds of digits
+        raise SettingError(f"{name}: not a finite number; give one below 1e308") from None
+    if not finite:
+        raise SettingError(f"{name} = {value!r}: not a finite number; give one")
+
+
+def print_failures(responses: Iterable[Response]) -> None:
+    """Name the failed ones of the responses on standard error, with what a terminal can hold of the evidence."""
+    for response in responses:
+        if response.failure:
+            evidence = readable(response.failure.message.partition("\n")[0])
+            say(f"{response.engine} failed: {response.failure.reason}. {evidence}".rstrip(". ") + ".")
+
+
+if TYPE_CHECKING:
+    from analytic import Response, Scene
+    from analytic.motion import Motion
+    from analytic.response import Caution
+
+# What a user says of a record that the file itself does not.
+Units = Annotated[
+    str | None, typer.Option(help="Unit, if header and titles state none: m/s2, cm/s2, gal, mm/s2, g or %g.")
+]
+Step = Annotated[
+    float | None, typer.Option(metavar="SECONDS", help="Sampling interval, if no line such as dt = 0.01 s states one.")
+]
+Column = Annotated[
+    str | None, typer.Option(help="Of several columns: the accelerations', its number from 1 on or its title.")
+]
+Channel = Annotated[str | None, typer.Option(help="Of several channels: its number or direction, 3 or Up.")]
+# What `rocking new` and `rocking design` share; those of a record, wherever one is read.
+DEFINITION = "Of the damping. equivalent: W_D/(4 pi E_s), the usual one; paper: W_D/(2 pi E_s), twice as much."
+RATIO = "By design: ka/kb; Table 1(b) of the paper has 10."
+RECORD_OPTIONS = {f"motion.{name}": f"--{name}" for name in ("units", "dt", "column", "channel")}
+_SAME = ("height", "width", "depth", "density", "mass", "period", "damping", "definition", "count", "friction")
+OPTIONS = {
+    **{name: f"--{name}" for name in _SAME},
+    **{f"bearings.{name}": f"--{name}" for name in ("count", "ka", "kb", "alpha")},
+    **RECORD_OPTIONS,
+    **{"x_max": "--xmax", "bearings.x_max": "--xmax", "stiffness_ratio": "--ratio", "start.tilt": "--tilt"},
+    **{"block.mass": "--mass", "base.mass": "--base-mass"},
+}
+
+
+@contextlib.contextmanager
+def named_by_options(options: Mapping[str, str]) -> Iterator[None]:
+    """Errors raised inside name options; options : {parameter of a function, or key of a scene: option}."""
+    try:
+        yield
+    except SettingError as error:
+        words = str(error)
+        for name, option in options.items():
+            end = r"\b" if "_" in name else "(?= = )"  # a word of a sentence stays one
+            words = re.sub(rf"(?<![\w.-]){re.escape(name)}{end}", option, words)
+        raise SettingError(words) from None
+    except SceneError as error:
+        raise _by_options(error, options) from None
+
+
+def _by_options(error: SceneError, options: Mapping[str, str]) -> SceneError:
+    """The same mistakes, naming options."""
+    key = options.get(error.key, error.key)
+    of_a_file = key == error.key or error.key in RECORD_OPTIONS
+    file = error.file if of_a_file else None  # other options name no file
+    others = tuple(_by_options(other, options) for other in error.others)
+    return SceneError(key, error.value, error.problem, error.remedy, file, others)
+
+
+Records = Annotated[
+    str | None, typer.Option(metavar="FOLDER", help="Also under the records in this folder, as they are recorded.")
+]
+BothSigns = Annotated[
+    bool,
+    typer.Option(
+        "--both-signs", help="Also under every motion with its sign changed, unless block and start are symmetric."
+    ),
+]
+Directions = Annotated[
+    int | None,
+    typer.Option(
+        metavar="NUMBER", help="Under so many directions of each record's two horizontal components, over half a turn."
+    ),
+]
+
+
+OWN = "the scene's own motion"  # the record of one that is not among those of the folder
+
+
+def motions_of(
+    scene: Scene, records: str | None, both_signs: bool, directions: int | None, units: str | None = None
+) -> tuple[dict[str, list[Motion]], list[str]]:
+    """({record: its motions}, the scene's own among them as of `with_own`; what is left out and why, said).
+
+    Raises
+    ------
+    SettingError
+        No such folder, no motion in it, or directions or units without a folder.
+    """
+    from analytic.records.folder import folder_motions, reversed_sign, same_reversed
+
+    from .progress import say
+
+    for name, value in (("directions", directions), ("units", units)):
+        if value is not None and records is None:
+            raise SettingError(f"--{name} {value}: give the folder of the records with --records")
+    found: dict[str, list[Motion]] = {}
+    left: list[str] = []
+    if records is not None:
+        with named_by_options({"directions": "--directions"}):
+            others, left = folder_motions(records, directions=directions, own=scene.motion, units=units)
+        found = {name: [*motions] for name, motions in others.items()}
+        for line in left:
+            say(line)
+    found = with_own(scene.motion, found)
+    if both_signs and same_reversed(scene):
+        say("--both-signs: mirrored the same, as block and start are symmetric; each motion is run once")
+    elif both_signs:
+        found = {name: [*motions, *map(reversed_sign, motions)] for name, motions in found.items()}
+    return found, left
+
+
+def with_own(own: Motion | None, groups: Mapping[str, Sequence[Motion]]) -> dict[str, list[Motion]]:
+    """{record: its motions}, a scene's own motion among them: where it is not yet, the first of the record of its name
+    or, without one, of `OWN`."""
+    found = {record: [*motions] for record, motions in groups.items()}
+    if own is None or any(one.digest() == own.digest() for motions in found.values() for one in motions):
+        return found
+    return {own.label if own.label in found else OWN: [own, *found.pop(own.label, [])], **found}
+
+
+def other_motions(
+    scene: Scene, records: str | None, both_signs: bool, directions: int | None, units: str | None = None
+) -> tuple[dict[str, list[Motion]], list[str]]:
+    """`motions_of` where one of the options is given, else none."""
+    given = both_signs or any(value is not None for value in (records, directions, units))
+    return motions_of(scene, records, both_signs, directions, units) if given else ({}, [])
+
+
+def read_row(record: str, motion: Motion, warnings: Sequence[Caution] = ()) -> dict[str, Any]:
+    """A motion as it was read: record, motion, peak [m/s2], and warnings on it, as `schemas.runs.MotionRead` has it;
+    further `warnings` behind them."""
+    from analytic.response import about_record
+
+    told = dict.fromkeys((*about_record(motion), *warnings))
+    return {"record": record, "motion": motion.label, "peak": motion.peak, "warnings": list(map(asdict, told))}
+
+
+def rows_of(
+    scene: Scene,
+    groups: Mapping[str, Sequence[Motion]],
+    simulate: Callable[[Scene], Response],
+    more: Callable[[Scene], Mapping[str, Any]] = lambda scene: {},
+) -> list[dict[str, Any]]:
+    """`row_of` each motion, in the groups' order; shown as it goes on."""
+    from .progress import bar
+
+    pairs = [(record, motion) for record, motions in groups.items() for motion in motions]
+    if not pairs:
+        return []
+    rows = []
+    with bar(f"{scene.name}: {len(pairs)} motions") as progress:
+        for record, motion in pairs:
+            rows.append(row_of(scene, record, motion, simulate, more))
+            progress(len(rows), len(pairs))
+    return rows
+
+
+def row_of(
+    scene: Scene,
+    record: str,
+    motion: Motion,
+    simulate: Callable[[Scene], Response],
+    more: Callable[[Scene], Mapping[str, Any]] = lambda scene: {},
+) -> dict[str, Any]:
+    """A scene under one of many motions, as `schemas.runs.MotionRun` has it: the one way from a motion to its warnings.
+
+    simulate : of the scene under the motion; where it is refused, the row is that of a failed run. more : what else a
+    row of a run has.
+    """
+    from analytic.errors import SceneError
+
+    try:
+        under = scene.with_(motion=motion)
+        response, added = simulate(under), more(under)
+    except SceneError as error:
+        response, added = refused(scene.with_(motion=None), error), {}
+    return {**read_row(record, motion, response.warnings), **_measures(scene, response), **added}
+
+
+def end_with(rows: Sequence[Mapping[str, Any]], *responses: Response) -> None:
+    """End the command with status 1 where the run of a motion, or one of the responses, failed."""
+    if any(row["failure"] for row in rows) or any(response.failure for response in responses):
+        raise typer.Exit(1)
+
+
+def refused(scene: Scene, error: SceneError, **known: Any) -> Response:
+    """The failed response of a scene that a solver refuses; known : engine, variant, ..., the model's without them."""
+    from analytic.response import Failure
+    from engines.observe import failed_response
+
+    from .cases import versions
+
+    pass
+
+    name = known.get("engine", ANALYTIC)
+    solver = {"engine": name, "variant": "", "settings": {}, "versions": versions(name)}
+    return failed_response(scene, Failure("it cannot run this scene", str(error)), **{**solver, **known})
+
+
+def _measures(scene: Scene, response: Response) -> dict[str, Any]:
+    """What a run did."""
+    failure = response.failure
+    return {
+        "outcome": response.outcome,
+        "failure": failure and f"{failure.reason}: {failure.message.partition(chr(10))[0]}".removesuffix(": "),
+        "tilt": response.peak_tilt_ratio,
+        "stroke": response.peak_base_displacement if scene.base else None,
+        "slip": response.sliding and response.sliding.peak,
+    }
+
+
+# Of the lightest material: walls of a tenth of the width fill a third of a hollow piece, and a figure half of its box.
+HOLLOW = 1 / 6
+
+
+def doubts(
+    scene: Scene, height: float, width: float, depth: float | None = None, *, weighed: bool, designed: bool
+) -> list[str]:
+    """Implausible values: the options, their value, the plausible range and the remedy; empty if there are none.
+
+    Parameters
+    ----------
+    scene : Scene
+        Made from the options.
+    height, width, depth : float
+        Of the block [m]; the depth is the width where it is not given.
+    weighed : bool
+        The block's mass was given, not its density.
+    designed : bool
+        The bearings were given by their period, not by their constants.
+    """
+    block, found = scene.block, []
+    sizes = f"--height {height:g} and --width {width:g}"
+    least, most, _ = RANGE["radius"]  # the engines' variants are tested for it, and nothing is promised beyond
+    if not least <= block.radius <= most:  # what else follows from the lengths is wrong with them
+        return [
+            f"{sizes} give a radius R of {block.radius:.3g} m, a statue has {least:g} to {most:g} m; "
+            f"give them in m{_meant(height, width)}"
+        ]
+    least, most, _ = RANGE["slenderness"]  # likewise; stockier blocks slide or stand, more slender ones fall at once
+    if not least <= block.slenderness <= most:
+        found.append(
+            f"{sizes} give a slenderness of {block.slenderness:.3g} rad, a statue has {least:g} to {most:g} rad: "
+            f"a width of {math.tan(least):.2g} to {math.tan(most):.2g} of the height; "
+            + ("exchange them" if least <= math.pi / 2 - block.slenderness <= most else "correct one")
+        )
+    if depth is not None and depth > 2 * RANGE["radius"][1]:  # a side of the largest statue is 2 R at most
+        found.append(
+            f"--depth {depth:g} is longer than any side of a statue, {2 * RANGE['radius'][1]:g} m; give it in m"
+        )
+    tilt = scene.start.tilt
+    if scene.motion is None and not 0 < abs(tilt) < block.slenderness:
+        what = "releases the block where it stands: nothing moves" if tilt == 0 else "is beyond its balance: it falls"
+        found.append(f"--tilt {tilt:g} {what}; give a size between 0 and the slenderness, {block.slenderness:.4g} rad")
+    density = block.mass / (height * width * (depth or width))
+    least, most = HOLLOW * min(MATERIALS.values()), max(MATERIALS.values())  # the densest one, solid
+    if not least <= density <= most:
+        given = f"--mass {block.mass:g} makes a block of" if weighed else "--density is"
+        remedy = "give the mass in kg, or the block's --depth in m" if weighed else "give it in kg/m3"
+        found.append(
+            f"{given} {density:.3g} kg/m3, a statue has {least:g} (hollow wood) to {most:g} (bronze); {remedy}"
+        )
+    values = {name: value for name, value, _ in derived(scene)}
+    if values.get(YIELD, 0.0) >= values[UPLIFT]:  # until they yield they are stiff, and the block is lifted before that
+        given = "--period, --damping and --xmax" if designed else "--ka, --kb and --alpha"
+        remedy = (
+            "give a longer --period, a lower --damping or a smaller --xmax"
+            if designed
+            else "give a lower --ka or a higher --alpha"
+        )
+        found.append(
+            f"{given} give bearings that yield at {values[YIELD]:.3g} m/s2, and so do not isolate before the block "
+            f"lifts at {values[UPLIFT]:.3g} m/s2: they should yield below that; {remedy}"
+        )
+    return found
+
+
+def _meant(height: float, width: float) -> str:
+    """A question for the lengths of a statue of which one or both were given in cm or mm."""
+    guesses = []
+    for unit, scale in (("cm", 100), ("mm", 1000)):
+        for high, wide in ((height / scale, width / scale), (height / scale, width), (height, width / scale)):
+            sizes = {"radius": math.hypot(high, wide) / 2, "slenderness": math.atan2(wide, high)}
+            if all(RANGE[name][0] <= size <= RANGE[name][1] for name, size in sizes.items()):
+                guesses.append(f"--height {high:g} --width {wide:g} (from {unit})")
+    return f"; did you mean {' or '.join(guesses)}?" if guesses else ""
+
+
+def confirm(found: Sequence[str]) -> None:
+    """Return if nothing was found, or if the user confirms the values in a terminal.
+
+    Raises
+    ------
+    SettingError
+        There is no terminal, or the answer is no.
+    """
+    if not found:
+        return
+    words = "; ".join(found)
+    if not sys.stdin.isatty():
+        raise SettingError(f"{words} (--anyway writes the file as it is)")
+    if not typer.confirm(f"{words}\nWrite it anyway?", err=True):
+        raise SettingError("nothing was written; correct the options named")

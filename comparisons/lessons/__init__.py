@@ -1,1 +1,0 @@
-"""Teaching material: lessons as pages and notebooks, and the playground, a page that simulates the rocking block."""

@@ -1,0 +1,461 @@
+"""The margins of a scene, what it does under many motions, the bearings it needs: as tables for the terminal and as
+pictures."""
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from analytic import Caution, Scene
+from analytic.bearing_scan import BearingScan, hardest
+from analytic.margins import Contact, Margin, limit_states
+from analytic.motion import Motion
+from analytic.response import KINDS
+
+from ..execution.files import readable
+from ..execution.solving import OWN
+from ..metrics.statistics import wilson
+from ..schemas.columns import number, percent
+from .plots import TITLE_CHARACTERS
+from .terminal import Grid, digits, echo, grid, warned
+from .wording import listed
+
+# Okabe and Ito; hatches, and the lines’ places, tell them apart in print.
+COLOURS = {
+    "stands": ("#009E73", ""),
+    "slides": ("#E69F00", "--"),
+    "rocks": ("#F0E442", ".."),
+    "overturns": ("#D55E00", "//"),
+    "failed": ("0.4", ""),
+}
+
+# Lines along a strip: colour, and where they begin.
+OUTSIDE, TILT, STROKE = ("#CC79A7", -0.43), ("#0072B2", 0.35), ("#56B4E9", 0.43)
+
+
+def print_margins(
+    scene: Scene,
+    margins: Sequence[Margin],
+    contact: Contact,
+    span: float,
+    tilt: float,
+    warnings: Sequence[Caution] = (),
+) -> None:
+    """Print a row for each `Margin` with a change, in order, and the reserves of the contact; `warnings` first."""
+    nearest = margins[0]
+    names = {state: name for state, name in _names(tilt).items() if state in limit_states(scene)}
+    now = ", ".join(name for state, name in names.items() if nearest.reached(state))
+    parts: list[Grid | str] = [
+        *(f"Warning: {readable(str(warning))}" for warning in warnings),
+        f"{readable(scene.name, TITLE_CHARACTERS)}: {nearest.outcome}\nnow: {now or 'no limit state'}",
+    ]
+    rows = {margin: [margin.change(state) for state in names] for margin in margins}
+    rows = {margin: changes for margin, changes in rows.items() if any([*changes, margin.leaves_model])}
+    if rows:
+        parts += [
+            _table([f"no longer\n{name}" if nearest.reached(state) else name for state, name in names.items()], rows),
+            "Each quantity alone, to the nearest change at which a limit state is reached, or no longer is, as its "
+            "column says. Slenderness at fixed R, mass and J_O; size at fixed mass and shape."
+            + (" Left at: from there on the model does not hold." if _leaves(rows) else ""),
+        ]
+    if still := ", ".join(margin.quantity for margin in margins if margin not in rows):
+        within = " within its range" if any(one.ends_down or one.ends_up for one in margins if one not in rows) else ""
+        parts.append(
+            f"No change of up to {span:g} % of {still}{within} changes any of these: {', '.join(names.values())}."
+        )
+    parts += [words for margin in margins for words in _ends(margin)]
+    if nearest.nearest is None:
+        parts.append(f"No change of up to {span:g} % of any one quantity changes the outcome.")
+    else:
+        parts.append(
+            f"Nearest change of the outcome: {nearest.quantity} {_percent(nearest.nearest)}, the block then "
+            f"{nearest.beyond(nearest.nearest)}."
+        )
+    if bands := [margin for margin in margins if margin.interleaved]:
+        parts.append(
+            f"The outcomes are interleaved in {', '.join(margin.quantity for margin in bands)}: bands narrower than "
+            f"{200 * bands[0].step:.2g} % alternate there. Narrower ones may lie nearer than the change "
+            "given: do not base a decision on this margin."
+        )
+    parts.append(" ".join(filter(None, [_normal_words(contact), _friction_words(contact)])))
+    if scene.bearings is not None:
+        parts.append("Assumed: the bearings are stiff vertically (real ones sway at 10 to 20 Hz).")
+    echo(*parts, wrap=True)
+
+
+def _names(tilt):
+    """{limit state: as it is called here}."""
+    names = {"slides": "slides", "lifts": "lifts", "tilt": f"tilt > {tilt:g} γ"}
+    return {**names, "stroke": "base > x_max", "overturns": "overturns"}
+
+
+def _ends(margin):
+    """Where the range of a quantity ends before the span, and why."""
+    ends = ((margin.bands[0].low, margin.ends_down), (margin.bands[-1].high, margin.ends_up))
+    return [f"The range of {margin.quantity} ends at {100 * at:+.3g} %: {readable(why)}." for at, why in ends if why]
+
+
+def named(row: Mapping[str, Any], tilt: float) -> dict[str, str]:
+    """{limit state as tables call it: its change in words}, of a row's changes and the states that it reaches."""
+    words = {state: _percent(change) for state, change in row.get("changes", {}).items()}
+    words |= {state: f"no longer\n{words[state]}" if words[state] else "now" for state in row.get("reached", ())}
+    return {_names(tilt)[state]: change for state, change in words.items()}
+
+
+def _leaves(margins):
+    return any(margin.leaves_model is not None for margin in margins)
+
+
+def _table(names, rows):
+    """names: of the limit states; rows: {margin: its change of each}."""
+    outside = _leaves(rows)
+    heads = ["quantity", "value", *names, *(["left at"] if outside else [])]
+    cells = [
+        [
+            margin.quantity,
+            f"{margin.value:.5g} {margin.unit}".removesuffix(" -"),
+            *map(_percent, [*changes, *([margin.leaves_model] if outside else [])]),
+        ]
+        for margin, changes in rows.items()
+    ]
+    return grid([head.replace(" > ", "\n> ") for head in heads], cells)  # 80 columns hold the widest numbers
+
+
+def draw_margins(scene: Scene, margins: Sequence[Margin], tilt: float) -> Figure:
+    """Outcomes over the relative change of each quantity, a strip for each `Margin`: a matplotlib Figure.
+
+    Lines along a strip: where the peak tilt exceeds its limit, the base its own, and where the model does not hold.
+    """
+    figure = Figure(figsize=(8, 1.5 + 0.42 * len(margins)), layout="constrained")
+    axis = figure.subplots()
+    for row, margin in enumerate(margins):
+        for band in margin.bands:
+            colour, hatch = COLOURS[band.outcome]
+            left, width = 100 * band.low, 100 * (band.high - band.low)
+            axis.barh(row, width, left=left, height=0.7, color=colour, hatch=hatch, edgecolor="0.25", linewidth=0)
+            for colour, place in _lines(band):
+                axis.barh(row + place, width, left=left, height=0.08, color=colour, align="edge")
+        for change in (margin.down, margin.up):
+            if change is not None:
+                _label(axis, row, change)
+    axis.axvline(0, color="black", linewidth=1)
+    axis.set_yticks(range(len(margins)), [f"{margin.quantity}" for margin in margins])
+    axis.invert_yaxis()
+    low, high = min(margin.bands[0].low for margin in margins), max(margin.bands[-1].high for margin in margins)
+    axis.set(xlim=(100 * low, 100 * high), xlabel="change of one quantity [%]")
+    axis.set_title(f"{readable(scene.name, TITLE_CHARACTERS)}: {margins[0].outcome}", loc="left")
+    shown = {band.outcome for margin in margins for band in margin.bands}
+    handles = [
+        Patch(facecolor=colour, hatch=hatch, edgecolor="0.25", linewidth=0, label=name)
+        for name, (colour, hatch) in COLOURS.items()
+        if name in shown
+    ]
+    names = _names(tilt)
+    labels = {TILT: names["tilt"], STROKE: names["stroke"], OUTSIDE: "outside the model (N ≤ 0)"}
+    drawn = {line for margin in margins for band in margin.bands for line in _lines(band)}
+    handles += [Patch(facecolor=line[0], label=label) for line, label in labels.items() if line in drawn]
+    figure.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False)
+    return figure
+
+
+def _lines(band):
+    """Those of OUTSIDE, TILT and STROKE that a band has."""
+    found = {OUTSIDE: not band.holds, TILT: "tilt" in band.reached, STROKE: "stroke" in band.reached}
+    return [line for line, shown in found.items() if shown]
+
+
+def _label(axis, row, change):
+    axis.annotate(
+        _percent(change),
+        (100 * change, row),
+        (-4 if change > 0 else 4, 0),
+        textcoords="offset points",
+        ha="right" if change > 0 else "left",
+        va="center",
+        fontsize="small",
+        bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1},
+    )
+
+
+def _percent(change):
+    if change is None:
+        return ""
+    return "now" if change == 0 else f"{100 * change:+.3g} %"
+
+
+def _normal_words(contact):
+    if contact.least_normal <= 0 and contact.friction is not None:
+        return "The normal force falls to 0: the block flies."
+    if contact.least_normal <= 0:
+        return f"The normal force falls to {contact.least_normal:.3g} m g: the outcome is outside the model."
+    least = f"{contact.least_normal:.3g}"
+    return f"The normal force falls to {least} m g; at 0 the block would jump." if float(least) < 1 else ""
+
+
+def _friction_words(contact):
+    demand = f"The friction demand is {contact.friction_demand:.3g}"
+    if contact.friction is None:
+        return f"{demand}; the scene gives no coefficient to hold it against."
+    slides = ", and the block slides" if contact.slides else ""
+    return f"{demand}, the scene's coefficient {contact.friction:g}{slides}."
+
+
+LIFTED = ("rocks", "overturns")
+RECORD = "record"
+# {(kind, quantity) of a warning, or kind alone: (in a table, in the headline)}; what must be known first stands first.
+DOUBTS = {
+    ("limit", "peak_base_displacement"): ("x_max", "the base exceeds x_max"),
+    ("limit", "peak_slip"): ("slip", "the block slips by more than its half width"),
+    ("limit", None): ("limit", "a limit is exceeded"),
+    ("model", None): ("model", "a run warns that it is outside the model"),
+    ("record", None): ("record", "the record is unusual"),
+    ("motion", None): ("motion", "the outcome is sensitive to small changes"),
+    ("engine", None): ("engine", "the engine or its range warns"),
+}
+
+
+def _doubt(warning: Mapping[str, Any]) -> tuple[str, str]:
+    """A warning in a word and in a clause."""
+    return DOUBTS.get((warning["kind"], warning["quantity"])) or DOUBTS[warning["kind"], None]
+
+
+def headline(rows: Sequence[Mapping[str, Any]], left: Sequence[str] = ()) -> str | None:
+    """The worst that must be known of a scene under many motions, by record: failed runs, what is in doubt, whether the
+    block lifts and overturns. None without motions. Records are called motions where the scene's own is one of them.
+
+    rows : as of `running.options.rows_of`. left : what was left out.
+    """
+    if not rows:
+        return None
+    failed = _records(rows, lambda row: row["outcome"] == "failed")
+    said = [f"No outcome under {failed}."] if failed else []
+    said += [f"Warning: {clause} under {records}." for clause, records in doubts(rows).items()]
+    said.append(f"The block {odds(rows, LIFTED, 'lifts')}, and {odds(rows, LIFTED[1:], 'overturns')}.")
+    if unit_of(rows) != RECORD and len({row["record"] for row in rows}) < len(rows):
+        said.append("Components, directions and signs count as one motion.")
+    few = "file or channel" if len(left) == 1 else "files or channels"
+    return " ".join([*said, *([f"Left out of the folder: {len(left)} {few}."] if left else [])])
+
+
+def doubts(rows: Sequence[Mapping[str, Any]], kinds: Sequence[str] = KINDS) -> dict[str, str]:
+    """{what warnings of these kinds say, in a clause: under how many records or motions}; rows as in `headline`."""
+    found = {
+        clause: _records(rows, partial(_warns, clause)) for (kind, _), (_, clause) in DOUBTS.items() if kind in kinds
+    }
+    return {clause: records for clause, records in found.items() if records}
+
+
+def _warns(clause: str, row: Mapping[str, Any]) -> bool:
+    return any(_doubt(one)[1] == clause for one in row["warnings"])
+
+
+def _records(rows: Sequence[Mapping[str, Any]], holds: Callable[[Mapping[str, Any]], bool]) -> str:
+    """In words, how many records, or motions, have a run of which this holds; "" where none has."""
+    some, every = {row["record"] for row in rows if holds(row)}, {row["record"] for row in rows}
+    return f"{len(some)} of {counted(rows, len(every))}" if some else ""
+
+
+def unit_of(rows: Iterable[Mapping[str, Any]]) -> str:
+    """What the records of rows are called, in the singular: motion where the scene's own, of none, is among them."""
+    return "motion" if any(row["record"] == OWN for row in rows) else RECORD
+
+
+def counted(rows: Iterable[Mapping[str, Any]], number: int) -> str:
+    """So many of what `unit_of` calls them."""
+    return f"{number} {unit_of(rows)}{'s' * (number != 1)}"
+
+
+def print_motions(scene: Scene, rows: Sequence[Mapping[str, Any]], left: Sequence[str] = ()) -> None:
+    """Print a row for each motion, the warnings of all, and the `headline`; nothing without motions.
+
+    rows : as of `rows_of`, and for each more column of a `Mapping` called changes a name and what stands there.
+    """
+    if not rows:
+        return
+    more = list(dict.fromkeys(name for row in rows for name in row.get("changes", ())))[::-1]  # overturning first
+    columns: dict[str, Callable[[Mapping[str, Any]], str]] = {
+        "motion": lambda row: readable(row["motion"]),
+        "peak\n[g]": lambda row: f"{row['peak'] / scene.gravity:.3g}",
+        "outcome": lambda row: row["outcome"],
+    }
+    if any(row["warnings"] for row in rows):
+        columns["warnings"] = lambda row: ", ".join(dict.fromkeys(_doubt(one)[0] for one in row["warnings"]))
+    columns |= {
+        "tilt\n[-]": lambda row: digits(row["tilt"], ".3g"),
+        **{name.replace(" > ", " >\n"): partial(_change, name) for name in more},
+    }
+    if scene.base is not None:
+        columns["base\n[m]"] = lambda row: digits(row["stroke"], ".3g")
+    if any(row["slip"] for row in rows):
+        columns["slip\n[m]"] = lambda row: digits(row["slip"], ".3g")
+    table = [[cell(row) for cell in columns.values()] for row in rows]
+    failed = [f"{readable(row['motion'])}: {readable(row['failure'])}" for row in rows if row["failure"]]
+    echo(
+        grid([*columns], table, left=["warnings"], wraps=["motion", "warnings"]),
+        *failed,
+        *motion_warnings(rows),
+        *_alternating(rows),
+        headline(rows, left) or "",
+        wrap=True,
+    )
+
+
+def _alternating(rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Under which motions the change given may not be the nearest."""
+    names = listed([readable(row["motion"]) for row in rows if row.get("interleaved")])
+    return [f"The outcomes are interleaved under {names}: do not base a decision on these changes."] if names else []
+
+
+def _change(name: str, row: Mapping[str, Any]) -> str:
+    return row["changes"].get(name, "")
+
+
+def motion_warnings(rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    """The warnings of all motions and which they concern, of one quantity once."""
+    pairs = [(row["motion"], Caution(**one)) for row in rows for one in row["warnings"]]
+    return [readable(words) for words in warned(pairs, len(rows), "all motions")]
+
+
+def odds(rows: Sequence[Mapping[str, Any]], outcomes: Sequence[str], word: str) -> str:
+    """Under how many records or motions the block comes to one of these outcomes, in some direction or sign at least.
+
+    The interval of the share is Wilson's, of records: motions of one record are no sample. A record under which no
+    motion does so and one failed is left out.
+    """
+    found: dict[str, float] = {}
+    for row in rows:
+        hit = 1.0 if row["outcome"] in outcomes else math.nan if row["outcome"] == "failed" else 0.0
+        before = found.get(row["record"], 0.0)
+        found[row["record"]] = 1.0 if 1.0 in (hit, before) else before + hit
+    known = [hit for hit in found.values() if not math.isnan(hit)]
+    if not known:
+        return f"{word} under no {unit_of(rows)} that could be run"
+    low, high = wilson(int(sum(known)), len(known))
+    interval = f"({number(100 * low, 2)} to {percent(high)} at 95 %)"
+    return f"{word} under {sum(known):.0f} of {counted(rows, len(known))} {interval}"
+
+
+HELD = "#009E73"  # Okabe and Ito
+
+
+def print_bearings(
+    scene: Scene,
+    scan: BearingScan,
+    stroke: float,
+    tilt: float,
+    motions: Sequence[Mapping[str, Any]],
+    chosen: Mapping[str, Mapping[str, Any]],
+    warnings: Sequence[Caution] = (),
+    nothing: str = "",
+) -> None:
+    """Print the bearings named, a column each, or `nothing`, that none hold; `warnings` first.
+
+    motions : as they were read, `running.options.read_row`.
+    """
+    assert scene.base is not None  # the search asks for one
+    name, wanted = readable(scene.name, TITLE_CHARACTERS), _wanted(scene, stroke, tilt)
+    echo(
+        *(f"Warning: {readable(str(warning))}" for warning in warnings),
+        f"{name}: {wanted}; base: {scene.base.mass:g} kg; motions: {len(motions)}",
+        wrap=True,
+    )
+    if not chosen:
+        return echo(*motion_warnings(motions), nothing, wrap=True)
+    if len({(one["period"], one["damping"]) for one in chosen.values()}) == 1:
+        chosen = {" and ".join(chosen): next(iter(chosen.values()))}
+    rows = {
+        "secant period at the stroke [s]": "{period:.3g}",
+        "equivalent damping at the stroke": "{damping:.3g}",
+        "ka of each [N/m]": "{bearings.ka:.6g}",
+        "kb of each [N/m]": "{bearings.kb:.6g}",
+        "alpha": "{bearings.alpha:.6g}",
+        "base displacement, worst motion [m]": "{stroke:.4g}",
+        "acceleration over that of uplift": "{uplift:.3g}",
+        **({} if scene.friction is None else {"friction demand over the friction": "{friction:.3g}"}),
+        "peak tilt / slenderness": "{tilt:.3g}",
+    }
+    cells = [[label, *(form.format(**one) for one in chosen.values())] for label, form in rows.items()]
+    echo(
+        grid(["bearings", *chosen], cells, wraps=["bearings", *chosen]),
+        f"Of bearings {_scanned(scan)}, {percent(float(np.mean(scan.demand <= 1)))} hold.",
+        *(words for one in chosen.values() for words in motion_warnings(one["motions"])),
+        *(
+            f"{'On the ' + name + ' bearings: ' if len(chosen) > 1 else ''}{one['headline']}"
+            for name, one in chosen.items()
+        ),
+        wrap=True,
+    )
+
+
+EXCEEDED = {  # {limit of `bearing_scan.LIMITS`: that it is exceeded}
+    "stroke": "the stroke is exceeded",
+    "slip": "the block slides, the friction exceeded",
+    "tilt": "the tilt limit is exceeded",
+    "uplift": "the block lifts, the acceleration of uplift exceeded",
+}
+
+
+def nothing_holds(scene: Scene, scan: BearingScan, stroke: float, tilt: float, motions: Sequence[Motion]) -> str:
+    """That no bearings hold; which come nearest, which limit they exceed and under which motion; and what to change."""
+    period, damping = scan.nearest
+    limit, motion, demand = hardest(scene, scan.bearings(period, damping), motions, stroke, tilt)
+    row, column = np.abs(scan.dampings - damping).argmin(), np.abs(scan.periods - period).argmin()
+    under = f"under {readable(motion.label)}"
+    near = (
+        f"Nearest: {period:.3g} s with {damping:.3g} of critical damping: {EXCEEDED[limit]} by {percent(demand - 1)} "
+        f"{under}. The base moves by up to {scan.stroke[row, column]:.3g} m of {stroke:g}."
+        if math.isfinite(demand)
+        else f"None comes near: the block jumps off its base or overturns on all of them, {under} on those of "
+        f"{period:.3g} s with {damping:.3g}."
+    )
+    cure = f"Allow more stroke{_or_tilt(scene)}; or widen, fix or lower the block."
+    return f"no bearings {_scanned(scan)} hold. {near} {cure}"
+
+
+def _or_tilt(scene):
+    """What else may be allowed: no tilt helps a block that slides before it lifts."""
+    if scene.friction is None or scene.friction >= math.tan(scene.block.slenderness):
+        return ", or --tilt"
+    return f", or hold the block against sliding (its friction {scene.friction:g} is below tan γ, at which it lifts)"
+
+
+def _scanned(scan):
+    low, high = scan.dampings[0], scan.dampings[-1]
+    return f"of {scan.periods[0]:g} to {scan.periods[-1]:g} s and {percent(low)} to {percent(high)} of critical damping"
+
+
+def draw_bearings(scene: Scene, scan: BearingScan, stroke: float, tilt: float) -> Figure:
+    """The region of period and damping that holds, and the points named: a matplotlib Figure."""
+    figure = Figure(figsize=(7, 4.5), layout="constrained")
+    axis = figure.subplots()
+    shown = np.clip(scan.demand, 0, 3)
+    axis.contourf(scan.periods, 100 * scan.dampings, shown, [0, 1], colors=[HELD], alpha=0.35)
+    axis.contour(scan.periods, 100 * scan.dampings, shown, [1], colors=[HELD], linewidths=1.5)
+    lines = axis.contour(scan.periods, 100 * scan.dampings, shown, [1.25, 1.5, 2], colors="0.5", linewidths=0.8)
+    axis.clabel(lines, fmt="%g", fontsize="small")
+    for name, point, marker in (("least stroke", scan.least_stroke, "o"), ("softest", scan.softest, "D")):
+        if point is not None:
+            label = f"{name}: {point[0]:.3g} s, {point[1]:.1%}"
+            axis.plot(point[0], 100 * point[1], marker, color="black", fillstyle="none", label=label, clip_on=False)
+    axis.set_xscale("log")
+    ticks = [t for t in (0.3, 0.5, 0.7, 1, 1.5, 2, 3, 4, 5, 7, 10) if scan.periods[0] <= t <= scan.periods[-1] * 1.001]
+    axis.set_xticks(ticks, [f"{tick:g}" for tick in ticks], minor=False)
+    axis.minorticks_off()
+    axis.set(xlabel=f"secant period at {stroke:g} m [s]", ylabel=f"equivalent damping at {stroke:g} m [%]")
+    axis.set_title(
+        f"{readable(scene.name, TITLE_CHARACTERS)}: {_wanted(scene, stroke, tilt)}", loc="left", fontsize="medium"
+    )
+    handles = [Patch(facecolor=HELD, alpha=0.35, label="hold"), *axis.get_legend_handles_labels()[0]]
+    lines_label = Patch(facecolor="none", edgecolor="0.5", label="times the nearer limit")
+    figure.legend(handles=[*handles, lines_label], loc="outside lower center", ncols=4, frameon=False, fontsize="small")
+    return figure
+
+
+def _wanted(scene, stroke, tilt):
+    limit = "no uplift" if tilt == 0 else f"tilt up to {tilt:g} of the slenderness"
+    limit += "" if scene.friction is None else f" and no slip at friction {scene.friction:g}"
+    return f"bearings for {limit} within {stroke:g} m"

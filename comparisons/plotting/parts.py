@@ -1,0 +1,247 @@
+"""What a page is made of, and how numbers are written in it; templates; and from a study's rows to tables: choose rows,
+group them, say once what a column is.
+
+    default = where(result.rows, part="summary", scope="all")
+    table("Restitution", default, NAME, Column("error, rms [-]", "rms"), Column("failed", "{failed} of {runs}"))
+
+The same `Column` is an axis of a figure (`comparisons.plotting.figures`).
+"""
+
+import re
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, select_autoescape
+from markupsafe import Markup
+
+from ..schemas.columns import Column, Key, Row, short, value_of
+
+
+@dataclass(frozen=True)
+class Table:
+    """columns: heads with units. rows: lists of cells, str; the first cell of a row names it."""
+
+    caption: str
+    columns: tuple
+    rows: list
+
+
+@dataclass(frozen=True)
+class Figure:
+    """svg: the picture. alt: what it shows, for those who cannot see it. caption: what to look at.
+
+    solvers: those whose lines can be told apart and hidden; keys: {one of them: the picture of its line}, where it is
+    not as everywhere. broad: whether it takes the whole width of a page; it then has a second form for a phone.
+    """
+
+    svg: bytes
+    alt: str
+    caption: str
+    solvers: tuple = ()
+    keys: dict = field(default_factory=dict)
+    broad: bool = False
+
+    @property
+    def element(self) -> Markup:
+        return Markup(self.svg.decode())
+
+    @property
+    def panels(self) -> int:
+        """How many charts it has."""
+        return max(1, self.svg.count(b'<svg class="chart"'))
+
+
+# Sign of a `Mark` by its level, and what it says: no mark is told by its colour alone.
+SIGNS = {
+    "good": ("✓", "good"),
+    "fair": ("~", "fair"),
+    "bad": ("✗", "bad"),
+    "part": ("?", "inconclusive: too little was tested"),
+    "none": ("○", "not rated"),
+}
+
+
+@dataclass(frozen=True)
+class Mark:
+    """What a study says of one solver: in words, and as "good", "fair" or "bad"; "part" where so little was tested that
+    it cannot be said; or "none", which is of no rating: a row of such alone has no say.
+
+    note: the number of runs or scenes behind it, and what else the words leave out. value: the number itself.
+    """
+
+    words: str
+    level: str
+    note: str = ""
+    value: float | None = None
+
+    @property
+    def sign(self) -> str:
+        return SIGNS[self.level][0]
+
+
+RESTITUTION, COST = "restitution", "cost"  # keys of judgements that the report's first screen takes numbers of
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """A row of the report's first table. heading: with unit. marks: {(engine, variant): `Mark`}; variant "" is the
+    default one.
+
+    key: by which others find it.
+    """
+
+    heading: str
+    marks: dict
+    key: str = ""
+
+    @property
+    def rates(self) -> bool:
+        """Whether it counts in the one rating of a variant: it says something of trust, of one solver at least."""
+        return any(mark.level != "none" for mark in self.marks.values())
+
+
+@dataclass(frozen=True)
+class Section:
+    """title: heading. text: paragraphs, plain text. age: None, or how the result is older than the code.
+
+    evidence: (heading, text) pairs, folded away: raw messages of runs that failed. measured: paragraphs, folded: how
+    the figures were obtained. parts: figures, tables, paragraphs and `Head`s in their order, in place of all figures
+    above all tables.
+    """
+
+    title: str
+    text: tuple = ()
+    tables: tuple = ()
+    figures: tuple = ()
+    age: str | None = None
+    evidence: tuple = ()
+    measured: tuple = ()
+    parts: tuple = ()
+
+    @property
+    def shown(self) -> tuple:
+        """What stands below the text, in order."""
+        return self.parts or (*self.figures, *self.tables)
+
+
+@dataclass(frozen=True)
+class Head:
+    """A heading between the parts of a page. id: of the place, where another page leads to it."""
+
+    words: str
+    id: str = field(default="", repr=False)  # a place, nothing that is said
+
+
+@dataclass(frozen=True)
+class Page:
+    """What a study shows of its result, told once: `opening` for the report's first page, `whole` for its own page.
+
+    title: "subject: what was found", without a full stop. lead: one or two short paragraphs. first: the figure and the
+    table of the answer; none: the study is not on the report's first page. more: what else there is, in order: figures,
+    tables, `Head`s, and str, a paragraph. What is None, and a table without rows, is left out. how: paragraphs, folded:
+    what was run and how it was measured. evidence: (heading, text) pairs, folded: messages of runs that failed.
+    """
+
+    title: str
+    lead: tuple[str, ...]
+    first: tuple = ()
+    more: tuple = ()
+    how: tuple[str, ...] = ()
+    evidence: tuple[tuple[str, str], ...] = ()
+
+    def opening(self) -> Section | None:
+        """The `Section` of the report's first page."""
+        return self._section(self.first) if self.first else None
+
+    def whole(self) -> Section:
+        """The `Section` of the study's own page."""
+        return replace(self._section((*self.first, *self.more)), evidence=self.evidence)
+
+    def _section(self, parts):
+        parts = tuple(part for part in parts if part is not None and not (isinstance(part, Table) and not part.rows))
+        tables = tuple(part for part in parts if isinstance(part, Table))
+        figures = tuple(part for part in parts if isinstance(part, Figure))
+        return Section(self.title, self.lead, tables, figures, measured=self.how, parts=parts)
+
+
+def element_of(text: str, attributes: str) -> str:
+    """An SVG file of matplotlib as an element with these attributes: no header, nothing finer than is seen."""
+    text = re.sub(r"<metadata>.*?</metadata>\s*", "", text[text.index("<svg") :], flags=re.DOTALL)
+    opening = r'<svg [^>]*?viewBox="([^"]+)"[^>]*>'
+    text = re.sub(opening, lambda found: f'<svg {attributes} viewBox="{found[1]}">', text, count=1)
+    text = re.sub(r"(\d+\.\d{2})\d+", r"\1", text)  # a hundredth of a point is enough
+    return re.sub(r"\s*\n\s*", " ", text)
+
+
+UNITS = {"stiffness": "N/m", "step": "s", "largest_step": "s"}  # of accuracy parameters
+
+
+def where(rows: Iterable[Row], **wanted: Any) -> list[Any]:
+    """The rows with these values, in order; a set means any of its members. A row without the column is not chosen.
+
+    >>> where([{"part": "a", "x": 1}, {"part": "b"}, {"part": "a", "x": 2}], part="a", x={2, 3})
+    [{'part': 'a', 'x': 2}]
+    """
+
+    def chosen(row, key, value):
+        return key in row and (row[key] in value if isinstance(value, set | frozenset) else row[key] == value)
+
+    return [row for row in rows if all(chosen(row, key, value) for key, value in wanted.items())]
+
+
+def grouped(rows: Iterable[Any], *keys: Key) -> dict[tuple[Any, ...], list[Any]]:
+    """{values of the keys: their rows}, in the order in which they come; a key is a column or a function of a row.
+
+    >>> grouped([{"x": 2, "y": 1}, {"x": 1, "y": 2}, {"x": 2, "y": 3}], "x")
+    {(2,): [{'x': 2, 'y': 1}, {'x': 2, 'y': 3}], (1,): [{'x': 1, 'y': 2}]}
+    """
+    groups: dict[tuple[Any, ...], list[Any]] = {}
+    for row in rows:
+        groups.setdefault(tuple(value_of(row, key) for key in keys), []).append(row)
+    return groups
+
+
+def kept_from(rows: Sequence[Row], keeps: Callable[[Row], bool]) -> Sequence[Row]:
+    """Of rows from coarse to fine those from which on all keep: a coarse one that keeps by chance is none of them."""
+    bad = [k for k, row in enumerate(rows) if not keeps(row)]
+    return rows[bad[-1] + 1 :] if bad else rows
+
+
+def cheapest(
+    rows: Iterable[Row], name: Key, keeps: Callable[[Row], bool], cost: Callable[[Row], float]
+) -> dict[Any, Row]:
+    """{name: cheapest of its rows that keep, see `kept_from`}, cheapest first."""
+    kept = ((who, kept_from(some, keeps)) for (who,), some in grouped(rows, name).items())
+    found = {who: min(good, key=cost) for who, good in kept if good}
+    return dict(sorted(found.items(), key=lambda item: cost(item[1])))
+
+
+def table(caption: str, rows: Iterable[Row], *columns: Column) -> Table:
+    """The `Table` of these rows; the first column names them."""
+    return Table(
+        caption, tuple(column.head for column in columns), [[column.text(row) for column in columns] for row in rows]
+    )
+
+
+def across(caption: str, rows: Iterable[Row], name: Column, *columns: Column) -> Table:
+    """The `Table` with a column for each of these rows, named by `name`, and a row for each of the `columns`."""
+    rows = list(rows)
+    cells = [[column.head, *map(column.text, rows)] for column in columns]
+    return Table(caption, (name.head, *map(name.text, rows)), cells)
+
+
+def setting_of(row: Row) -> str:
+    """The level of a row's accuracy parameter, with its name and unit: step = 0.001 s."""
+    return f"{row['parameter'].replace('_', ' ')} = {short(row['level'])} {UNITS.get(row['parameter'], '')}".rstrip()
+
+
+def templates(folder: Path) -> Environment:
+    return Environment(
+        loader=FileSystemLoader(folder),
+        autoescape=select_autoescape(disabled_extensions=["jinja"], default=True),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )

@@ -1,0 +1,363 @@
+"""Tables and sentences in the terminal: any, and those of responses and engines.
+
+The variants of the subject engines with their own values: settings with the default level, levels and calls, as
+``rocking engines NAME`` prints them. The class of the settings, linked before them, has defaults, in place of which a
+variant may have other values. Of engines that are extras the command prints the same.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import inspect
+import math
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from rich import box
+from rich.cells import cell_len
+from rich.console import Console, ConsoleOptions, RenderResult
+from rich.table import Table
+from rich.text import Text
+
+from analytic import Caution, Response, Scene
+from engines import ENGINES, available_engines, get_engine
+from engines.contract import Engine, Variant
+from engines.simulating import in_words
+
+from ..execution.files import readable
+from ..execution.progress import stdout_to_stderr
+from ..metrics.errors import Horizon
+from .wording import MOST_NAMED, differing, listed, outcomes
+
+LONGEST_NUMBER = 15  # characters: sign, nine digits, point, exponent; longer words are names, and may be broken
+WIDE = 10**4  # columns: wider than any table
+
+
+@dataclass(frozen=True)
+class Grid:
+    """A table that fits the terminal: lines are broken at blanks, then the last columns are left out, which it says.
+
+    No number is broken. sides: where the cells of each column stand; first: whether a column is broken before others.
+    """
+
+    heads: list[str]
+    rows: list[list[Text]]
+    sides: list[Any]
+    first: list[bool]
+    look: dict[str, Any]
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        count = len(self.heads)
+        while (widths := self._widths(count, self._room(count, console, options))) is None:
+            count -= 1
+        yield self._table(widths)
+        if count < len(self.heads):
+            least = [self._least(column) for column in range(len(self.heads))]
+            needed = options.max_width - self._room(len(least), console, options) + sum(least)
+            more = ", ".join(head.replace("-\n", "").replace("\n", " ") for head in self.heads[count:])
+            yield Text(f"A terminal of {needed} columns (or COLUMNS={needed}) shows more: {more}.")
+
+    def _widths(self, count, room):
+        """Of the first `count` columns within this room; None where they have none."""
+        widths = [max(1, *map(cell_len, self._lines(column))) for column in range(count)]
+        least = [self._least(column) for column in range(count)]
+        for early in (True, False):
+            while sum(widths) > room:
+                wide = [k for k in range(count) if self.first[k] >= early and widths[k] > least[k]]
+                if not wide:
+                    break
+                widths[max(wide, key=widths.__getitem__)] -= 1
+        return [min(widths[0], max(room, 1))] if count == 1 else widths if sum(widths) <= room else None
+
+    def _lines(self, column):
+        cells = (self.heads[column], *(row[column].plain for row in self.rows))
+        return [line for cell in cells for line in cell.split("\n")]
+
+    def _least(self, column):
+        """Width that keeps all but the longest words whole."""
+        words = (word for line in self._lines(column) for word in line.split())
+        return max((min(cell_len(word), LONGEST_NUMBER) for word in words), default=1)
+
+    def _room(self, count, console, options):
+        """What the terminal has for the cells of so many columns."""
+        empty = console.measure(self._table([1] * count), options=options.update_width(WIDE)).maximum - count
+        return options.max_width - empty
+
+    def _table(self, widths):
+        table = Table(**self.look)
+        for head, side, width in zip(self.heads, self.sides, widths, strict=False):
+            table.add_column(Text(head), justify=side, width=width, overflow="fold")
+        for row in self.rows:
+            table.add_row(*row[: len(widths)])
+        return table
+
+
+def grid(
+    heads: Sequence[str],
+    rows: Iterable[Sequence[str | Text]],
+    *,
+    left: Collection[str] = (),
+    wraps: Collection[str] = (),
+    **look: Any,
+) -> Grid:
+    """A table of cells as they are: a unit in brackets is no markup.
+
+    left : heads of the columns whose cells stand to the left, besides the first. wraps : of those that a narrow
+    terminal breaks first. look : as `rich.table.Table` takes it.
+    """
+    cells = [[Text(cell) if isinstance(cell, str) else cell for cell in row] for row in rows]
+    sides = ["left" if head == heads[0] or head in left else "right" for head in heads]
+    look = {"box": box.SIMPLE_HEAD, "padding": (0, 1, 0, 0), **look}
+    return Grid(list(heads), cells, sides, [head in wraps for head in heads], look)
+
+
+def echo(*parts: Grid | Text | str, wrap: bool = False) -> None:
+    """Print tables, and sentences as they are; wrap: their lines broken to the width of the terminal."""
+    console = Console(highlight=False)
+    for part in parts:
+        console.print(Text(part) if isinstance(part, str) else part, soft_wrap=not (wrap or isinstance(part, Grid)))
+
+
+def digits(value: float | None, form: str = ".4g") -> str:
+    """A number in this format; a hyphen for None."""
+    return "-" if value is None or math.isnan(value) else f"{value:{form}}"
+
+
+TITLE_CHARACTERS = 100
+MOST_MODES = 8  # changes of the contact that are told
+MOTION = "motion"  # the kind of warning that is of the scene, not of a solver
+
+
+def _name(scene):
+    return readable(scene.name, TITLE_CHARACTERS)
+
+
+def summary(scene: Scene, response: Response) -> Grid:
+    """The main figures of one response, as a table."""
+    title = f"{_name(scene)}: {response.engine}" + (f", {response.variant}" if response.variant else "")
+    rows = {
+        "outcome": response.outcome_text,
+        "overturning time [s]": digits(response.overturning_time, ".6g"),
+        "peak tilt [rad]": digits(response.peak_tilt),
+        "peak tilt / slenderness": digits(response.peak_tilt_ratio),
+        "peak base displacement [m]": digits(response.peak_base_displacement),
+        "peak base acceleration [m/s2]": digits(response.peak_base_acceleration),
+        "impacts": str(response.impact_count),
+        **_slip(response),
+        "friction demand |H|/N": digits(response.friction_demand),
+        "least normal force N/(m g)": digits(response.min_normal_ratio),
+        "CPU time [s]": digits(response.cpu_seconds, ".3g"),
+        "steps": str(response.steps),
+    }
+    return named_values(rows, title)
+
+
+def _slip(response):
+    """Rows of a block that slides on its support."""
+    slid = response.sliding
+    if not (slid and slid.peak):
+        return {}
+    return {
+        "largest slip [m]": digits(slid.peak),
+        "slip at the end [m]": digits(slid.end),
+        "way slid, to and fro [m]": digits(slid.path),
+        **({} if math.isnan(slid.work) else {"work of friction [J]": digits(slid.work)}),
+        **({"contact": mode_words(slid.modes)} if slid.modes else {}),
+    }
+
+
+def mode_words(modes: Sequence[tuple[float, str]], most: int = MOST_MODES) -> str:
+    """Modes of contact and from when on, up to so many; impacts do not end one: "stick, from 0.0614 s rock"."""
+    changes = [one for k, one in enumerate(modes) if k == 0 or one[1] != modes[k - 1][1]]
+    words = [f"from {time:.4g} s {mode}" if time else mode for time, mode in changes[:most]]
+    left = len(changes) - most
+    return ", ".join([*words, f"{left} more changes (--json)"] if left > 0 else words)
+
+
+def named_values(rows: Mapping[str, str], title: str) -> Grid:
+    """A table of {name: value}."""
+    look = {"box": box.SIMPLE, "padding": (0, 1), "show_header": False}
+    return grid(["name", "value"], rows.items(), left=["value"], wraps=["name", "value"], title=Text(title), **look)
+
+
+def comparison(scene: Scene, responses: Sequence[Response], horizons: Mapping[str, Horizon]) -> Grid:
+    """Responses of several solvers side by side, the first being the reference; horizons: {solver: its `Horizon`}."""
+    limit = _limit(horizons) if horizons else "No sensitivity horizon known."
+    slides = any(response.sliding and response.sliding.peak for response in responses)
+    slip = "; slip: largest slip of the block" if slides else ""
+    caption = (
+        "over: time of overturning; tilt: peak tilt over slenderness;\n"
+        f"base: peak base displacement{slip}; d: difference from the first row.\n" + limit
+    )
+    heads = ["solver", "outcome", "over\n[s]", "tilt\n[-]", "d\n[-]", "base\n[m]", "d\n[%]", "im-\npacts", "CPU\n[ms]"]
+    heads[5:5] = ["slip\n[m]", "d\n[%]"] * slides
+    reference, rows = responses[0], []
+    for response in responses:
+        tilt, displacement = "", ""
+        if response is not reference and not response.failure and not reference.failure:
+            if "overturns" not in (response.outcome, reference.outcome):
+                tilt = f"{response.peak_tilt_ratio - reference.peak_tilt_ratio:+.0e}"
+            if reference.peak_base_displacement > 0:
+                displacement = f"{100 * (response.peak_base_displacement / reference.peak_base_displacement - 1):+.0e}"
+        rows.append(
+            [
+                f"{response.engine}\n{response.variant}".rstrip(),
+                response.outcome_text.replace(" ", "\n", 1),  # narrow: undecided, and so far what
+                digits(response.overturning_time, ".4f"),
+                digits(response.peak_tilt_ratio, ".4f"),
+                tilt,
+                *(_slipped(response, reference) if slides else ()),
+                digits(response.peak_base_displacement, ".4f"),
+                displacement,
+                str(response.impact_count),
+                digits(1e3 * response.cpu_seconds, ".1f"),
+            ]
+        )
+    return grid(heads, rows, left=["outcome"], title=Text(_name(scene)), show_edge=False, caption=caption)
+
+
+def _slipped(response, reference):
+    """Largest slip, and by how many per cent it differs from the reference's where both stay upright."""
+    if response.failure or response.sliding is None and response is not reference:
+        return "-", ""
+    here, there = (one.sliding.peak if one.sliding else 0.0 for one in (response, reference))
+    apart = response is not reference and not reference.failure and there > 0
+    if not apart or "overturns" in (response.outcome, reference.outcome):
+        return digits(here), ""
+    return digits(here), f"{100 * (here / there - 1):+.0e}"
+
+
+def _limit(horizons):
+    """Up to when histories can be compared."""
+    if not any(found.parts for found in horizons.values()):
+        size = max(found.perturbation for found in horizons.values())
+        return (
+            f"No change of the scene of the solvers' own size of error, {size:.0e} at most,\n"
+            "grows: a difference between histories is a solver's error, to the end."
+        )
+    lines = ["Sensitivity horizon, beyond which only outcomes can be compared,", "by each solver's own size of error:"]
+    for name, found in horizons.items():
+        until = f"{found.horizon:.3g} s" if found.parts else "none, to the end"
+        lines.append(f"{name} {until} ({found.perturbation:.0e})")
+    return "\n".join(lines)
+
+
+def show(table: Grid, responses: Sequence[Response], about: Sequence[Caution] = ()) -> None:
+    """Print a table of responses, and below it in what each differs from the analytic model, and the warnings.
+
+    What is said `about` the scene itself stands first, in bold, then, of several responses, the outcomes. Where the
+    result is sensitive to small changes of the motion, that stands last, in bold.
+    """
+    echo(*(Text(f"Warning: {readable(str(warning))}", "bold") for warning in about))
+    if len(responses) > 1:
+        found = outcomes([{**response.to_json(), "outcome_text": response.outcome_text} for response in responses])
+        echo(f"{found[0].upper()}{found[1:]}.", wrap=True)
+    motion = [warning for response in responses for warning in response.warnings if warning.kind == MOTION]
+    echo(table, *(readable(words) for words in remarks(responses)))
+    echo(*(Text(readable(str(warning)), "bold") for warning in motion))
+
+
+def remarks(responses: Sequence[Response]) -> list[str]:
+    """Sentences: in what responses differ from the analytic model, or why they cannot be compared; and the warnings.
+
+    What is said of several solvers is said once.
+    """
+    different: dict[str, list[str]] = {}
+    for response in responses:
+        for words in differing(response.comparable, response.differences):
+            different.setdefault(words, []).append(response.engine)
+    said = [f"{'each of ' * (len(names) > 1)}{listed(names)} {words}" for words, names in different.items()]
+    return said + _warnings(responses)
+
+
+def _warnings(responses):
+    """The warnings and which solvers they concern."""
+    pairs = [(response.engine, one) for response in responses for one in response.warnings if one.kind != MOTION]
+    return warned(pairs, len(responses), "all solvers")
+
+
+def warned(pairs: Iterable[tuple[str, Caution]], count: int, everyone: str) -> list[str]:
+    """Warnings and whom they concern, of (who, warning): of one quantity the words of the largest value, and the range.
+
+    everyone : what all `count` of them are called.
+    """
+    grouped: dict[Any, list[tuple[str, Caution]]] = {}
+    for who, one in pairs:
+        grouped.setdefault((one.kind, one.quantity or one.text), []).append((who, one))
+    said = []
+    for found in grouped.values():
+        names = list(dict.fromkeys(who for who, _ in found))
+        more = [f"{len(names) - MOST_NAMED} more"] if len(names) > MOST_NAMED + 1 else []
+        who = everyone if 1 < len(names) == count else listed([*names[: MOST_NAMED if more else None], *more])
+        values = {f"{one.value:.3g}": one.value for _, one in found if one.value is not None}
+        spread = f" ({min(values.values()):.3g} to {max(values.values()):.3g})" if len(values) > 1 else ""
+        worst = max((one for _, one in found), key=lambda one: abs(one.value or 0.0))
+        said.append(f"Warning, {who}: {worst}{spread}")
+    return said
+
+
+NAMES_OF_CALLS = "g, m, R, gamma, J, mb, b, h: as in its script; scale: sqrt(R/1.0884 m)"
+
+
+def engines_table(engines: Sequence[Engine]) -> Grid:
+    """Table of all variants: kind, what the engine computes and what the adapter imposes."""
+    caption = Text(f"Tested for {in_words()}.\nrocking engines NAME: settings, levels, calls, versions.")
+    heads = ["engine", "variant", "kind", "the engine computes", "the adapter imposes"]
+    rows = [
+        [engine.name if name == engine.default_variant else "", name, variant.kind, variant.computes, variant.imposes]
+        for engine in engines
+        for name, variant in engine.variants.items()
+    ]
+    return grid(heads, rows, left=heads, wraps=heads[3:], show_edge=False, caption=caption, caption_justify="left")
+
+
+def engine_text(engine: Engine) -> str:
+    """Description of an `Engine`: versions, and for each variant kind, settings (the accuracy parameter first), levels,
+    what the engine computes, what the adapter imposes, known faults and the engine's calls."""
+    versions = ", ".join(f"{package} {version}" for package, version in engine.versions().items())
+    lines, shown = [f"{engine.name} ({versions})"], set[str]()
+    if engine.script:
+        lines.append(f"  rocking script {engine.name} SCENE writes the main variant out, as a plain script of a scene.")
+    for name, variant in engine.variants.items():
+        default = "main, " if name == engine.default_variant else ""
+        values = [f"{field}={value:.6g}" for field, value in dataclasses.asdict(variant.settings).items()]
+        values[:1] = [f"{value} (accuracy parameter)" for value in values[:1]]
+        lines += [
+            f"  --variant {name} ({default}{variant.kind}){'' if variant.calls else f': {_about(variant)}'}",
+            f"      settings: {', '.join(values)}",
+            f"      levels, coarse to fine: {', '.join(f'{value:.4g}' for value in variant.levels)}",
+            f"      the engine computes: {variant.computes}",
+            f"      the adapter imposes: {variant.imposes}",
+            *([f"      known faults: {variant.faults}"] if variant.faults else ()),
+            *_calls(variant, shown),
+        ]
+        shown.update(variant.calls)
+    return "\n".join(lines) + "\n"
+
+
+def _calls(variant: Variant, shown: Collection[str]) -> list[str]:
+    """Lines of a variant's calls, without those that are shown."""
+    if not variant.calls:
+        return []
+    own = {call: why for call, why in variant.calls.items() if call not in shown}
+    beside = ", beside some of the above" if len(own) < len(variant.calls) else ""
+    head = f"      the engine's calls{beside}, of a block on bearings ({NAMES_OF_CALLS}):"
+    return [head, *(f"        {call}{f'  # {why}' if why else ''}" for call, why in own.items())]
+
+
+def _about(variant: Variant) -> str:
+    """What the settings say of themselves."""
+    return (inspect.getdoc(type(variant.settings)) or "").split("\n\n")[0].replace("\n", " ")
+
+
+def _section(engine: Engine) -> str:
+    """Of this page, in Markdown: where the settings of each variant are explained, and their values."""
+    kinds = {name: type(variant.settings) for name, variant in engine.variants.items()}
+    explained = ", ".join(f"{name} `{kind.__module__}.{kind.__qualname__}`" for name, kind in kinds.items())
+    return f"\n\n## {engine.name}\n\nSettings: {explained}.\n\n```text\n{engine_text(engine)}```"
+
+
+with stdout_to_stderr():  # engines print on import
+    _names = available_engines(name for name, engine in ENGINES.items() if engine.subject)[0]
+    __doc__ += "".join(_section(get_engine(name)) for name in _names)

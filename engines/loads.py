@@ -1,0 +1,281 @@
+"""A given restitution in a contact engine: a couple on the block before each landing.
+
+A contact engine computes the restitution of eq. (7), and parameters of its contact do not change it: an impulse at the
+landing corner has no moment about that corner. A couple takes a share of the tilt rate before the landing instead. It
+acts from the time at which the block, at its rate w0 at tilt phi0, would need less than `acts` to reach the ground:
+
+    M = -J' k phi',   J' = J_O - (m h)^2/M on a base, J_O on the ground,   k = (1 - f) |w0/phi0|
+
+As d(phi')/d(phi) = -k is constant, it takes (1 - f) w0 exactly, whatever the amplitude; f is the given restitution over
+that of (7). Gravity and base accelerate the block meanwhile, by a, of which it keeps f, too: k is larger by
+a (T - f T0)/phi0, with T0 = |phi0/w0| the time to the ground without couple and T = T0 ln(1/f)/(1 - f) with it. The
+base keeps the momentum of block and base, so the jump of its velocity is that of (8) for the given restitution.
+
+Ground velocity over time, exact for records and pulses; its differences are the impulses of an engine's steps.
+
+Initial position and velocity of the block, the same for every engine.
+
+Scaling of times with the size of the block.
+
+A base on stiff or viscous bearings in a leapfrog engine: its longest stable step and its added mass.
+
+The viscous force is implicit: the known force c v acts on a base heavier by `added_mass`, which is exact if the other
+forces are constant in the step. Applied explicitly, it would be unstable where step times c/mass exceeds 2; a tenth of
+that makes PyBullet's block fall .25 s late.
+"""
+
+from __future__ import annotations
+
+import math
+from array import array
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Self
+
+import numpy as np
+
+from analytic.errors import SceneError
+from analytic.motion import SampledMotion
+from analytic.rocking import BearingLaw, RockingModel, momentum_restitution
+
+if TYPE_CHECKING:
+    from analytic import Scene
+
+# Of the restitution of (7). A block that is slowed further hardly reaches the ground; one that is sped up is lifted
+# where (f - 1) b |phi'| exceeds g `acts`: at f = 1.02 e is off by up to .06, at 1.05 by up to .4.
+LEAST, MOST = 0.1, 1.0
+FRICTION = 5.0  # coefficient in every tuned variant where the scene gives none, at least: no sliding
+ALONE = "or run the analytic model, which takes any up to 1: `rocking run SCENE` without --engine"
+
+
+def reached(scene: Scene) -> bool:
+    """Whether a couple gives the restitution that a scene asks for, if it does."""
+    given, own = scene.block.restitution, momentum_restitution(scene)
+    return given is None or own > 0 and LEAST * own <= given <= MOST * own
+
+
+def share_of(scene: Scene) -> float | None:
+    """f of a scene that gives the restitution, else None.
+
+    Raises
+    ------
+    SceneError
+        It is not within `LEAST` and `MOST`.
+    """
+    given, own = scene.block.restitution, momentum_restitution(scene)
+    if given is None:
+        return None
+    if not reached(scene):
+        raise SceneError(
+            "block.restitution",
+            given,
+            f"{'above' if given > MOST * own else 'below'} what a couple before each landing reaches, {LEAST:g} to "
+            f"{MOST:g} times the {own:.6g} of eq. (7)",
+            f"give one between, leave it out, {ALONE}",
+        )
+    return given / own
+
+
+def holding(scene: Scene) -> Scene:
+    """The scene; where it gives the restitution, with as much friction as the strongest couple asks of the pivot.
+
+    That is (1 - mt) h/b, mt the block's share of the moving mass, 0 on the ground. With less the pivot slips: on the
+    ground with friction .6, e is up to .3 off.
+    """
+    if scene.block.restitution is None:
+        return scene
+    asked = (1 - scene.mass_share) / math.tan(scene.block.slenderness)
+    return scene if asked <= (scene.friction or FRICTION) else scene.with_(friction=asked)
+
+
+def unkept_friction(scene: Scene) -> str:
+    """That a script does not keep the friction of a scene, a sentence: a couple needs more; "" where it does.
+
+    Raises
+    ------
+    SceneError
+        As `share_of`.
+    """
+    held = holding(scene).friction
+    if None in (scene.friction, share_of(scene)) or held == scene.friction or share_of(scene) == MOST:
+        return ""
+    return (
+        f"The scene's friction, {scene.friction:g}, is not kept, and the block does not slide: below {held:.3g} it "
+        "slips under the couple that gives the restitution."
+    )
+
+
+@dataclass
+class Couple:
+    """The couple of a scene. kept: f; inertia: J' [kg m2]; acts: time before a landing [s]; gain: k, 0 outside it.
+
+    Rates are half a step early, as in `stepping`; steps: the last two, rate: the last one.
+    """
+
+    kept: float
+    inertia: float
+    acts: float
+    gain: float = field(default=0.0, init=False)
+    rate: float = field(default=0.0, init=False)
+    steps: tuple[float, float] = field(default=(0.0, 0.0), init=False)
+
+    @classmethod
+    def of(cls, scene: Scene, acts: float) -> Self | None:
+        """That of a scene which gives the restitution, else None. acts [s].
+
+        Raises
+        ------
+        SceneError
+            As `share_of`.
+        """
+        share = share_of(scene)
+        if share is None:
+            return None
+        model = RockingModel.of(scene)
+        coupled = (model.m * model.R * math.cos(model.gamma)) ** 2 / model.M if model.on_base else 0.0
+        return cls(share, model.J - coupled, acts)
+
+    @property
+    def longer(self) -> float:
+        """T/T0: how much longer the block needs to the ground."""
+        return -math.log(self.kept) / (1 - self.kept) if abs(1 - self.kept) > 1e-9 else 1.0
+
+    @property
+    def lasts(self) -> float:
+        """Time from its begin to the landing [s]."""
+        return self.acts * self.longer
+
+    def moment(self, step: float, tilt: float, rate: float) -> float:
+        """The couple [N m] in a step [s] from this state, implicit in the rate at its end; asked for at every step."""
+        (last, before), change = self.steps, rate - self.rate
+        self.steps, self.rate = (step, last), rate
+        if tilt * rate >= 0:
+            self.gain = 0.0
+        elif self.gain == 0 and abs(tilt) < self.acts * abs(rate):
+            alone = abs(tilt / rate)
+            gathered = math.copysign(change, change * rate) / (0.5 * (last + before)) if before else 0.0
+            self.gain = ((1 - self.kept) * abs(rate) + gathered * (self.longer - self.kept) * alone) / abs(tilt)
+        if self.gain == 0:
+            return 0.0
+        travel = min(abs(rate) * step / (1 + self.gain * step), abs(tilt))  # no farther than to the ground
+        return -self.inertia * self.gain * math.copysign(travel, rate) / step
+
+
+if TYPE_CHECKING:
+    from analytic import PulseMotion
+    from analytic.motion import Motion
+
+
+def ground_velocity(motion: Motion | None) -> Callable[[float], float] | None:
+    """A function of time [s] giving the integral of the ground acceleration from 0 [m/s].
+
+    The mean acceleration of a step is the difference of two values over the time between them. An engine that samples
+    the acceleration instead loses part of a pulse that starts or ends within a step.
+    """
+    if motion is None:
+        return None
+    return _sampled(motion) if isinstance(motion, SampledMotion) else _pulse(motion)
+
+
+def _sampled(motion: SampledMotion) -> Callable[[float], float]:
+    dt, a = motion.dt, motion.samples
+    # compact, and read as quickly as a list
+    sums = array("d", np.concatenate(([0.0], np.cumsum(0.5 * dt * (a[1:] + a[:-1])))).tobytes())
+    level, slope = array("d", a.tobytes()), array("d", (np.diff(a) / dt).tobytes())
+    last, end = len(slope), sums[-1]
+
+    def velocity(t):
+        if t <= 0:
+            return 0.0
+        i = int(t / dt)
+        if i >= last:
+            return end
+        u = t - i * dt
+        return sums[i] + u * (level[i] + 0.5 * slope[i] * u)
+
+    return velocity
+
+
+def _pulse(motion: PulseMotion) -> Callable[[float], float]:
+    frequency, start, length = motion.frequency, motion.start, motion.length
+    size, phase = motion.amplitude / frequency, motion.phase
+    integral = motion.form.integral
+
+    def velocity(t):
+        return size * integral(math, frequency * min(max(t - start, 0.0), length), phase)
+
+    return velocity
+
+
+if TYPE_CHECKING:
+    from analytic import Scene
+
+
+def placement(scene: Scene) -> tuple[float, float, float, float]:
+    """Centre of the block and its velocity at the start: (x, z [m], x', z' [m/s]), z from its standing height.
+
+    The block pivots about its lower corner on a base with the start's displacement and velocity.
+    """
+    start, block = scene.start, scene.block
+    s = math.copysign(1.0, start.tilt or start.tilt_rate)
+    angle = s * block.slenderness - start.tilt
+    c, n = block.radius * math.cos(angle), block.radius * math.sin(angle)
+    return (
+        start.base_displacement + s * block.half_width - n,
+        c - block.half_height,
+        start.base_velocity + c * start.tilt_rate,
+        n * start.tilt_rate,
+    )
+
+
+if TYPE_CHECKING:
+    from analytic import Scene
+
+UNIT_RADIUS = 1.0884  # m, of the Caryatid, for which the variants' times are given
+
+
+def size_scale(scene: Scene) -> float:
+    """Factor on times that are set for a block of `UNIT_RADIUS`: rocking scales with sqrt(R/g)."""
+    return math.sqrt(scene.block.radius / UNIT_RADIUS)
+
+
+if TYPE_CHECKING:
+    from analytic import Scene
+
+# Largest step over the time in which the bearings' vibration advances by 1 rad; stable below 2.
+VIBRATION = 0.2
+# The frequency of a leapfrog is too high by (h omega)^2/24. An added mass of this share of the stiffness times h^2
+# corrects it: without damping, the phase at the next impact determines the base displacement. On bearings 100 times as
+# stiff as the Caryatid's its peak is off by 2e-3, without the mass by 5e-2. Not needed below STIFF = h omega.
+LEAPFROG, STIFF = 1 / 12, 0.02
+
+
+def longest_step(scene: Scene, largest: float) -> float:
+    """The longest step [s], at most `largest`, that resolves the base's vibration on its bearings."""
+    if scene.bearings is None:
+        return largest
+    model = RockingModel.of(scene)
+    law = model.bearing
+    k, c = law.count * (law.kb + law.dk) * VIBRATION**-2, law.count * law.damping
+    # h^2 k = mass + h c: an overdamped base creeps with the time constant c/k
+    return min(largest, (c + math.sqrt(c * c + 4 * k * driven_mass(model))) / (2 * k))
+
+
+def driven_mass(model: RockingModel) -> float:
+    """Effective mass of the base while the block pivots through tilt 0 [kg], least for J_O = m R^2."""
+    return model.M - (model.m * model.R * math.cos(model.gamma)) ** 2 / model.J
+
+
+def leapfrog_stiffness(law: BearingLaw, largest: float, mass: float) -> float:
+    """Stiffness [N/m] whose product with the step squared is added to the base's `mass` [kg]; 0 for short steps.
+
+    Small vibrations of a hysteretic bearing have about half its initial excess stiffness ka - kb.
+    """
+    elastic = law.count * (law.kb + 0.5 * law.dk)
+    return LEAPFROG * elastic if largest * math.sqrt(elastic / mass) > STIFF else 0.0
+
+
+def added_mass(damping: float, interval: float, mass: float) -> float:
+    """Mass to add to `mass`, so that a force c v at the velocity before `interval` gives the velocity after it."""
+    x = damping * interval / mass
+    return mass * (x / -math.expm1(-x) - 1) if x > 1e-8 else 0.5 * damping * interval
