@@ -22,7 +22,7 @@ import numba
 import numpy as np
 from numba.core.caching import UserProvidedCacheLocator
 
-HERE = Path(__file__).parent
+HERE, PACKAGE = Path(__file__).parent, __name__.partition(".")[0]
 # the first that can be written
 PLACES = (HERE / "__pycache__", Path.home() / ".cache" / "rocking", Path(tempfile.gettempdir()))
 
@@ -79,10 +79,10 @@ def _read(one: Any, known: set[int]) -> Iterator[str]:
     if not _own(function):
         yield repr(one.tolist() if isinstance(one, np.ndarray) else getattr(one, "__name__", one))
     elif not inspect.isfunction(function):
-        yield _source(function)
+        yield f"{_module(function)} {_source(function)}"  # types are kept by the name of their module
     elif id(function) not in known:
         known.add(id(function))
-        yield f"{_plain(function.__code__, function.__doc__)} {function.__defaults__}"
+        yield f"{_module(function)} {_plain(function.__code__, function.__doc__)} {function.__defaults__}"
         around = inspect.getclosurevars(function).nonlocals
         for name in sorted({*_global(function.__code__), *around}):
             yield name
@@ -97,8 +97,12 @@ def _read(one: Any, known: set[int]) -> Iterator[str]:
 
 def _own(one):
     """Whether it is a module, class or function of the model."""
-    name = one.__name__ if inspect.ismodule(one) else getattr(one, "__module__", None) if callable(one) else None
-    return (name or "").partition(".")[0] == __package__.partition(".")[0]
+    return (_module(one) if inspect.ismodule(one) or callable(one) else "").partition(".")[0] == PACKAGE
+
+
+def _module(one: Any) -> str:
+    """Name of a module, or of that of a class or function."""
+    return (one.__name__ if inspect.ismodule(one) else getattr(one, "__module__", None)) or ""
 
 
 def _source(one: Any) -> str:

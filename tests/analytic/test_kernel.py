@@ -464,8 +464,8 @@ outer = make(3)
 """
 
 
-def key_of(text, without=None):
-    scope = {"__name__": "analytic.made"}  # followed as the model's own
+def key_of(text, without=None, module="analytic.made"):
+    scope = {"__name__": module}  # followed as the model's own
     exec(text, scope)
     scope.pop(without, None)
     return digest(scope["outer"])
@@ -499,6 +499,11 @@ def test_words_lines_and_what_is_not_read_do_not_count(before, after):
 )
 def test_constants_operations_defaults_closures_and_what_is_called_count(before, after):
     assert key_of(PLAIN.replace(before, after)) != key_of(PLAIN)
+
+
+def test_a_module_that_was_renamed_counts():
+    """The compiled form keeps types by the name of their module: it could not be read."""
+    assert key_of(PLAIN, module="analytic.renamed") != key_of(PLAIN)
 
 
 def test_the_peak_of_tiny_swings_is_that_of_the_history():
