@@ -101,13 +101,13 @@ def get_study(name: str) -> Study:
 
     if name in QUESTIONS:
         package = f"{PACKAGE}.{name.replace('-', '_')}"
-        found = import_module(f"{package}.study")
-        own = {field: getattr(found, given) for given, field in OWN.items() if hasattr(found, given)}
-        return Study(name, QUESTIONS[name], found.plan, f"{package}.page", **own)
+        module = import_module(f"{package}.study")
+        optional = {field: getattr(module, given) for given, field in OWN.items() if hasattr(module, given)}
+        return Study(name, QUESTIONS[name], module.plan, f"{package}.page", **optional)
     if name == TOLERANCES:
         shown_by = f"{PACKAGE}.{name}"
-        found = import_module(shown_by)
-        return Study(name, "", _verified, shown_by, columns=found.COLUMNS, parts=found.PARTS)
+        module = import_module(shown_by)
+        return Study(name, "", _verified, shown_by, columns=module.COLUMNS, parts=module.PARTS)
     entries = list(entry_points(group=GROUP, name=name))
     if not entries:
         raise KeyError(f"unknown study {name!r}: choose one of {', '.join(study_names())}")

@@ -146,7 +146,9 @@ def fields_of(part: str) -> list[dict[str, bool]]:
     numbers]."""
     words = shlex.split(part)
     bar = words.index("|") if "|" in words else len(words)
-    return [{word.removesuffix("?"): word.endswith("?") for word in some} for some in (words[:bar], words[bar + 1 :])]
+    return [
+        {word.removesuffix("?"): word.endswith("?") for word in fields} for fields in (words[:bar], words[bar + 1 :])
+    ]
 
 
 def _shown(value):

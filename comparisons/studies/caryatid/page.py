@@ -270,13 +270,13 @@ def _outcomes(runs):
 def _beside(rows: Iterable[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
     """A row for each number of the paper: the model's, and in ``engines`` what the engines give, from least to most."""
     for same in grouped(rows, "where", "quantity").values():
-        own = where(same, engine={None, "analytic"}) or [{"study": None}]
+        of_model = where(same, engine={None, "analytic"}) or [{"study": None}]
         others = dict.fromkeys(row["study"] for row in same if row["engine"] not in (None, "analytic"))
         values = sorted(value for value in others if not isinstance(value, str))
         words = [value for value in others if isinstance(value, str)]
         words += [" to ".join(dict.fromkeys(number(value, 4) for value in (values[0], values[-1])))] if values else []
         status = ", ".join(dict.fromkeys(row["status"] for row in same))
-        yield {**same[0], **own[0], "engines": "; ".join(words) or None, "status": status}
+        yield {**same[0], **of_model[0], "engines": "; ".join(words) or None, "status": status}
 
 
 def _agreement(runs):

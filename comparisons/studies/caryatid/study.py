@@ -193,14 +193,14 @@ def oscillator(motion: Motion, period: float, damping: float) -> Scene:
 
 def measure(case: Case, response: Response) -> dict[str, Any]:
     """The whole response, and of Figs 4(b) and 6 tilt and displacement at multiples of `HISTORY_STEP`."""
-    found = response.to_json()
+    measures = response.to_json()
     if case.tag["part"] == "run" and (history := response.history):
         time = np.arange(0.0, history.time[-1], HISTORY_STEP)
         columns = {
             name: np.interp(time, history.time, getattr(history, name)) for name in ("tilt", "base_displacement")
         }
-        found["history"] = {name: column.tolist() for name, column in {"time": time, **columns}.items()}
-    return found
+        measures["history"] = {name: column.tolist() for name, column in {"time": time, **columns}.items()}
+    return measures
 
 
 def simulations(
@@ -229,8 +229,8 @@ def simulations(
 def _points(motion, solvers, quick):
     """Single blocks and oscillators of Fig. 5, in every solver."""
     free = caryatid(FREE, motion)
-    slenderness, own = free.block.slenderness, 2 * np.pi / free.rocking_frequency
-    blocks = (own, 5.0) if quick else (1.5, own, 3.0, 3.5, 4.5, 5.0, 6.0, 7.0)
+    slenderness, rocking_period = free.block.slenderness, 2 * np.pi / free.rocking_frequency
+    blocks = (rocking_period, 5.0) if quick else (1.5, rocking_period, 3.0, 3.5, 4.5, 5.0, 6.0, 7.0)
     oscillators = (2.0,) if quick else (1.0, 2.0, 3.0)
     without = {"history": False}
     for solver, period in product(solvers, blocks):
@@ -336,18 +336,18 @@ def value(
 
 
 def judged(
-    where: str, quantity: str, printed: float, study: float, within: float, note: str = "", own: bool = True
+    where: str, quantity: str, printed: float, study: float, within: float, note: str = "", papers_motion: bool = True
 ) -> dict[str, Any]:
     """A row as `value` makes it, reproduced if it lies within half a printed digit, or what "about" allows.
 
-    own: whether the paper's motion is behind it; else it is not judged.
+    papers_motion: whether the value comes of the paper's own motion; of another one it is not judged.
     """
     met = abs(study - printed) <= within
-    return value(where, quantity, printed, study, _status(own, met), note)
+    return value(where, quantity, printed, study, _status(papers_motion, met), note)
 
 
-def _status(own, met):
-    return OTHER_MOTION if not own else REPRODUCED if met else NOT_REPRODUCIBLE
+def _status(papers_motion, met):
+    return OTHER_MOTION if not papers_motion else REPRODUCED if met else NOT_REPRODUCIBLE
 
 
 def is_papers_motion(motion: Motion) -> bool:
@@ -360,11 +360,11 @@ def motion_values(rows: Sequence[Mapping[str, Any]], motion: SampledMotion, leas
 
     least: slenderness [rad] that does not rock on the bearings.
     """
-    own = is_papers_motion(motion)
+    papers_motion = is_papers_motion(motion)
     for row in rows:
         if row["part"] == "run":
-            yield from _run_values(row, motion, own)
-    status, note = (GIVEN, OWN_FILE) if own else (OTHER_MOTION, "")
+            yield from _run_values(row, motion, papers_motion)
+    status, note = (GIVEN, OWN_FILE) if papers_motion else (OTHER_MOTION, "")
     yield value("Fig. 4(a)", "ground motion", "Duzce 12 Nov 1999, East-West", motion.label, status, note)
     note = "the paper's damping ratios and values are not at hand"
     yield value("Fig. 5(b)", "peak displacements of oscillators", "not at hand", "drawn", NOT_REPRODUCIBLE, note)
@@ -372,18 +372,18 @@ def motion_values(rows: Sequence[Mapping[str, Any]], motion: SampledMotion, leas
         if row["part"] == "vulnerable":
             note = f"largest T_r that overturns, in steps of {row['step']:g} s, γ = {row['slenderness']:g} rad"
             about = VULNERABLE_PERIOD, row["period"], VULNERABLE_ABOUT
-            yield judged("Fig. 5(a)", "vulnerable below T_r of [s]", *about, note, own=own)
+            yield judged("Fig. 5(a)", "vulnerable below T_r of [s]", *about, note, papers_motion)
     what = "least slenderness that does not rock on the bearings [rad]"
     yield value("text", what, "not printed", least, DERIVED, "atan(max|a|/g)")
 
 
-def _run_values(row, motion, own):
+def _run_values(row, motion, papers_motion):
     """Figs 4(b) and 6 as one solver's run has them."""
     what, engine = f"{row['scene']} Caryatid", row["engine"]
 
-    def found(place, quantity, printed, study, status=None, note=""):
-        study, note = "does not happen" if study is None else study, note if own else ""
-        status = status if own and status else _status(own, study == printed)
+    def compared(place, quantity, printed, study, status=None, note=""):
+        study, note = "does not happen" if study is None else study, note if papers_motion else ""
+        status = status if papers_motion and status else _status(papers_motion, study == printed)
         return value(place, quantity, printed, study, status, note, engine)
 
     if row["outcome"] == "failed":
@@ -391,16 +391,16 @@ def _run_values(row, motion, own):
         yield value("Figs 4(b), 6", what, "runs", "failed", NOT_REPRODUCIBLE, why, engine)
     elif row["scene"] == FREE:
         time, after = row["overturning_time"], "overturning after the peak of the motion [s]"
-        yield found("Fig. 4(b)", what, "overturns", row["outcome"])
+        yield compared("Fig. 4(b)", what, "overturns", row["outcome"])
         time = None if time is None else time - motion.peak_time
-        yield found("Fig. 4(b)", after, OVERTURNING, time, NOT_CHECKABLE, OWN_FILE)
+        yield compared("Fig. 4(b)", after, OVERTURNING, time, NOT_CHECKABLE, OWN_FILE)
     else:
         peak = row["peak_base_displacement"]
         acceleration = row["peak_base_acceleration"] / caryatid(ISOLATED, motion).gravity
-        yield found("Fig. 6", what, "stands", row["outcome"])
-        yield found("Fig. 6", "peak displacement of the base [m]", "not printed", peak, DERIVED)
-        yield found("Fig. 6", "peak absolute acceleration [g]", "not printed", acceleration, DERIVED)
-        yield found("Fig. 6", "peak displacement below x_max = 0.30 m", "yes", "yes" if peak < X_MAX else "no")
+        yield compared("Fig. 6", what, "stands", row["outcome"])
+        yield compared("Fig. 6", "peak displacement of the base [m]", "not printed", peak, DERIVED)
+        yield compared("Fig. 6", "peak absolute acceleration [g]", "not printed", acceleration, DERIVED)
+        yield compared("Fig. 6", "peak displacement below x_max = 0.30 m", "yes", "yes" if peak < X_MAX else "no")
 
 
 TURNS = (0.0, 0.06, -0.06, 0.15, -0.15, 0.30, -0.30, 0.10, -0.05, 0.30)  # m, the path of Fig. 3
@@ -474,7 +474,7 @@ def _momentum(scene):
     for by in ("slenderness", "radius"):
         scenes = [scene.with_(block={by: float(size)}) for size in arrays[f"impact/{by}"]]
         for form, length in (("right", base_jump_length), ("printed", base_jump_length_as_printed)):
-            arrays[f"impact/{form} by {by}"] = np.array([momentum_after(one, length(one)) for one in scenes])
+            arrays[f"impact/{form} by {by}"] = np.array([momentum_after(scene, length(scene)) for scene in scenes])
     return arrays
 
 
@@ -721,10 +721,15 @@ def claims(motion: Motion, quick: bool = False) -> tuple[list[dict[str, Any]], d
         intervals = _intervals(column.transitions, bool(holds([LOW])[0]))
         rows.append({"part": "claim", "claim": claim, "intervals": intervals, "evaluations": column.evaluations})
     together = reduce(_overlap, [row["intervals"] for row in rows])
-    own, grid = free.block.slenderness, np.linspace(LOW, HIGH, scan)
+    slenderness, grid = free.block.slenderness, np.linspace(LOW, HIGH, scan)
     rows += [
         {"part": "claim", "claim": "all three", "intervals": together, "evaluations": None},
-        {"part": "vulnerable", "slenderness": own, "step": step, "period": vulnerable_period(motion, own, step)},
+        {
+            "part": "vulnerable",
+            "slenderness": slenderness,
+            "step": step,
+            "period": vulnerable_period(motion, slenderness, step),
+        },
     ]
     periods = np.array([vulnerable_period(motion, float(gamma), step) for gamma in grid])
     return rows, {"claims/slenderness": grid, "claims/vulnerable period": periods}
@@ -769,7 +774,10 @@ def benefit(
     The displacement is NaN where the isolated block overturns: runs end when that is certain.
     """
     scaled = [motion.scaled(float(factor)) for factor in intensities]
-    changes = [{"block": {"slenderness": float(gamma)}, "motion": one} for gamma, one in product(slendernesses, scaled)]
+    changes = [
+        {"block": {"slenderness": float(gamma)}, "motion": scaled_motion}
+        for gamma, scaled_motion in product(slendernesses, scaled)
+    ]
     shape = len(slendernesses), len(intensities)
     free, isolated = (
         simulate_many([scene.with_(**change) for change in changes])
@@ -793,10 +801,10 @@ def benefit(
 def maps(motion: Motion, quick: bool = False) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
     """(rows, arrays): shares of the map of `motion` and of synthetic motions' maps, and the map itself."""
     fine, coarse = grid(quick), grid(quick, fine=False)
-    found = benefit(motion, *fine)
-    rows = [_shares("this motion", *found)]
+    outcomes = benefit(motion, *fine)
+    rows = [_shares("this motion", *outcomes)]
     names = ("slenderness", "intensity", "category", "isolated lifts", "isolated displacement")
-    arrays = {f"benefit/{name}": values for name, values in zip(names, (*fine, *found), strict=True)}
+    arrays = {f"benefit/{name}": values for name, values in zip(names, (*fine, *outcomes), strict=True)}
     for seed in range(3 if quick else SEEDS):
         rows.append(_shares(f"synthetic, seed {seed}", *benefit(synthetic_motion(seed=seed), *coarse)))
     return rows, arrays
@@ -881,16 +889,16 @@ def _analytic(motion, runs, quick):
     log("spectra")
     arrays = spectra(motion, quick)
     isolated = caryatid(ISOLATED, motion)
-    (own,) = (row for row in runs if row["scene"] == ISOLATED and row["engine"] == "analytic")
+    (isolated_run,) = (row for row in runs if row["scene"] == ISOLATED and row["engine"] == "analytic")
     bearings = properties(isolated.bearings, isolated.total_mass, X_MAX)
-    rows = equivalent_oscillators(motion, bearings, own["peak_base_displacement"])
+    rows = equivalent_oscillators(motion, bearings, isolated_run["peak_base_displacement"])
     log("slenderness: which values fit the claims")
     fitting, periods = claims(motion, quick)
     log("other slendernesses, intensities and motions")
     shares, benefit = maps(motion, quick)
     rows += [*fitting, *shares]
     arrays |= periods | benefit
-    singles = {name: one.astype(np.float32) for name, one in arrays.items() if one.dtype == np.float64}
+    singles = {name: array.astype(np.float32) for name, array in arrays.items() if array.dtype == np.float64}
     return rows, arrays | singles
 
 

@@ -49,89 +49,18 @@ def page(result: Result) -> Page:
     measures = {row["scene"]: row["measure"] for row in where(fits, state=OVERTURNING)}
     chosen = [row for row in fits if row["measure"] == measures[row["scene"]]]
     tones = dict(zip(dict.fromkeys(row["state"] for row in fits), TONES, strict=False))
-    found = tallies(result)
+    counts = tallies(result)
     return Page(
-        f"Many earthquakes: {ends_in_words(leading(found, result.settings['variants']))}",
+        f"Many earthquakes: {ends_in_words(leading(counts, result.settings['variants']))}",
         (
             "Rocking cannot be predicted point by point over a whole motion, but probabilities can. Engines are "
-            f"compared with the analytic model run by run. A fall counts as another one if its time is off by more "
-            f"than {percent(FALL, 1)} of a rocking period, or the number of impacts before it is another. A failed run "
-            f"counts as differing. Even without a difference, {least_shown(found, 'motions')} (upper 95 % limit).",
+            "compared with the analytic model run by run. A run differs if the block ends otherwise, or falls at "
+            f"another time: off by more than {percent(FALL, 1)} of a rocking period, or after another number of "
+            f"impacts. A failed run counts as differing. Even without a difference, {least_shown(counts, 'motions')} "
+            "(upper 95 % limit).",
         ),
-        first=(
-            beside(
-                _shares(
-                    chosen,
-                    tones,
-                    "Left: share of runs of the analytic model that exceed each limit state, with 95 % Wilson "
-                    "intervals, over the intensity measure of overturning. A lognormal curve is drawn where it fits "
-                    f"(p ≥ {LEVEL:g}). Small marks: overturning.",
-                ),
-                _differing(found),
-            ),
-            table(
-                "All scenes together: runs by how they end beside the analytic model’s, with 95 % Wilson intervals by "
-                "motion",
-                found,
-                NAME,
-                COLUMNS["runs"],
-                Column("that differ or fail [-]", "differing"),
-                *ends(found),
-                Column("share that differs or fails", "share", percent=True, within="interval"),
-            ),
-        ),
-        more=(
-            table(
-                "Overturning: engines against the analytic model on the same runs; 95 % intervals by paired bootstrap",
-                where(effects, state=OVERTURNING),
-                NAME,
-                SCENE,
-                *EFFECT,
-                Column("CPU time per run [s]", lambda row: costs[row["scene"], NAME.of(row)]),
-            ),
-            Head("All limit states"),
-            ranks(
-                effects,
-                NAME,
-                MEDIAN_SHIFT,
-                "Median intensity over the analytic model's on the same runs, with 95 % intervals by paired bootstrap; "
-                "without an interval no outcome differs, or the runs determine none.",
-                Axis(MEDIAN_SHIFT.head, RATIOS[0], RATIOS[-1], "log", tuple((ratio, short(ratio)) for ratio in RATIOS)),
-                panel=lambda row: f"{row['scene']}: {STATE.of(row)}",
-            ),
-            table(
-                "Other limit states: engines against the analytic model on the same runs",
-                [row for row in effects if row["state"] != OVERTURNING],
-                NAME,
-                SCENE,
-                STATE,
-                *EFFECT,
-            ),
-            Head("The analytic model"),
-            _shares(
-                [row for row in fits if row not in chosen], tones, "The other limit states over their own measure."
-            ),
-            table(
-                "Lognormal curves of the analytic model; 95 % intervals by bootstrap over runs",
-                fits,
-                SCENE,
-                STATE,
-                MEASURE,
-                Column("exceeded [-]", "{exceeded} of {size}"),
-                COLUMNS["median"],
-                COLUMNS["dispersion"],
-                COLUMNS["p_value"],
-                Column("fits", lambda row: "no curve" if row["median"] is None else "yes" if _fits(row) else "no"),
-            ),
-            table(
-                "Runs of the analytic model",
-                where(result.rows, part="check"),
-                SCENE,
-                COLUMNS["runs"].called("runs"),
-                COLUMNS["undecided"],
-                COLUMNS["failed"],
-            ),
-        ),
+        first=_summary(chosen, tones, counts),
+        more=_details(result, fits, effects, costs, chosen, tones),
         how=_how(result.settings),
         evidence=tuple(
             (f"{NAME.of(row)}, {row['scene']}, seed {row['seed']}", f"{row['reason']}\n{row.get('message') or ''}")
@@ -140,9 +69,89 @@ def page(result: Result) -> Page:
     )
 
 
+def _summary(chosen, tones, counts):
+    """What stands on the report's first page, too."""
+    return (
+        beside(
+            _shares(
+                chosen,
+                tones,
+                "Left: share of runs of the analytic model that exceed each limit state, with 95 % Wilson "
+                "intervals, over the intensity measure of overturning. A lognormal curve is drawn where it fits "
+                f"(p ≥ {LEVEL:g}). Small marks: overturning.",
+            ),
+            _differing(counts),
+        ),
+        table(
+            "All scenes together: runs by how they end beside the analytic model’s, with 95 % Wilson intervals by "
+            "motion",
+            counts,
+            NAME,
+            COLUMNS["runs"],
+            Column("that differ or fail [-]", "differing"),
+            *ends(counts),
+            Column("share that differs or fails", "share", percent=True, within="interval"),
+        ),
+    )
+
+
+def _details(result, fits, effects, costs, chosen, tones):
+    """What stands on the study's own page alone."""
+    return (
+        table(
+            "Overturning: engines against the analytic model on the same runs; 95 % intervals by paired bootstrap",
+            where(effects, state=OVERTURNING),
+            NAME,
+            SCENE,
+            *EFFECT,
+            Column("CPU time per run [s]", lambda row: costs[row["scene"], NAME.of(row)]),
+        ),
+        Head("All limit states"),
+        ranks(
+            effects,
+            NAME,
+            MEDIAN_SHIFT,
+            "Median intensity over the analytic model's on the same runs, with 95 % intervals by paired bootstrap; "
+            "without an interval no outcome differs, or the runs determine none.",
+            Axis(MEDIAN_SHIFT.head, RATIOS[0], RATIOS[-1], "log", tuple((ratio, short(ratio)) for ratio in RATIOS)),
+            panel=lambda row: f"{row['scene']}: {STATE.of(row)}",
+        ),
+        table(
+            "Other limit states: engines against the analytic model on the same runs",
+            [row for row in effects if row["state"] != OVERTURNING],
+            NAME,
+            SCENE,
+            STATE,
+            *EFFECT,
+        ),
+        Head("The analytic model"),
+        _shares([row for row in fits if row not in chosen], tones, "The other limit states over their own measure."),
+        table(
+            "Lognormal curves of the analytic model; 95 % intervals by bootstrap over runs",
+            fits,
+            SCENE,
+            STATE,
+            MEASURE,
+            Column("exceeded [-]", "{exceeded} of {size}"),
+            COLUMNS["median"],
+            COLUMNS["dispersion"],
+            COLUMNS["p_value"],
+            Column("fits", lambda row: "no curve" if row["median"] is None else "yes" if _fits(row) else "no"),
+        ),
+        table(
+            "Runs of the analytic model",
+            where(result.rows, part="check"),
+            SCENE,
+            COLUMNS["runs"].called("runs"),
+            COLUMNS["undecided"],
+            COLUMNS["failed"],
+        ),
+    )
+
+
 def tallies(result: Result) -> list[dict[str, Any]]:
     """A row for each variant: the `tally` of its runs of all scenes, runs under one motion taken as one."""
-    tiers = {NAME.of(one): one["tier"] for one in result.settings["variants"]}
+    tiers = {NAME.of(variant): variant["tier"] for variant in result.settings["variants"]}
 
     def turned(row):
         return row["overturns"] != row["model_overturns"]
@@ -160,7 +169,7 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
 
 
 def glance(result: Result) -> Glance:
-    tiers = {NAME.of(one): one["tier"] for one in result.settings["variants"]}
+    tiers = {NAME.of(variant): variant["tier"] for variant in result.settings["variants"]}
     runs = [
         {
             **row,
@@ -175,10 +184,10 @@ def glance(result: Result) -> Glance:
     return Glance(endings=counted("synthetic earthquakes", runs))
 
 
-def _differing(found):
-    """Of every variant, those in question first, the share of its runs that end otherwise than the model's."""
+def _differing(counts):
+    """Of every variant, subject engines first, the share of its runs that end otherwise than the model's."""
     return ranks(
-        sorted((row for row in found if row["runs"]), key=lambda row: (not subject(row), row["engine"] == REFERENCE)),
+        sorted((row for row in counts if row["runs"]), key=lambda row: (not subject(row), row["engine"] == REFERENCE)),
         NAME,
         Column("runs that differ or fail", "share", percent=True, within="interval"),
         "Right: share of runs of each variant that differ from the model or fail, all scenes together; open: defaults.",

@@ -128,8 +128,8 @@ class State:
 
     def exceeded(self, values: dict[str, np.ndarray]) -> np.ndarray:
         """1 where a run exceeds it, 0 where not, NaN where it failed; shape (n,)."""
-        found = values[self.key]
-        return np.where(np.isnan(found), np.nan, found > self.limit)
+        reached = values[self.key]
+        return np.where(np.isnan(reached), np.nan, reached > self.limit)
 
 
 def fits(
@@ -151,15 +151,15 @@ def fits(
 
 
 def _curve(intensity, exceeded):
-    found = {"points": points(intensity, exceeded, POINTS)}
+    shares = {"points": points(intensity, exceeded, POINTS)}
     try:
         curve = fit_fragility(intensity, exceeded)
     except ValueError as error:
         lost = dict.fromkeys(("median", "dispersion", "median_interval", "dispersion_interval", "p_value"))
-        return {**found, **lost, "reason": str(error)}
+        return {**shares, **lost, "reason": str(error)}
     medians, spreads = resampled(intensity, exceeded, draws(DRAWS, len(exceeded)))
     return {
-        **found,
+        **shares,
         "median": curve.median,
         "dispersion": curve.dispersion,
         "median_interval": interval(curve.median, medians),
@@ -206,23 +206,23 @@ def effects(
 
 def _shift(intensity, ours, theirs, detectable):
     """Ratios of the two fits; None, with the reason, where one of them does not exist."""
-    found = dict.fromkeys(SHIFTS)
+    shift = dict.fromkeys(SHIFTS)
     try:
         model, engine = (fit_fragility(intensity, exceeded) for exceeded in (ours, theirs))
     except ValueError as error:
-        return {**found, "reason": str(error)}
+        return {**shift, "reason": str(error)}
     weights = draws(PAIRED_DRAWS, len(ours))
     medians, spreads = zip(*(resampled(intensity, exceeded, weights) for exceeded in (ours, theirs)), strict=True)
-    found["median_shift"] = engine.median / model.median
-    found["dispersion_shift"] = engine.dispersion / model.dispersion
+    shift["median_shift"] = engine.median / model.median
+    shift["dispersion_shift"] = engine.dispersion / model.dispersion
     if (ours != theirs).any():  # else bootstrap knows of no difference: no width, which would be certainty
-        found["median_interval"] = interval(found["median_shift"], medians[1] / medians[0])
-        found["dispersion_interval"] = interval(found["dispersion_shift"], spreads[1] / spreads[0])
+        shift["median_interval"] = interval(shift["median_shift"], medians[1] / medians[0])
+        shift["dispersion_interval"] = interval(shift["dispersion_shift"], spreads[1] / spreads[0])
     if detectable is not None:
         # a shift d of ln(median) changes the probability of a run by phi(z) d/dispersion
         steepness = (norm.pdf(np.log(intensity / model.median) / model.dispersion) / model.dispersion).mean()
-        found["detectable_shift"] = float(np.exp(detectable / steepness))
-    return {**found, "reason": None}
+        shift["detectable_shift"] = float(np.exp(detectable / steepness))
+    return {**shift, "reason": None}
 
 
 X_MAX = 0.30  # m, what the bearings are built for: Table 1(a) of the paper
@@ -278,12 +278,12 @@ def measures(scenes: list[Scene]) -> dict[str, np.ndarray]:
     peak = np.array([scene.motion.peak for scene in scenes]) / gravity
     speed = np.array([peak_velocity(scene.motion) for scene in scenes])
     rocking = np.array([scene.rocking_frequency for scene in scenes])
-    found = {UPLIFT: peak / steepness, STROKE: speed, ROCKING: rocking * speed / (gravity * steepness)}
+    values = {UPLIFT: peak / steepness, STROKE: speed, ROCKING: rocking * speed / (gravity * steepness)}
     if scenes[0].bearings is None:
-        return found
+        return values
     displacement = np.array([displacement_spectrum(scene.motion, [PERIOD], [DAMPING])[0, 0] for scene in scenes])
     spectral = displacement * (2 * math.pi / PERIOD) ** 2 / gravity
-    return {**found, "Sa": spectral, ISOLATED: spectral / steepness}
+    return {**values, "Sa": spectral, ISOLATED: spectral / steepness}
 
 
 CHANGE = 1e-4  # relative change of the restitution: the model's own sensitivity
@@ -325,7 +325,7 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
 def beside_model(case: Case, response: Response) -> dict[str, Any]:
     """What is kept of an engine's run: in what it differs from the model, too."""
     differences = compare(case.scene, response).differences
-    return {**measure(case, response), "quantities": [one.quantity for one in differences]}
+    return {**measure(case, response), "quantities": [difference.quantity for difference in differences]}
 
 
 def plan(request: Request, scenes: dict[str, Any] | None = None, runs: tuple[int, int, int] | None = None) -> Plan:
@@ -355,7 +355,7 @@ def plan(request: Request, scenes: dict[str, Any] | None = None, runs: tuple[int
         failed = sum(row.failed for row in whole)
         ends = {int(seed): Reference.of(drawn.scenes[seed]).end_comparable for seed in near}
         check = {"runs": len(whole), "undecided": undecided, "failed": failed}
-        found = [
+        own_rows = [
             *fits(drawn.measures, states, model),
             {"part": "check", "engine": "analytic", "variant": "", **check},
             *_runs(MODEL, whole),
@@ -370,12 +370,14 @@ def plan(request: Request, scenes: dict[str, Any] | None = None, runs: tuple[int
             run = yield Batch(cases, measure if pair == PERTURBED else beside_model, f"{name}: {label}", TIME_LIMIT)
             few, theirs = near[: len(cases)], values_of(run)
             ours = {key: array[few] for key, array in model.items()}
-            found += effects(drawn.measures, few, states, (ours, theirs), pair)
-            found += _runs(pair, run)
+            own_rows += effects(drawn.measures, few, states, (ours, theirs), pair)
+            own_rows += _runs(pair, run)
             if pair != PERTURBED:
-                found += [_run_row(pair, row, ends, falls) for row, falls in zip(run, ours["overturns"], strict=True)]
+                own_rows += [
+                    _run_row(pair, row, ends, falls) for row, falls in zip(run, ours["overturns"], strict=True)
+                ]
             made |= _kept(label, theirs)
-        rows += [{"scene": name, **row} for row in found]
+        rows += [{"scene": name, **row} for row in own_rows]
         arrays |= {f"{name}/{key}": array.astype(np.float32) for key, array in made.items()} | {f"{name}/near": near}
         answer = Computed(
             _settings(request, scenes, counts, variants), list(rows), dict(arrays), seed=[0, counts[0] - 1]
@@ -397,9 +399,11 @@ def states_of(drawn: Cloud) -> dict[str, State]:
 
 def values_of(results: Sequence[Row]) -> dict[str, np.ndarray]:
     """{each of `KEPT`: (n,)} of rows; NaN where a run failed, the tilt infinite in overturning."""
-    found = {key: np.array([np.nan if row.failed else row.values[key] for row in results], dtype=float) for key in KEPT}
-    found["tilt"][found["overturns"] == 1] = np.inf
-    return found
+    values = {
+        key: np.array([np.nan if row.failed else row.values[key] for row in results], dtype=float) for key in KEPT
+    }
+    values["tilt"][values["overturns"] == 1] = np.inf
+    return values
 
 
 def _cases(scenes: Iterable[tuple[int, Scene]], engine: str, variant: str) -> list[Case]:

@@ -21,8 +21,8 @@ WORDS = {"graph": "tilt", "error": "restitution", "lost": "another outcome, or f
 
 
 def page(result: Result) -> Page:
-    found = {engine: _ranked(result, engine) for (engine,) in grouped(result.rows, "engine")}
-    every = [row for rows in found.values() for row in rows]
+    by_engine = {engine: _ranked(result, engine) for (engine,) in grouped(result.rows, "engine")}
+    every = [row for rows in by_engine.values() for row in rows]
     made = [row for row in every if row["group"] not in (None, result.settings["no_matter"])]
     lost = [row for row in made if row["lost"]]
     quiet = [row for row in made if not row["lost"] and row["error"] is not None and row["error"] <= TRUSTED]
@@ -38,14 +38,14 @@ def page(result: Result) -> Page:
             "slenderness."
         )
     return Page(
-        f"What a mistake costs: of {len(made)} in scripts for {listed(list(found)) or 'no engine'}, {len(lost)} change "
-        "an outcome or make a run fail",
+        f"What a mistake costs: of {len(made)} in scripts for {listed(list(by_engine)) or 'no engine'}, {len(lost)} "
+        "change an outcome or make a run fail",
         tuple(says),
         first=(
-            _dots(found, result.settings["no_matter"]),
+            _dots(by_engine, result.settings["no_matter"]),
             _counts(made, where(every, group=result.settings["no_matter"])),
         ),
-        more=tuple(_table(engine, rows) for engine, rows in found.items()),
+        more=tuple(_table(engine, rows) for engine, rows in by_engine.items()),
         how=(
             "Scenes: the Caryatid released from 0.6 of its slenderness, on rigid ground for 5 s and on its base and "
             "bearings for 3 s; a block of 0.3 rad on rigid ground under a one-sine pulse that overturns it; one of "
@@ -62,17 +62,19 @@ def page(result: Result) -> Page:
 
 def _counts(made, harmless):
     """How many mistakes there are of each kind, by engine and in all."""
-    found = {engine: (some, where(harmless, engine=engine)) for (engine,), some in grouped(made, "engine").items()}
-    found |= {"all": (made, harmless)} if len(found) > 1 else {}
+    groups = {
+        engine: (changed, where(harmless, engine=engine)) for (engine,), changed in grouped(made, "engine").items()
+    }
+    groups |= {"all": (made, harmless)} if len(groups) > 1 else {}
     rows = [
         {
             "engine": engine,
-            "mistakes": len(some),
-            "lost": sum(row["lost"] > 0 for row in some),
-            "off": sum((row["error"] or 0.0) > TRUSTED for row in where(some, lost=0)),
+            "mistakes": len(changed),
+            "lost": sum(row["lost"] > 0 for row in changed),
+            "off": sum((row["error"] or 0.0) > TRUSTED for row in where(changed, lost=0)),
             "harmless": len(others),
         }
-        for engine, (some, others) in found.items()
+        for engine, (changed, others) in groups.items()
     ]
     return table(
         "How many mistakes",
@@ -113,13 +115,15 @@ def _most(runs, name):
 def _outcomes(runs: Sequence[dict[str, Any]]) -> str:
     """In words where the outcome is not the model's, or why the run failed, each with its scenes."""
     wrong = [run for run in runs if run["outcome"] != run["expected"]]
-    found = grouped(
+    by_words = grouped(
         wrong, lambda run: f"fails: {run['reason']}" if run["reason"] else f"{run['outcome']} for {run['expected']}"
     )
-    places = {words: ", ".join(run["scene"].replace(", ", " on ") for run in some) for (words,), some in found.items()}
-    everywhere = len(runs) > 1 and len(found) == 1 and len(wrong) == len(runs)
-    said = [f"{words} ({'all scenes' if everywhere else some})" for words, some in places.items()]
-    return "; ".join(said) or "as the model"
+    places = {
+        words: ", ".join(run["scene"].replace(", ", " on ") for run in scenes) for (words,), scenes in by_words.items()
+    }
+    everywhere = len(runs) > 1 and len(by_words) == 1 and len(wrong) == len(runs)
+    phrases = [f"{words} ({'all scenes' if everywhere else scenes})" for words, scenes in places.items()]
+    return "; ".join(phrases) or "as the model"
 
 
 def _table(engine, rows):
@@ -138,9 +142,9 @@ def _table(engine, rows):
     )
 
 
-def _dots(found: dict[str, list[dict[str, Any]]], no_matter: str) -> Figure | None:
+def _dots(by_engine: dict[str, list[dict[str, Any]]], no_matter: str) -> Figure | None:
     """A panel for each engine: error of restitution and of the tilt, a row for each mistake."""
-    shown = {engine: [row for row in rows if row["group"] != no_matter] for engine, rows in found.items()}
+    shown = {engine: [row for row in rows if row["group"] != no_matter] for engine, rows in by_engine.items()}
     values = [row[name] for rows in shown.values() for row in rows for name in ("graph", "error") if row[name]]
     if not values:
         return None
@@ -173,12 +177,12 @@ def _chart(engine: str, rows: Sequence[dict[str, Any]], axis: Axis) -> Chart:
         right=24,
     )
     for name, look in MARKS.items():
-        told = [row for row in rows if row[name]]
-        places = [rows.index(row) for row in told]
-        across = [axis.high if name == "lost" else row[name] for row in told]
+        drawn = [row for row in rows if row[name]]
+        places = [rows.index(row) for row in drawn]
+        across = [axis.high if name == "lost" else row[name] for row in drawn]
         says = [
             f"{row['name']}: {row['outcomes'] if name == 'lost' else f'{WORDS[name]} {short(row[name])}'}"
-            for row in told
+            for row in drawn
         ]
         chart.dots(across, places, f"{engine}, {WORDS[name]}", says=says, **look)
     return chart

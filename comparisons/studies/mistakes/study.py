@@ -76,7 +76,7 @@ def scenes(quick: bool = False) -> dict[str, Scene]:
 def changes(engine: Engine, quick: bool = False) -> list[Mistake | None]:
     """The mistakes in an engine's scripts, after None for the script as it is; quick: few."""
     known = engine.known_mistakes().values()
-    return [None, *(one for one in known if not quick or one.key in QUICK)] if known else []
+    return [None, *(mistake for mistake in known if not quick or mistake.key in QUICK)] if known else []
 
 
 def plan(request: Request) -> Plan:
@@ -152,8 +152,8 @@ def errors(scene: Scene, seen: Response, trace: Trace) -> dict[str, float | None
     beyond = np.flatnonzero(np.abs(tilts).max(axis=0) > scene.block.slenderness)
     upright = slice(0, int(beyond[0]) if len(beyond) else len(time))
 
-    def apart(one, other):
-        return float(np.abs(one - other)[upright].max())
+    def apart(run, other):
+        return float(np.abs(run - other)[upright].max())
 
     base = np.interp(time, trace.time, trace.base_displacement), model.history.base_displacement[: len(time)]
     return {

@@ -49,8 +49,8 @@ def model_map(result: Result, ground: str, shape: str) -> Chart:
     """Outcomes of the analytic model with its boundaries."""
     chart = _outcomes(result, ground, shape, f"Outcomes of the analytic model on {ground} under a {shape} pulse.")
     edges = where(result.rows, part="edge", ground=ground, shape=shape)
-    told = [f"amplitude {number(edge['amplitude'], 4)}, N/(m g) {number(edge['min_normal'], 2)}" for edge in edges]
-    chart.dots([edge["frequency"] for edge in edges], [edge["amplitude"] for edge in edges], says=told)
+    tooltips = [f"amplitude {number(edge['amplitude'], 4)}, N/(m g) {number(edge['min_normal'], 2)}" for edge in edges]
+    chart.dots([edge["frequency"] for edge in edges], [edge["amplitude"] for edge in edges], says=tooltips)
     return chart
 
 
@@ -88,16 +88,18 @@ def _map(result, ground, shape):
     says = f"Outcomes on {ground} over frequency and amplitude of a {shape} pulse, with boundaries of the engines."
     chart, here = _outcomes(result, ground, shape, says), where(result.rows, ground=ground, shape=shape)
     for engine in result.settings["engines"]:
-        own = result.settings["default_variants"][engine]
-        rows = [row for row in where(here, part="shift", engine=engine, variant=own) if row["shift"] is not None]
-        told = [
+        variant = result.settings["default_variants"][engine]
+        rows = [row for row in where(here, part="shift", engine=engine, variant=variant) if row["shift"] is not None]
+        tooltips = [
             f"{engine}: amplitude {number(row['amplitude'], 4)}, shifted by {percent(row['shift'])}" for row in rows
         ]
         amplitudes = [row["amplitude"] * (1 + row["shift"]) for row in rows]
-        chart.dots([row["frequency"] for row in rows], amplitudes, engine, filled=False, says=told, beyond=True)
+        chart.dots([row["frequency"] for row in rows], amplitudes, engine, filled=False, says=tooltips, beyond=True)
         rows = where(here, part="disagreement", engine=engine)
-        told = [f"{engine}: differs at amplitude {AMPLITUDE.text(row)}" for row in rows]
-        chart.dots([row["frequency"] for row in rows], [row["amplitude"] for row in rows], engine, says=told, mark="x")
+        tooltips = [f"{engine}: differs at amplitude {AMPLITUDE.text(row)}" for row in rows]
+        chart.dots(
+            [row["frequency"] for row in rows], [row["amplitude"] for row in rows], engine, says=tooltips, mark="x"
+        )
     return chart
 
 
@@ -154,7 +156,7 @@ def page(result: Result) -> Page:
     edges, shifts = where(result.rows, part="edge"), where(result.rows, part="shift")
     sound = pressed(result)
     known = [row for row in shifts if place(row) in sound]
-    own = s["default_variants"]
+    main_variants = s["default_variants"]
     band = percent(s["band"], 1)
     return Page(
         f"Many pulses: on two grounds, {largest(result)}",
@@ -166,84 +168,94 @@ def page(result: Result) -> Page:
             "when it falls. Boundaries of statues drawn at random stand with these in the table of trust.",
             *under_jumps(result),
         ),
-        first=(
-            _shifts(result),
-            table(
-                "Boundaries under all pulses on both grounds, with the block pressed on its base; outcomes further "
-                f"than {band} from them. Boundaries where the normal force N would be negative are shown but do not "
-                "count",
-                rated(result),
-                NAME,
-                Column("rating", lambda row: RATINGS[row["rating"]]),
-                FOUND,
-                Column("safe gaps found [-]", "gaps"),
-                MEDIAN,
-                LARGEST,
-                Column("where N < 0: found [-]", "{beyond_found} of {beyond}"),
-                Column("largest there [%]", lambda row: row["beyond_largest"] and 100 * row["beyond_largest"]),
-                Column(
-                    "overturning missed or added, of outcomes [-]",
-                    lambda row: f"{row['wrong']} of {row['outcomes']}" if row["outcomes"] else "none compared",
-                ),
-            ),
-            table(
-                f"Coarse scan: of {_scanned(s)} pulses those further than {band} from every boundary, with the block "
-                "pressed on its base; the others are left out. 95 % Wilson intervals, pulses of one shape and "
-                "frequency on one ground as one",
-                where(result.rows, part="scan"),
-                NAME,
-                COLUMNS["runs"],
-                Column("left out [-]", lambda row: _scanned(s) - row["runs"]),
-                COLUMNS["only_a"].called("overturning missed"),
-                COLUMNS["only_b"].called("overturning added"),
-                COLUMNS["failed"],
-                Column("share that differs or fails", _share, percent=True, within="interval"),
-            ),
-        ),
-        more=(
-            maps(result, s["shapes"]),
-            Head("Every boundary"),
-            over_frequency([row for row in known if own[row["engine"]] == row["variant"]]),
-            listing(
-                "Boundaries, and the engines' shifts, known to ± "
-                f"{percent(s['tolerance'] / 2, 1)}: block pressed on its base",
-                [edge for edge in edges if place(edge) in sound],
-                known,
-            ),
-            missing(result),
-            *_sliding(s),
-            Head("Where the analytic model holds the corner down"),
-            *_held_down(edges, shifts),
-            Head("Outcomes between the boundaries"),
-            _confusions(result, band),
-            table(
-                f"Overturning missed or added further than {band} from every boundary",
-                where(result.rows, part="disagreement"),
-                NAME,
-                GROUND,
-                PULSE,
-                FREQUENCY,
-                AMPLITUDE,
-                COLUMNS["distance"],
-                NORMAL,
-                Column("analytic model", lambda row: "overturns" if row["analytic_overturns"] else "stands"),
-            ),
-            table(
-                "Runs without an outcome, left out of the tables",
-                [
-                    {**rows[0], "runs": len(rows), "held_down": sum(row["min_normal"] < 0 for row in rows)}
-                    for rows in grouped(where(result.rows, part="failure"), "engine", "variant", "reason").values()
-                ],
-                NAME,
-                COLUMNS["reason"],
-                COLUMNS["runs"].called("runs"),
-                Column("of them with N < 0 in the analytic model [-]", "held_down"),
-            ),
-            Head("Levels"),
-            *_refinement(result),
-        ),
+        first=_summary(result, s, band),
+        more=_details(result, s, edges, shifts, sound, known, main_variants, band),
         how=_how(result),
         evidence=failures(result),
+    )
+
+
+def _summary(result, s, band):
+    """What stands on the report's first page, too."""
+    return (
+        _shifts(result),
+        table(
+            "Boundaries under all pulses on both grounds, with the block pressed on its base; outcomes further "
+            f"than {band} from them. Boundaries where the normal force N would be negative are shown but do not "
+            "count",
+            rated(result),
+            NAME,
+            Column("rating", lambda row: RATINGS[row["rating"]]),
+            FOUND,
+            Column("safe gaps found [-]", "gaps"),
+            MEDIAN,
+            LARGEST,
+            Column("where N < 0: found [-]", "{beyond_found} of {beyond}"),
+            Column("largest there [%]", lambda row: row["beyond_largest"] and 100 * row["beyond_largest"]),
+            Column(
+                "overturning missed or added, of outcomes [-]",
+                lambda row: f"{row['wrong']} of {row['outcomes']}" if row["outcomes"] else "none compared",
+            ),
+        ),
+        table(
+            f"Coarse scan: of {_scanned(s)} pulses those further than {band} from every boundary, with the block "
+            "pressed on its base; the others are left out. 95 % Wilson intervals, pulses of one shape and "
+            "frequency on one ground as one",
+            where(result.rows, part="scan"),
+            NAME,
+            COLUMNS["runs"],
+            Column("left out [-]", lambda row: _scanned(s) - row["runs"]),
+            COLUMNS["only_a"].called("overturning missed"),
+            COLUMNS["only_b"].called("overturning added"),
+            COLUMNS["failed"],
+            Column("share that differs or fails", _share, percent=True, within="interval"),
+        ),
+    )
+
+
+def _details(result, s, edges, shifts, sound, known, main_variants, band):
+    """What stands on the study's own page alone."""
+    return (
+        maps(result, s["shapes"]),
+        Head("Every boundary"),
+        over_frequency([row for row in known if main_variants[row["engine"]] == row["variant"]]),
+        listing(
+            "Boundaries, and the engines' shifts, known to ± "
+            f"{percent(s['tolerance'] / 2, 1)}: block pressed on its base",
+            [edge for edge in edges if place(edge) in sound],
+            known,
+        ),
+        missing(result),
+        *_sliding(s),
+        Head("Where the analytic model holds the corner down"),
+        *_held_down(edges, shifts),
+        Head("Outcomes between the boundaries"),
+        _confusions(result, band),
+        table(
+            f"Overturning missed or added further than {band} from every boundary",
+            where(result.rows, part="disagreement"),
+            NAME,
+            GROUND,
+            PULSE,
+            FREQUENCY,
+            AMPLITUDE,
+            COLUMNS["distance"],
+            NORMAL,
+            Column("analytic model", lambda row: "overturns" if row["analytic_overturns"] else "stands"),
+        ),
+        table(
+            "Runs without an outcome, left out of the tables",
+            [
+                {**rows[0], "runs": len(rows), "held_down": sum(row["min_normal"] < 0 for row in rows)}
+                for rows in grouped(where(result.rows, part="failure"), "engine", "variant", "reason").values()
+            ],
+            NAME,
+            COLUMNS["reason"],
+            COLUMNS["runs"].called("runs"),
+            Column("of them with N < 0 in the analytic model [-]", "held_down"),
+        ),
+        Head("Levels"),
+        *_refinement(result),
     )
 
 
@@ -253,7 +265,7 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
 
 def glance(result: Result) -> Glance:
     """Of the coarse scan, away from the boundaries."""
-    tiers = {NAME.of(one): one["tier"] for one in result.settings["variants"]}
+    tiers = {NAME.of(variant): variant["tier"] for variant in result.settings["variants"]}
     near = _near_boundaries(result)
     return Glance(
         endings=tuple(

@@ -124,27 +124,27 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
         for name, (shipped, block) in GROUNDS.items()
         if name in grid.grounds
     }
-    arrays, found = _maps(grounds, grid), []
+    arrays, boundaries = _maps(grounds, grid), []
     for ground, shape in itertools.product(grounds, grid.shapes):
         log(f"analytic boundaries: {ground}, {shape}")
-        found += edges(grounds[ground], ground, shape, grid.frequencies)
-    rows = [{"part": "edge", **vars(edge)} for edge in found]
+        boundaries += edges(grounds[ground], ground, shape, grid.frequencies)
+    rows = [{"part": "edge", **vars(edge)} for edge in boundaries]
     variants = [
         (name, variant, spec) for name in request.engines for variant, spec in get_engine(name).variants.items()
     ]
     default, coarser = usual_settings(request.engines)
     runs, points = Runs(grounds, default), _scan(grounds, grid)
-    known = _judged(grounds, points, found)
+    known = _judged(grounds, points, boundaries)
     for setting in (*default, *coarser):
         answers = yield from runs.ask([(setting, point) for point in points], f"scan: {setting.engine}", scan=True)
         rows.append({"part": "scan", **setting.row(), **_counted(points, known, answers)})
-    rows += yield from runs.search_usual("shift", request.engines, found)
-    records = _compared(runs.outcomes, default, grounds, found)
+    rows += yield from runs.search_usual("shift", request.engines, boundaries)
+    records = _compared(runs.outcomes, default, grounds, boundaries)
     rows += [*_confusions(records, default, grounds), *_disagreements(records)]
     described = [*itertools.starmap(_described, variants), STEPPING]
     settings = _settings(request, grid, grounds, described)
     yield Computed(settings, rows + runs.failures, arrays)
-    chosen = [edge for edge in found if edge.shape == SHAPES[0] and edge.frequency == LEVEL_FREQUENCY]
+    chosen = [edge for edge in boundaries if edge.shape == SHAPES[0] and edge.frequency == LEVEL_FREQUENCY]
     for setting in _refined(described, grid.levels):
         rows += yield from runs.search("refinement", [setting], chosen, LEVEL_DISTANCES, LEVEL_TOLERANCE)
         yield Computed(settings, rows + runs.failures, arrays)
@@ -209,11 +209,11 @@ def _scan(grounds, grid):
     return [Point(*place, least_normal(grounds[place[0]], pulse(grounds[place[0]], *place[1:]))) for place in places]
 
 
-def _judged(grounds, points, found):
+def _judged(grounds, points, boundaries):
     """Whether the block overturns in the model at each point; None near a boundary, and where it would jump."""
     models = [simulate(under(grounds, point), history=False) for point in points]
     return [
-        model.outcome == "overturns" if model.min_normal_ratio >= 0 and _distance(found, point) > BAND else None
+        model.outcome == "overturns" if model.min_normal_ratio >= 0 and _distance(boundaries, point) > BAND else None
         for point, model in zip(points, models, strict=True)
     ]
 
@@ -221,7 +221,7 @@ def _judged(grounds, points, found):
 def _counted(points, known, answers):
     """Of the points that are judged: how many runs failed, and what the others found; runs of one shape and frequency
     on one ground count as one in the interval of the share that differs or fails."""
-    chosen = [(*one, point[:3]) for *one, point in zip(known, answers, points, strict=True) if one[0] is not None]
+    chosen = [(*run, point[:3]) for *run, point in zip(known, answers, points, strict=True) if run[0] is not None]
     models, engines, groups = zip(*chosen, strict=True)
     both = [(a, b) for a, b in zip(models, engines, strict=True) if b is not None]
     _, interval = equality([a != b for a, b in zip(models, engines, strict=True)], groups)
@@ -229,13 +229,13 @@ def _counted(points, known, answers):
     return {"runs": len(chosen), "failed": len(chosen) - len(both), **counts, "interval": interval}
 
 
-def _distance(found, point):
+def _distance(boundaries, point):
     """From the nearest boundary of the analytic model, relative."""
-    near = (edge.amplitude for edge in found if (edge.ground, edge.shape, edge.frequency) == point[:3])
+    near = (edge.amplitude for edge in boundaries if (edge.ground, edge.shape, edge.frequency) == point[:3])
     return min((abs(point.amplitude / amplitude - 1) for amplitude in near), default=math.inf)
 
 
-def _compared(outcomes, default, grounds, found):
+def _compared(outcomes, default, grounds, boundaries):
     """Records of `Runs.outcomes`, with what the analytic model says there.
 
     scan: whether of the scan. distance: from the nearest boundary of the analytic model, relative.
@@ -252,7 +252,7 @@ def _compared(outcomes, default, grounds, found):
                 "overturns": overturns,
                 "analytic_overturns": response.outcome == "overturns",
                 "scan": scan,
-                "distance": _distance(found, point),
+                "distance": _distance(boundaries, point),
             }
         )
     return records
@@ -266,17 +266,17 @@ def _confusions(
     Outside the band those are apart ("held down") in which the normal force of the analytic model becomes negative.
     """
     regions = {
-        "scan": lambda one: one["scan"],
-        "outside": lambda one: one["distance"] > BAND and one["min_normal"] >= 0,
-        "held down": lambda one: one["distance"] > BAND and one["min_normal"] < 0,
-        "inside": lambda one: one["distance"] <= BAND,
+        "scan": lambda record: record["scan"],
+        "outside": lambda record: record["distance"] > BAND and record["min_normal"] >= 0,
+        "held down": lambda record: record["distance"] > BAND and record["min_normal"] < 0,
+        "inside": lambda record: record["distance"] <= BAND,
     }
     for setting, ground, region in itertools.product(default, grounds, regions):
         whose = {**setting.row(), "ground": ground}
         chosen = [
-            (one["analytic_overturns"], one["overturns"])
-            for one in records
-            if whose.items() <= one.items() and one["overturns"] is not None and regions[region](one)
+            (record["analytic_overturns"], record["overturns"])
+            for record in records
+            if whose.items() <= record.items() and record["overturns"] is not None and regions[region](record)
         ]
         if chosen:
             counts = confusion(*np.transpose(chosen))
@@ -287,7 +287,7 @@ def _confusions(
 
 def _disagreements(records):
     """A row for each outcome outside the band that differs."""
-    for one in records:
-        if one["distance"] > BAND and one["overturns"] not in (None, one["analytic_overturns"]):
-            row = {key: value for key, value in one.items() if key not in ("overturns", "scan")}
+    for record in records:
+        if record["distance"] > BAND and record["overturns"] not in (None, record["analytic_overturns"]):
+            row = {key: value for key, value in record.items() if key not in ("overturns", "scan")}
             yield {"part": "disagreement", **row}

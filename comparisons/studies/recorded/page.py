@@ -50,9 +50,9 @@ def page(result: Result) -> Page:
     return Page(
         f"Recorded motions: {ends_in_words(leading(both, variants))}",
         (
-            "Compared are whether the block stands, rocks or overturns, and when it falls: a fall counts as another "
-            f"one if its time is off by more than {percent(FALL, 1)} of a rocking period, or the number of impacts "
-            "before it is another. A failed run counts as differing.",
+            "A run differs from the model if the block ends otherwise (stands, rocks or overturns), or falls at "
+            f"another time: off by more than {percent(FALL, 1)} of a rocking period, or after another number of "
+            "impacts. A failed run counts as differing.",
             f"Runs under one record are not independent, so the interval counts records. Even without a difference, "
             f"{least_shown(both, 'records')} (upper 95 % limit).",
         ),
@@ -67,38 +67,7 @@ def page(result: Result) -> Page:
                 *counts,
             ),
         ),
-        more=(
-            table(
-                "By configuration",
-                [row for row in summaries if row["configuration"] != BOTH],
-                NAME,
-                CONFIGURATION,
-                *counts,
-            ),
-            table(
-                "Relative errors of peaks, run by run: median, largest, number of runs, 95 % quantile; up to the "
-                "horizon common to all engines, and up to the engine’s own",
-                summaries,
-                NAME,
-                CONFIGURATION,
-                COLUMNS["tilt_error"],
-                COLUMNS["displacement_error"],
-                COLUMNS["own_tilt_error"],
-                COLUMNS["own_displacement_error"],
-            ),
-            table(
-                "Runs that differ or fail; tilt over slenderness",
-                where(runs, **{"class": {"differs", "failed"}}),
-                NAME,
-                RECORD,
-                CONFIGURATION,
-                COLUMNS["model_outcome"],
-                COLUMNS["outcome"],
-                COLUMNS["model_tilt"],
-                Column("peak tilt, engine [-]", lambda row: row.get("tilt")),
-                Column("in what", lambda row: typeset("; ".join(row.get("differences", ()))) or None),
-            ),
-        ),
+        more=_details(runs, summaries, counts),
         how=_how(result),
         evidence=tuple(
             (
@@ -106,6 +75,38 @@ def page(result: Result) -> Page:
                 row["failure"]["message"] or "",
             )
             for row in where(runs, **{"class": "failed"})
+        ),
+    )
+
+
+def _details(runs, summaries, counts):
+    """What stands on the study's own page alone."""
+    return (
+        table(
+            "By configuration", [row for row in summaries if row["configuration"] != BOTH], NAME, CONFIGURATION, *counts
+        ),
+        table(
+            "Relative errors of peaks, run by run: median, largest, number of runs, 95 % quantile; up to the "
+            "horizon common to all engines, and up to the engine’s own",
+            summaries,
+            NAME,
+            CONFIGURATION,
+            COLUMNS["tilt_error"],
+            COLUMNS["displacement_error"],
+            COLUMNS["own_tilt_error"],
+            COLUMNS["own_displacement_error"],
+        ),
+        table(
+            "Runs that differ or fail; tilt over slenderness",
+            where(runs, **{"class": {"differs", "failed"}}),
+            NAME,
+            RECORD,
+            CONFIGURATION,
+            COLUMNS["model_outcome"],
+            COLUMNS["outcome"],
+            COLUMNS["model_tilt"],
+            Column("peak tilt, engine [-]", lambda row: row.get("tilt")),
+            Column("in what", lambda row: typeset("; ".join(row.get("differences", ()))) or None),
         ),
     )
 
@@ -147,15 +148,22 @@ def glance(result: Result) -> Glance:
 def _peaks(result, runs):
     """Of tuned variants. A relative error times the largest tilt, at most the slenderness, is at least the error over
     slenderness; a failed run keeps no error."""
-    for one in where(result.settings["variants"], tier="tuned"):
-        mine = where(runs, engine=one["engine"], variant=one["variant"], **{"class": {"right", "differs", "failed"}})
+    for variant in where(result.settings["variants"], tier="tuned"):
+        mine = where(
+            runs, engine=variant["engine"], variant=variant["variant"], **{"class": {"right", "differs", "failed"}}
+        )
         errors = [
             math.inf if row["falls"] is None else abs(row["own_tilt_error"]) * min(row["model_tilt"], 1.0)
             for row in mine
             if row["falls"] is None or row["own_tilt_error"] is not None
         ]
         yield Peaks(
-            "recorded earthquakes", one["engine"], one["variant"], one["parameter"], one["default"], tuple(errors)
+            "recorded earthquakes",
+            variant["engine"],
+            variant["variant"],
+            variant["parameter"],
+            variant["default"],
+            tuple(errors),
         )
 
 
@@ -190,7 +198,7 @@ def _peak_mark(errors):
 
 
 def _tilts(runs: list[dict[str, Any]], main: Mapping[str, str]) -> Figure | None:
-    """Each run's peak tilt over the model's, of the engines in question, tuned and as they come; a panel for each
+    """Each run's peak tilt over the model's, of subject engines, tuned and with defaults; a panel for each
     configuration. Of the tuned ones, those that are not their engine's main variant stand behind, in grey."""
     groups = grouped(runs, "engine", "variant", "tier").values()
     shown = [members for members in groups if subject(members[0])]
@@ -212,7 +220,9 @@ def _tilts(runs: list[dict[str, Any]], main: Mapping[str, str]) -> Figure | None
             left=100,
         )
         chart.line([LEAST, FALLEN], [LEAST, FALLEN], tone="var(--faint)")
-        for members in sorted(shown, key=lambda some: (not other(some[0]), not as_it_comes(some[0]))):
+        for members in sorted(
+            shown, key=lambda members_of_panel: (not other(members_of_panel[0]), not as_it_comes(members_of_panel[0]))
+        ):
             drawn = where(members, configuration=configuration, **{"class": {"right", "differs", "failed"}})
             model, engine = ([_place(row, side) for row in drawn] for side in ("model_", ""))
             filled, says = not as_it_comes(members[0]), [_says(row) for row in drawn]
@@ -252,25 +262,24 @@ def _how(result: Result) -> tuple[str, ...]:
         for name, ends in settings["ranges"].items()
     )
     mix = "; ".join(
-        f"{name}: " + ", ".join(f"{count} {outcome}" for outcome, count in found.items())
-        for name, found in settings["mix"].items()
+        f"{name}: " + ", ".join(f"{count} {outcome}" for outcome, count in outcomes.items())
+        for name, outcomes in settings["mix"].items()
     )
     why = [row["comparable"] for row in where(result.rows, part="scene") if row["comparable"] != "yes"]
     left = [NOT_COMPARED.get(reason, reason) for reason in why]
     reasons = ", ".join(f"{left.count(reason)} {reason}" for reason in dict.fromkeys(left)) or "none"
     return (
-        f"{settings['records']} records ({settings['source']}), their components one by one as they were recorded, "
-        f"times a factor. Drawn by a fixed seed ({result.provenance['seed']}) and the component’s name, {ranges}. "
-        "Intensity: "
-        "peak ground velocity times ωᵣ over g tan γ, evenly over the logarithm, as the mass of the base over the "
-        f"block’s; period [s] and damping of the bearings at {settings['x_max']:g} m, by one of the laws "
-        f"{', '.join(settings['laws'])}. The ranges were chosen once, by the outcomes of the model alone: {mix}.",
-        "The tuned variants of the engines in question run all of them; their defaults, and the tuned variants of "
-        f"other engines, {settings['records_of_others']} records, both components. Left out, of all engines alike: "
-        f"{reasons}. Near an outcome boundary: with a change of the scene by 10⁻⁴ the block ends otherwise in the "
-        "model. Components and configurations of a record are not independent: the interval is Wilson’s of the share "
-        "of runs, with the number of records in place of that of runs.",
-        "The common horizon is where a change of the model by 10⁻⁴ has moved its tilt by a hundredth of the "
-        "slenderness, the engine’s own where a change as large as its errors has. A peak too small to count is not "
-        "compared.",
+        f"{settings['records']} records ({settings['source']}). Each component is run by itself, as recorded, times a "
+        f"factor. Blocks and factors are drawn by a fixed seed ({result.provenance['seed']}) and the component’s name: "
+        f"{ranges}. Intensity is the peak ground velocity times ωᵣ over g tan γ. It and the base mass over the block’s "
+        "are drawn evenly over the logarithm. Period [s] and damping of the bearings are those at "
+        f"{settings['x_max']:g} m; the law is one of {', '.join(settings['laws'])}. The ranges were chosen once, by "
+        f"the outcomes of the model alone: {mix}.",
+        "Tuned subject engines run all records. Their defaults, and other tuned engines, run both components of "
+        f"{settings['records_of_others']} records. Left out of all engines: {reasons}. A scene is near an outcome "
+        "boundary if a change of it by 10⁻⁴ makes the block end otherwise in the model. Components and configurations "
+        "of a record are not independent, so Wilson’s interval counts records, not runs.",
+        "The common horizon is the time at which a change of the model by 10⁻⁴ has moved its tilt by a hundredth of "
+        "the slenderness. The engine’s own horizon is the same for a change as large as the engine’s errors. A peak "
+        "too small to count is not compared.",
     )

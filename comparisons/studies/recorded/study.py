@@ -128,7 +128,7 @@ def _by_law(bearings: Bearings, law: str) -> Bearings:
     return Bearings(law=law, count=bearings.count, ka=bearings.ka, kb=bearings.kb, yield_force=strength, x_max=X_MAX)
 
 
-# records for the tuned variants of the engines in question (None: all), and for the other variants
+# records for the tuned variants of subject engines (None: all), and for the other variants
 FULL, QUICK = (None, 20), (2, 1)
 TIME_LIMIT = 900.0  # s, of a run: motions of 90 s with a fixed step, on a machine that does other things besides
 NAMES = ("record", "component", "configuration")
@@ -149,19 +149,19 @@ def plan(request: Request, *, records: Folder = None) -> Plan:
         Folder of records, or a set of FEMA P695, in place of all of these.
     """
     try:
-        found, left = folder_motions(records or PREFIX)
+        folder, left = folder_motions(records or PREFIX)
     except SceneError as error:
         if records is not None:
             raise
         row = {"part": "absent", "engine": "analytic", "variant": "", "reason": f"{error.problem}; {error.remedy}"}
         return Computed({"quick": request.quick, "records": 0, "variants": []}, [row])
-    still = [name for name, motions in found.items() if not all(motion.peak for motion in motions)]
+    still = [name for name, motions in folder.items() if not all(motion.peak for motion in motions)]
     left += [f"{name}: left out, it does not move" for name in still]
     many, few = QUICK if request.quick else FULL
     names = [
-        str(name) for name in np.random.default_rng(SEED).permutation([name for name in found if name not in still])
+        str(name) for name in np.random.default_rng(SEED).permutation([name for name in folder if name not in still])
     ]
-    model = yield Batch(_model_cases({name: found[name] for name in names[:many]}), of_model, "analytic model")
+    model = yield Batch(_model_cases({name: folder[name] for name in names[:many]}), of_model, "analytic model")
     scenes = [(row.case.scene, {**row.case.tag, **row.values}) for row in model if not row.failed]
     known = [drawn for _, drawn in scenes]
     settings: dict[str, Any] = {
@@ -180,7 +180,9 @@ def plan(request: Request, *, records: Folder = None) -> Plan:
     }
     rows: list[dict[str, Any]] = [{"part": "scene", "engine": "analytic", "variant": "", **drawn} for drawn in known]
     answer = Computed(settings, rows, seed=SEED)
-    for engine, variant, on_all in [one for name in request.engines for one in _variants(name)]:
+    for engine, variant, on_all in [
+        variant_of_engine for name in request.engines for variant_of_engine in _variants(name)
+    ]:
         cases = [
             Case(scene, engine, variant, {"history": True}, {key: drawn[key] for key in (*NAMES, "horizon")})
             for scene, drawn in scenes
@@ -196,18 +198,18 @@ def plan(request: Request, *, records: Folder = None) -> Plan:
 
 
 def _variants(name: str) -> Iterator[tuple[str, str, bool]]:
-    """(engine, variant, whether on all records) of an engine: what is tuned, and the defaults of those in question."""
+    """(engine, variant, whether on all records) of an engine: tuned ones, and the defaults of subject engines."""
     engine = get_engine(name)
     for variant, spec in engine.variants.items():
         if spec.kind == "tuned" or (engine.subject and spec.kind == "defaults"):
             yield name, variant, engine.subject and spec.kind == "tuned"
 
 
-def _model_cases(found: dict[str, list[SampledMotion]]) -> list[Case]:
+def _model_cases(records: dict[str, list[SampledMotion]]) -> list[Case]:
     """Each component in each configuration, with what was drawn for it."""
     return [
         Case(scene, settings={"history": False}, tag=dict(zip(NAMES, (record, component, name), strict=True)) | drawn)
-        for record, motions in found.items()
+        for record, motions in records.items()
         for component, motion in zip("ab", motions, strict=False)
         for name in RANGES
         for scene, drawn in (drawn_scene(name, motion.label, motion),)
@@ -227,13 +229,19 @@ def of_engine(case: Case, response: Response) -> dict[str, Any]:
     horizon, and up to its own."""
     step = 2 * np.pi / case.scene.rocking_frequency / SAMPLES_PER_PERIOD
     model = simulate(case.scene, output_step=step)
-    own = solver_horizon(case.scene, response, model).horizon
+    own_horizon = solver_horizon(case.scene, response, model).horizon
     if model.outcome == "overturns":
-        own = min(own, model.unstable_time)
-    errors = [*_errors(case.scene, response, model, case.tag["horizon"]), *_errors(case.scene, response, model, own)]
+        own_horizon = min(own_horizon, model.unstable_time)
+    errors = [
+        *_errors(case.scene, response, model, case.tag["horizon"]),
+        *_errors(case.scene, response, model, own_horizon),
+    ]
     differences = compare(case.scene, response).differences
-    told = {"differences": [str(one) for one in differences], "quantities": [one.quantity for one in differences]}
-    return {**_kept(response), **told, "own_horizon": own, **dict(zip(ERRORS, errors, strict=True))}
+    compared = {
+        "differences": [str(difference) for difference in differences],
+        "quantities": [difference.quantity for difference in differences],
+    }
+    return {**_kept(response), **compared, "own_horizon": own_horizon, **dict(zip(ERRORS, errors, strict=True))}
 
 
 def _kept(response):
@@ -249,7 +257,7 @@ def _errors(scene: Scene, response: Response, model: Response, until: float) -> 
         ("tilt", LEAST_TILT * length),
         ("base_displacement", LEAST_DISPLACEMENT * scene.block.radius * length),
     ):
-        here, there = (_peak(one.history, name, until) for one in (response, model))
+        here, there = (_peak(run.history, name, until) for run in (response, model))
         yield here / there - 1 if there >= least else None
 
 
@@ -261,7 +269,7 @@ def _peak(history, name, until):
 
 def _run_row(row: Row, known: Iterable[dict[str, Any]]) -> dict[str, Any]:
     tag = {key: row.case.tag[key] for key in NAMES}
-    (model,) = (one for one in known if tag.items() <= one.items())
+    (model,) = (scene_row for scene_row in known if tag.items() <= scene_row.items())
     variant = get_engine(row.case.solver).variants[row.case.variant]
     return {
         "part": "run",
@@ -279,8 +287,8 @@ def _run_row(row: Row, known: Iterable[dict[str, Any]]) -> dict[str, Any]:
 
 def _mix(configuration, known):
     """How often each outcome comes in the model."""
-    found = [row["outcome"] for row in known if row["configuration"] == configuration]
-    return {outcome: found.count(outcome) for outcome in OUTCOMES if outcome in found}
+    outcomes = [row["outcome"] for row in known if row["configuration"] == configuration]
+    return {outcome: outcomes.count(outcome) for outcome in OUTCOMES if outcome in outcomes}
 
 
 def problems(result: Result) -> list[str]:

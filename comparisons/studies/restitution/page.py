@@ -151,16 +151,16 @@ def equation_8(result: Result, cells: Iterable[Row], ratings: Mapping[str, Row])
     """The base velocity jump against both forms, over slenderness and over the block's size."""
     forms = {"jump_8": "(8) corrected", "jump_8_printed": "(8) as printed"}
     defaults = result.settings["default_variants"]
-    own = [row for row in cells if defaults[row["engine"]] == row["variant"] and row["jump_8"] is not None]
+    main_cells = [row for row in cells if defaults[row["engine"]] == row["variant"] and row["jump_8"] is not None]
     sizes = [row for row in where(result.rows, experiment="size") if row["jump_8"] is not None]
     over_slenderness = [
         {"engine": engine, "slenderness": gamma, "error": rms([row[form] for row in rows]), "by": words}
         for form, words in forms.items()
-        for (engine, gamma), rows in grouped(own, "engine", "slenderness").items()
+        for (engine, gamma), rows in grouped(main_cells, "engine", "slenderness").items()
     ]
     over_size = [{**row, "error": row[form], "by": words} for form, words in forms.items() for row in sizes]
     trusted = [row for row in sizes if ratings[NAME.of(row)]["rating"] == "may be trusted"]
-    found = [percent(max((row[form] for row in trusted), default=None)) for form in forms]
+    errors = [percent(max((row[form] for row in trusted), default=None)) for form in forms]
     jump = Column("jump over eq. (8), less 1, rms [-]", "error")
     size = Column("size of the block R [m]", lambda row: row["value"] * result.settings["radius"])
     yield beside(
@@ -169,8 +169,8 @@ def equation_8(result: Result, cells: Iterable[Row], ratings: Mapping[str, Row])
             over_size,
             size,
             jump,
-            f"Over the block's size, in the variants that may be trusted, it is off by at most {found[0]} from the "
-            f"corrected form and by up to {found[1]} from the printed one, which has a factor R cos γ [m] too many. "
+            f"Over the block's size, in the variants that may be trusted, it is off by at most {errors[0]} from the "
+            f"corrected form and by up to {errors[1]} from the printed one, which has a factor R cos γ [m] too many. "
             "The engines know nothing of the equation.",
             by="by",
             log="xy",
@@ -194,8 +194,8 @@ CONTACT_ERROR = COLUMNS["error"]
 def contact(result: Result) -> Page:
     """The parts of the study's page that say why, as if they were a page of their own."""
     settings, rows = result.settings["why"], where(result.rows, part="why")
-    told = [row for row in rows if row["failure"] is None and "why_not" not in row]
-    ranked = sorted(told, key=lambda row: -abs(row["error"]))
+    analysed = [row for row in rows if row["failure"] is None and "why_not" not in row]
+    ranked = sorted(analysed, key=lambda row: -abs(row["error"]))
     wrong, best = [row for row in ranked if row["cause"]], where(ranked, best=True)
     sound = where(best, cause=None)
     columns = (
@@ -218,7 +218,7 @@ def contact(result: Result) -> Page:
             "solver or its settings.",
         ),
         first=(
-            _frames([row for row in where(told, ground=RIGID) if row["best"] or row["tier"] == "defaults"]),
+            _frames([row for row in where(analysed, ground=RIGID) if row["best"] or row["tier"] == "defaults"]),
             table(
                 "The first impact: those with a cause, and all of the engines’ main variants",
                 [*wrong, *sound],
@@ -279,7 +279,7 @@ def _frames(rows):
                 chart.dots(time[inside], values[inside], who, grey=grey, filled=filled, says=says, beyond=True)
         charts.append(chart)
     caption = (
-        "First impact on rigid ground. Coloured: main variants, and defaults of the engines in question. Grey: other "
+        "First impact on rigid ground. Coloured: main variants, and defaults of subject engines. Grey: other "
         "defaults. Open marks: defaults; arrowheads: beyond the frame. Frames 2 and 3 show only engines whose block "
         "position is read."
     )
@@ -320,61 +320,8 @@ def page(result: Result) -> Page:
             "root mean square over impacts. By swings, from the energy of the swings before and after, it includes "
             "what built-in damping dissipates in flight. Of both measures and grounds the worse one rates a variant.",
         ),
-        first=(
-            _over_slenderness(cells, result.settings["default_variants"]),
-            table(
-                "Restitution without slip, of both grounds the worse, least error by states first",
-                ranked,
-                NAME,
-                Column("rating", lambda row: row["rating"].removeprefix("is ").removeprefix("may be ")),
-                STATE,
-                WORST_STATE,
-                ERROR,
-                Column("order by swings in its accuracy parameter, by ground [-]", "orders"),
-                FAILED,
-                LOST,
-            ),
-        ),
-        more=(
-            Head("Slenderness and base mass"),
-            *_maps(cells),
-            table(
-                "All variants at their default level; assisted: the adapter applies eqs (7) and (8) itself",
-                ratings.values(),
-                NAME,
-                COLUMNS["tier"],
-                Column("rating", "rating"),
-                Column("default level", setting_of),
-            ),
-            table(
-                "Default levels, all slendernesses and bases together",
-                [{**row, "order": orders[NAME.of(row), row["ground"]]} for row in default],
-                NAME,
-                GROUND,
-                FAILED,
-                LOST,
-                MEAN,
-                ERROR,
-                WORST,
-                STATE,
-                JUMP,
-                COLUMNS["jump_8_printed"].called("against (8) as printed"),
-                LATE,
-                COLUMNS["order"],
-                CPU,
-            ),
-            *_on_bearings(result),
-            Head("Levels"),
-            *_refinement(levels),
-            Head(why.title, "why"),  # the report's first page leads to it
-            *why.lead,
-            *why.first,
-            *why.more,
-            Head("Causes, one at a time"),
-            *causes(result, variants),
-            Head("Eq. (8), corrected and as printed"),
-            *equation_8(result, cells, ratings),
-        ),
+        first=_summary(result, cells, ranked),
+        more=_details(result, variants, default, cells, levels, orders, ratings, why),
         how=(*_how(result.settings), *why.how),
         evidence=(
             *(
@@ -386,6 +333,69 @@ def page(result: Result) -> Page:
             ),
             *why.evidence,
         ),
+    )
+
+
+def _summary(result, cells, ranked):
+    """What stands on the report's first page, too."""
+    return (
+        _over_slenderness(cells, result.settings["default_variants"]),
+        table(
+            "Restitution without slip, of both grounds the worse, least error by states first",
+            ranked,
+            NAME,
+            Column("rating", lambda row: row["rating"].removeprefix("is ").removeprefix("may be ")),
+            STATE,
+            WORST_STATE,
+            ERROR,
+            Column("order by swings in its accuracy parameter, by ground [-]", "orders"),
+            FAILED,
+            LOST,
+        ),
+    )
+
+
+def _details(result, variants, default, cells, levels, orders, ratings, why):
+    """What stands on the study's own page alone."""
+    return (
+        Head("Slenderness and base mass"),
+        *_maps(cells),
+        table(
+            "All variants at their default level; assisted: the adapter applies eqs (7) and (8) itself",
+            ratings.values(),
+            NAME,
+            COLUMNS["tier"],
+            Column("rating", "rating"),
+            Column("default level", setting_of),
+        ),
+        table(
+            "Default levels, all slendernesses and bases together",
+            [{**row, "order": orders[NAME.of(row), row["ground"]]} for row in default],
+            NAME,
+            GROUND,
+            FAILED,
+            LOST,
+            MEAN,
+            ERROR,
+            WORST,
+            STATE,
+            JUMP,
+            COLUMNS["jump_8_printed"].called("against (8) as printed"),
+            LATE,
+            COLUMNS["order"],
+            CPU,
+        ),
+        *_on_bearings(result),
+        Head("Levels"),
+        *_refinement(levels),
+        Head(why.title, "why"),  # the report's first page leads to it
+        *why.lead,
+        *why.first,
+        *why.more,
+        Head("Causes, one at a time"),
+        *causes(result, variants),
+        Head("Eq. (8), corrected and as printed"),
+        *equation_8(result, cells, ratings),
     )
 
 
@@ -458,20 +468,20 @@ def _rated(variant, rows, orders):
 
     errors = {key: most(key) for key in ("rms", "worst", "rms_state", "worst_state", "jump_rms", "jump_worst")}
     counts = {key: sum(row[key] for row in rows) for key in ("runs", "failed", "impacts", "lost")}
-    found = {**errors, **counts}
+    summary = {**errors, **counts}
     return {
         **variant,
         "level": variant["default"],
-        **found,
+        **summary,
         "orders": [row["order"] for row in orders if row["order"] is not None],
-        "rating": trust(_error(found), _wrong(found)).removesuffix(" where a per cent does not matter"),
+        "rating": trust(_error(summary), _wrong(summary)).removesuffix(" where a per cent does not matter"),
     }
 
 
 def _title(ranked):
     good = [row for row in ranked if rating(_error(row), _wrong(row)) == "good"]
-    found = f"{len(good)} of {len(ranked)} engine variants reproduce restitution without slip to within {TRUSTED:g}"
-    return f"One impact: {found}"
+    answer = f"{len(good)} of {len(ranked)} engine variants reproduce restitution without slip to within {TRUSTED:g}"
+    return f"One impact: {answer}"
 
 
 def _over_slenderness(cells, defaults):
@@ -489,7 +499,7 @@ def _over_slenderness(cells, defaults):
         GAMMA,
         STATE,
         "Error of restitution by states, rms; on the base, for the worst base mass. Coloured: main variants, and "
-        "defaults of the engines in question. Open marks: defaults. Grey: other variants. No mark: all runs failed.",
+        "defaults of subject engines. Open marks: defaults. Grey: other variants. No mark: all runs failed.",
         panel=lambda row: f"{row['ground']}: restitution",
         by=lambda row: row["variant"] if grey(row) else row["tier"],
         grey=grey,
@@ -576,16 +586,17 @@ def _how(settings):
     return (
         f"Blocks of slenderness {min(gammas):g} to {max(gammas):g} rad, tilted to {min(starts):g} to {max(starts):g} "
         f"of it ({len(starts)} starts) and released, on rigid ground and on bases of {bases} times their mass that "
-        f"slide without friction; the first {settings['impacts']} impacts of every run. Restitution by swings is the "
-        "root of the ratio of a swing's energy after an impact to that before it, so that whatever takes energy "
-        "counts; the base velocity jump is compared with momentum by the run's own rates.",
-        f"On bearings: {grid}, each with each, the laws in turn; released at half of the slenderness, the ground at "
-        "rest or under one sine of half the uplift acceleration and three times the rocking frequency. Under these "
-        "forces the energy of a swing is not conserved: restitution is measured by states alone, "
-        "against eq. (7), and the base velocity jump is compared with momentum, eq. (8). An impact that a "
-        "run does not have counts as missed.",
-        f"Trusted: error of both grounds and by both measures at most {TRUSTED:g}, no failed run, no missed impact; "
-        f"usable: at most {USABLE:g}. Measured restitution of stone scatters by some per cent. The corners are set "
-        "plastic, non-slipping and planar, which are Housner's assumptions: agreement is verification of the engine, "
-        "not independent physics.",
+        f"slide without friction. The first {settings['impacts']} impacts of every run are measured. Restitution by "
+        "swings is the root of the ratio of a swing's energy after an impact to that before it, so that anything that "
+        "dissipates energy counts. The base velocity jump is compared with the one that conserves momentum at the "
+        "run's own rates.",
+        f"On bearings: {grid}, in all combinations; the bearing laws alternate. The block is released at half of the "
+        "slenderness, with the ground at rest or under one sine of half the uplift acceleration and three times the "
+        "rocking frequency. The bearings change the energy of a swing, so restitution is measured by states alone, "
+        "against eq. (7). The base velocity jump is compared with momentum, eq. (8). An impact that a run does not "
+        "have counts as missed.",
+        f"Trusted: an error of at most {TRUSTED:g} on both grounds by both measures, no failed run and no missed "
+        f"impact. Usable: at most {USABLE:g}. Measured restitution of stone scatters by some per cent. Corners are "
+        "plastic, do not slip, and move in a plane: these are Housner's assumptions, so agreement verifies the engine "
+        "and is no independent physics.",
     )

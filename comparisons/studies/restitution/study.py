@@ -367,9 +367,9 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
 
 def _why(run):
     """The row of an impact that was taken apart."""
-    found = {} if run.failed else run.values
-    own = {"part": "why", "engine": run.case.solver, "variant": run.case.variant}
-    return {**own, **run.case.tag, "failure": run.failure, **found}
+    values = {} if run.failed else run.values
+    identity = {"part": "why", "engine": run.case.solver, "variant": run.case.variant}
+    return {**identity, **run.case.tag, "failure": run.failure, **values}
 
 
 def _grouped(runs, part, *tags):
@@ -399,7 +399,9 @@ def _settings(grid, engines):
         "engines": engines,
         "variants": [variant_settings(engine, variant) for engine, variant, _ in variants_of(engines)],
         "default_variants": {engine: get_engine(engine).default_variant for engine in engines},
-        "experiments": [_named(one[1:4], "setting") | {"experiment": one[0]} for one in experiments_of(engines)],
+        "experiments": [
+            _named(experiment[1:4], "setting") | {"experiment": experiment[0]} for experiment in experiments_of(engines)
+        ],
         "experiment_slenderness": EXPERIMENT_SLENDERNESS,
         "why": {"slenderness": EXPERIMENT_SLENDERNESS, "start": IMPACT_START, "least": LEAST, "causes": CAUSES},
         "bearings": dict(zip(("slendernesses", "ratios", "periods"), grid.bearings, strict=True)),
@@ -426,8 +428,8 @@ def _sound(runs):
 
 def _errors(runs, name):
     """Errors of all impacts of some runs, those that are known."""
-    found = np.array([error for run in runs for error in run.values["errors"].get(name, ())], dtype=float)
-    return found[np.isfinite(found)]
+    errors = np.array([error for run in runs for error in run.values["errors"].get(name, ())], dtype=float)
+    return errors[np.isfinite(errors)]
 
 
 def _row(part, key, runs):
@@ -471,18 +473,18 @@ def _summaries(cells, engines, grid):
     for engine, variant, kind in variants_of(engines):
         for ground in GROUNDS:
             key = {"engine": engine, "variant": variant, "ground": ground}
-            own = {
+            runs_at = {
                 (level, gamma, ratio): runs
                 for (*pair, level, ratio, gamma), runs in cells.items()
                 if pair == [engine, variant] and (ratio is None) == (GROUNDS[ground] is None)
             }
-            everywhere = [run for (level, *_), runs in own.items() if level == kind.default for run in runs]
+            everywhere = [run for (level, *_), runs in runs_at.items() if level == kind.default for run in runs]
             if everywhere:
                 yield _row("summary", {"scope": "all", **key, "level": kind.default}, everywhere)
             points = []
             for level in sorted(kind.levels):
-                runs = [run for (one, *place), runs in own.items() for run in runs
-                        if one == level and tuple(place) in grid.refined]  # fmt: skip
+                runs = [run for (run_level, *place), runs in runs_at.items() for run in runs
+                        if run_level == level and tuple(place) in grid.refined]  # fmt: skip
                 if runs:
                     points.append(_row("summary", {"scope": "levels", **key, "level": level}, runs))
             yield from points
@@ -499,8 +501,8 @@ def _on_bearings(runs):
         for factor in FACTORS:
             for run in members:
                 parted.setdefault((factor, run.case.tag[factor]), []).append(run)
-        for (factor, value), some in parted.items():
-            row = _row("bearings", {"engine": engine, "variant": variant, "factor": factor, "of": value}, some)
+        for (factor, value), alike in parted.items():
+            row = _row("bearings", {"engine": engine, "variant": variant, "factor": factor, "of": value}, alike)
             yield {key: row[key] for key in BEARING_COLUMNS}
 
 

@@ -68,31 +68,36 @@ def page(result: Result) -> Page:
             ),
             *tables[:1],
         ),
-        more=(
-            *tables[1:],
-            Head("Vertical motion"),
-            shades(
-                [row for row in vertical if row["ratio"]],
-                RATIO,
-                COLUMNS["faster"].called("times as fast"),
-                Column(SHARE.head, SHARE.value, digits=1, percent=True),
-                "Share of outcomes that the vertical motion changes, over V/H, peak vertical over peak horizontal "
-                "acceleration, and over how many times as fast it is.",
-                bounds=BOUNDS,
-                panel="scene",
-            ),
-            table(
-                "Vertical motion: outcomes changed, and runs in which N reaches zero, where the model ends",
-                vertical,
-                SCENE,
-                RATIO,
-                FASTER,
-                SHARE,
-                Column("N reaches zero", lambda row: row["lifts_off"] / row["runs"], percent=True),
-                RUNS,
-            ),
-        ),
+        more=_details(vertical, tables),
         how=_how(result.settings),
+    )
+
+
+def _details(vertical, tables):
+    """What stands on the study's own page alone."""
+    return (
+        *tables[1:],
+        Head("Vertical motion"),
+        shades(
+            [row for row in vertical if row["ratio"]],
+            RATIO,
+            COLUMNS["faster"].called("times as fast"),
+            Column(SHARE.head, SHARE.value, digits=1, percent=True),
+            "Share of outcomes that the vertical motion changes, over V/H, peak vertical over peak horizontal "
+            "acceleration, and over how many times as fast it is.",
+            bounds=BOUNDS,
+            panel="scene",
+        ),
+        table(
+            "Vertical motion: outcomes changed, and runs in which N reaches zero, where the model ends",
+            vertical,
+            SCENE,
+            RATIO,
+            FASTER,
+            SHARE,
+            Column("N reaches zero", lambda row: row["lifts_off"] / row["runs"], percent=True),
+            RUNS,
+        ),
     )
 
 

@@ -162,8 +162,8 @@ def plan(request: Request, scenes: dict[str, Any] | None = None, motions: tuple[
         changed = yield Batch(_changed(bases), measure, f"{name}: changes")
         run = yield Batch(_by_engines(bases, request.engines, counts), measure, f"{name}: engines", TIME_LIMIT)
         raised = yield Batch(_raised(bases, max(count // 3, 1)), measure, f"{name}: vertical motions")
-        found = [*_change_rows(changed, run), *_vertical_rows(_as_it_is(changed), raised)]
-        rows += [{"scene": name, **row} for row in found]
+        scene_rows = [*_change_rows(changed, run), *_vertical_rows(_as_it_is(changed), raised)]
+        rows += [{"scene": name, **row} for row in scene_rows]
         described[name] = {
             "scene": shipped,
             "slendernesses": list(slendernesses),
@@ -293,10 +293,10 @@ def _change_rows(changed, run):
                 ("outcomes_changed", "to_overturning", "low", "high", "p_value", "tilt", "displacement")
             )
             continue
-        table, found = _outcomes(pairs)
+        table, outcomes = _outcomes(pairs)
         upright = [(a, b) for a, b in pairs if not a["overturns"] and not b["overturns"]]
         moved = {peak: _moved(upright, peak) for peak in ("tilt", "displacement")}
-        yield row | found | {"to_overturning": table.only_b, "p_value": mcnemar(table), **moved}
+        yield row | outcomes | {"to_overturning": table.only_b, "p_value": mcnemar(table), **moved}
 
 
 def _moved(pairs, peak):
@@ -308,9 +308,9 @@ def _moved(pairs, peak):
 def _vertical_rows(usual, raised):
     """A row without vertical motion, then one for every (faster, ratio)."""
     groups = _paired(usual, raised, lambda row: (row.case.tag["faster"], row.case.tag["ratio"]))
-    found = {key: list(filter(None, members)) for key, members in groups.items()}
-    without = [(before, before) for before, _ in next(filter(None, found.values()), [])]
-    for (faster, ratio), pairs in {(1, 0.0): without, **found}.items():
+    sound = {key: list(filter(None, members)) for key, members in groups.items()}
+    without = [(before, before) for before, _ in next(filter(None, sound.values()), [])]
+    for (faster, ratio), pairs in {(1, 0.0): without, **sound}.items():
         if pairs:
             yield {
                 "part": "vertical",

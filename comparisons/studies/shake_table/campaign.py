@@ -38,7 +38,7 @@ from ...ensembles import peak_velocity
 
 GRID = 61  # slendernesses of a grid
 ALL = "all"  # specimens together
-FEWEST = 5  # tests of a sum that is told, see `told`
+FEWEST = 5  # tests of a sum that is disclosed, see `disclosed`
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,7 +105,7 @@ def flag(file: str | PathLike[str], number: int, column: str, row: dict) -> bool
     return float(value) == 1
 
 
-def told(sums: dict[str, Any], *sizes: int) -> dict[str, Any]:
+def disclosed(sums: dict[str, Any], *sizes: int) -> dict[str, Any]:
     """The one rule of what is stored or shown of a campaign, whose data may not be passed on: sums over at least
     `FEWEST` tests.
 
@@ -193,7 +193,7 @@ UPRIGHT = np.radians(10.0)  # stands in the scene until a slenderness is fitted:
 
 def specimens() -> tuple[Specimen, ...]:
     """The two boulders as planar blocks."""
-    found = []
+    blocks = []
     for name, (mass, height, footprints) in BOULDERS.items():
         radius = float(height / np.cos(UPRIGHT))
         corner = INERTIA * DENSITY + mass * radius**2
@@ -203,8 +203,8 @@ def specimens() -> tuple[Specimen, ...]:
             f"slenderness by the mesh: {angles} deg, the footprint being all within 2, 5 or 10 mm of the lowest point"
         )
         low, high = np.radians(SPAN).tolist()
-        found.append(Specimen(name, Scene(block=block, name=name), (low, high), note))
-    return tuple(found)
+        blocks.append(Specimen(name, Scene(block=block, name=name), (low, high), note))
+    return tuple(blocks)
 
 
 def _place_in(folder: Path) -> Path | None:
@@ -226,14 +226,16 @@ def _read_published(place: Path, every: int, progress: Callable[[int, int], None
                 f"{place / RESULTS}, row {at}, {NUMBER} = {number!r}: {RECORDS} has no such test; fetch both again"
             )
         measured = tuple(flag(place / RESULTS, at, MEASURED.format(k), row) for k in range(1, len(names) + 1))
-        said = tuple({word: flag(place / RESULTS, at, title, row) for word, title in one.items()} for one in authors)
+        authors_answers = tuple(
+            {word: flag(place / RESULTS, at, title, row) for word, title in titles.items()} for titles in authors
+        )
         line, record = records[number]
         stated = {key: float(record[title]) for title, key in STATED.items() if type(record.get(title)) in (int, float)}
         if zero := next((title for title, key in STATED.items() if not stated.get(key, 1.0) > 0), None):
             raise SettingError(
                 f"{place / RECORDS}, row {line}, {zero} = {record[zero]!r}: not above 0; fetch the file again"
             )
-        test = TableTest(str(number), record_of(record[RECORD]), measured, None, said, stated)
+        test = TableTest(str(number), record_of(record[RECORD]), measured, None, authors_answers, stated)
         if (file := _file(place, number)) is None:
             missing.append(test)
         else:
@@ -260,9 +262,9 @@ def motion_of(file: Path) -> SampledMotion:
     return motion
 
 
-def record_of(said: Any) -> str:
+def record_of(written: Any) -> str:
     """A record's name without the marks about it: both components of a station's record are one record."""
-    words = re.sub(r"x?\.xlsx$|\.AT2$", "", str(said).strip(" '\""), flags=re.I)
+    words = re.sub(r"x?\.xlsx$|\.AT2$", "", str(written).strip(" '\""), flags=re.I)
     number = re.match(r"RSN(\d+)", words, re.I)
     return f"RSN{number[1]}" if number else words
 
@@ -275,7 +277,7 @@ def _file(place, number):
 def _settings(results: Sequence[tuple[int, dict]], specimen: int) -> dict[str, str]:
     """{setting of the authors' discrete elements: title of its column}."""
     pattern = re.compile(rf"Specimen {specimen}-Numerical (.+)")
-    return {found[1]: title for title in results[0][1] if (found := pattern.fullmatch(title))} if results else {}
+    return {match[1]: title for title in results[0][1] if (match := pattern.fullmatch(title))} if results else {}
 
 
 def _table(path: Path, first: str, sheet: str | None = None) -> list[tuple[int, dict]]:
@@ -343,27 +345,27 @@ def read_campaign(
     if not place.is_dir():
         raise SettingError(f"--data {folder}: no such folder; give the one that holds the tests")
     if (published := _place_in(place)) is not None:
-        found, listed = _read_published(published, every, progress), published / RECORDS
+        campaign, listed = _read_published(published, every, progress), published / RECORDS
     elif (place / TESTS).is_file():
-        found, listed = _own(place, every, progress), place / TESTS
+        campaign, listed = _own(place, every, progress), place / TESTS
     else:
         raise SettingError(
             f"--data {folder}: holds neither {RESULTS} (as published) nor {TESTS} (your own tests); "
             f"give such a folder: {WHERE}"
         )
-    if not found.tests:
+    if not campaign.tests:
         raise SettingError(f"--data {folder}: no test has a motion; fetch them again, or give another folder")
-    if len({test.record for test in found.tests}) == 1:
-        test = found.tests[0]
+    if len({test.record for test in campaign.tests}) == 1:
+        test = campaign.tests[0]
         raise SettingError(
-            f"{listed}, record = {test.record!r}: no test is under another ({len(found.tests)} in all), and each "
+            f"{listed}, record = {test.record!r}: no test is under another ({len(campaign.tests)} in all), and each "
             "record is held out in turn; add tests under a second record"
         )
-    if len(found.tests) < FEWEST:
+    if len(campaign.tests) < FEWEST:
         raise SettingError(
-            f"{listed}: {len(found.tests)} tests, and sums over fewer than {FEWEST} are not told; add tests"
+            f"{listed}: {len(campaign.tests)} tests, and sums over fewer than {FEWEST} are not disclosed; add tests"
         )
-    return found
+    return campaign
 
 
 def _own(place, every, progress):

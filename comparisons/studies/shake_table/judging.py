@@ -108,30 +108,32 @@ def forecasts(
 
         return fit
 
-    found = [Forecast(MODEL, outcomes.spread), Forecast(ONE, outcomes.alone, sure=True)]
-    found.append(Forecast(FREQUENT, lambda chosen: np.full(len(measured), measured[chosen].mean() >= HALF), sure=True))
+    all_forecasts = [Forecast(MODEL, outcomes.spread), Forecast(ONE, outcomes.alone, sure=True)]
+    all_forecasts.append(
+        Forecast(FREQUENT, lambda chosen: np.full(len(measured), measured[chosen].mean() >= HALF), sure=True)
+    )
     for name, values in measures.items():
-        found.append(Forecast(f"{name}, threshold", _above(values, measured), sure=True))
-        found.append(Forecast(f"{name}, logistic", _logistic(logs[name], measured)))
-    found += [Forecast("PGA and PGV, logistic", _logistic(two, measured))]
-    found += [Forecast(CURVE, _logistic(bent(two), measured))]
-    found += [Forecast(BOTH, joined(logs["PGV"])), Forecast(BEYOND, joined(bent(two)))]
+        all_forecasts.append(Forecast(f"{name}, threshold", _above(values, measured), sure=True))
+        all_forecasts.append(Forecast(f"{name}, logistic", _logistic(logs[name], measured)))
+    all_forecasts += [Forecast("PGA and PGV, logistic", _logistic(two, measured))]
+    all_forecasts += [Forecast(CURVE, _logistic(bent(two), measured))]
+    all_forecasts += [Forecast(BOTH, joined(logs["PGV"])), Forecast(BEYOND, joined(bent(two)))]
     if other is not None:
-        found.append(Forecast(OTHER, _logistic(other[:, None].astype(float), measured)))
+        all_forecasts.append(Forecast(OTHER, _logistic(other[:, None].astype(float), measured)))
     if authors:
         settings = np.array(list(authors.values()))
-        found.append(Forecast(AUTHORS, lambda chosen: _most_often(settings, measured, chosen), sure=True))
-    return found
+        all_forecasts.append(Forecast(AUTHORS, lambda chosen: _most_often(settings, measured, chosen), sure=True))
+    return all_forecasts
 
 
 def of_each_record(values: np.ndarray, measured: np.ndarray, records: Sequence[str]) -> np.ndarray:
     """0 or 1 by a threshold of a measure for each record, fitted to its own tests: how far the outcome under a record
     is one of its scale alone."""
-    names, found = np.array(records), np.zeros(len(measured))
+    names, answers = np.array(records), np.zeros(len(measured))
     for name in dict.fromkeys(records):
-        own = names == name
-        found[own] = values[own] > threshold(values[own], measured[own])
-    return found
+        under_record = names == name
+        answers[under_record] = values[under_record] > threshold(values[under_record], measured[under_record])
+    return answers
 
 
 def _above(values, measured):
@@ -160,7 +162,7 @@ def score(probability: np.ndarray, measured: np.ndarray, records: Sequence[str],
     its interval, which an answer that is sure of itself has not."""
     hit = right(probability, measured)
     low, high = clustered(hit, records)
-    found: dict[str, Any] = {
+    counts: dict[str, Any] = {
         "size": len(hit),
         "right": int(hit.sum()),
         "low": low,
@@ -170,22 +172,22 @@ def score(probability: np.ndarray, measured: np.ndarray, records: Sequence[str],
     }
     errors = brier(probability, measured)
     known = None if sure else (float(errors.mean()), clustered(errors, records))
-    return {**found, "brier": known and known[0], "brier_interval": known and known[1]}
+    return {**counts, "brier": known and known[0], "brier_interval": known and known[1]}
 
 
-def paired(one: np.ndarray, other: np.ndarray, measured: np.ndarray, records: Sequence[str]) -> dict[str, Any]:
+def paired(first: np.ndarray, second: np.ndarray, measured: np.ndarray, records: Sequence[str]) -> dict[str, Any]:
     """How much smaller the Brier score of one is than the other's, and in how many more tests it is right, each with
     its interval by record; and who is right where they disagree."""
-    less = brier(other, measured) - brier(one, measured)
-    more = right(one, measured).astype(int) - right(other, measured)
-    apart = (one >= HALF) != (other >= HALF)
+    less = brier(second, measured) - brier(first, measured)
+    more = right(first, measured).astype(int) - right(second, measured)
+    apart = (first >= HALF) != (second >= HALF)
     return {
         "difference": float(less.mean()),
         "interval": clustered(less, records),
         "more_right": int(more.sum()),
         "more_interval": [len(more) * end for end in clustered(more, records)],
         "disagree": int(apart.sum()),
-        "right": int(right(one, measured)[apart].sum()),
+        "right": int(right(first, measured)[apart].sum()),
     }
 
 
@@ -206,21 +208,21 @@ def rows_of(
     others = [outcomes_of(tests, other) for other in range(len(campaign.specimens)) if other != k]
     settings = list(tests[0].authors[k]) if tests[0].authors else []
     authors = {name: np.array([test.authors[k][name] for test in tests]) for name in settings}
-    found, rows = {}, []
+    probabilities, rows = {}, []
     for forecast in forecasts(main, measures, others[0] if others else None, authors):
         ways = (BY_RECORD, *((BY_HALVES,) if forecast.name in TWICE else ()))
         for how in (*ways, *((IN_SAMPLE,) if forecast.name in (AUTHORS, ONE) else ())):
             probability = judged(forecast, records, how)
-            found.setdefault(forecast.name, probability)
-            said = score(probability, measured, records, forecast.sure)
-            rows.append({"part": "score", **shared, "forecast": forecast.name, "judged": how, **said})
-    said = score(of_each_record(measures["PGA"], measured, records), measured, records, sure=True)
-    rows.append({"part": "score", **shared, "forecast": EACH, "judged": IN_SAMPLE, **said})
-    rows += [_fit(shared, name, one, records) for name, one in zip(names, kinds, strict=True)]
-    return found, rows
+            probabilities.setdefault(forecast.name, probability)
+            scores = score(probability, measured, records, forecast.sure)
+            rows.append({"part": "score", **shared, "forecast": forecast.name, "judged": how, **scores})
+    scores = score(of_each_record(measures["PGA"], measured, records), measured, records, sure=True)
+    rows.append({"part": "score", **shared, "forecast": EACH, "judged": IN_SAMPLE, **scores})
+    rows += [_fit(shared, name, kind, records) for name, kind in zip(names, kinds, strict=True)]
+    return probabilities, rows
 
 
-def pairs_of(campaign: Campaign, found: Sequence[dict[str, np.ndarray]]) -> list[dict[str, Any]]:
+def pairs_of(campaign: Campaign, probabilities: Sequence[dict[str, np.ndarray]]) -> list[dict[str, Any]]:
     """Rows of forecasts in pairs, of each specimen and of all together; under one record they may err alike.
 
     found: probabilities of each forecast, by specimen.
@@ -233,9 +235,9 @@ def pairs_of(campaign: Campaign, found: Sequence[dict[str, np.ndarray]]) -> list
     for members, name in groups:
         measured = np.concatenate([outcomes_of(campaign.tests, k) for k in members])
         for pair in PAIRS:
-            first, other = (np.concatenate([found[k][which] for k in members]) for which in pair)
-            said = paired(first, other, measured, records * len(members))
-            rows.append({**shared, "specimen": name, "forecast": pair[0], "beside": pair[1], **said})
+            first, other = (np.concatenate([probabilities[k][which] for k in members]) for which in pair)
+            comparison = paired(first, other, measured, records * len(members))
+            rows.append({**shared, "specimen": name, "forecast": pair[0], "beside": pair[1], **comparison})
     return rows
 
 
@@ -245,8 +247,8 @@ def _fit(shared, name, outcomes, records):
     mean, spread = outcomes.settings[outcomes.fitted(whole)]
     alone = outcomes.best(whole)
     probability = judged(Forecast(MODEL, outcomes.spread), records)
-    said = score(probability, outcomes.measured, records)
-    kept = {key: said[key] for key in ("size", "right", "brier", "brier_interval", "misses", "false_alarms")}
+    scores = score(probability, outcomes.measured, records)
+    kept = {key: scores[key] for key in ("size", "right", "brier", "brier_interval", "misses", "false_alarms")}
     best = outcomes.model[:, alone]
     beside = [place for place in (alone - 1, alone + 1) if 0 <= place < len(outcomes.slendernesses)]
     return {

@@ -23,7 +23,7 @@ def agreement(specimens: Sequence[dict[str, Any]], right: dict[str, np.ndarray])
     """Right answers over the slenderness, a line for each restitution; right: {kind of model: by specimen and
     slenderness}."""
     looks = {name: curve(place) for place, name in enumerate(right)}
-    low, high = (float(find([find(one) for one in right.values()])) for find in (np.min, np.max))
+    low, high = (float(find([find(counts) for counts in right.values()])) for find in (np.min, np.max))
     charts = []
     for k, specimen in enumerate(specimens):
         angles = np.degrees(specimen["grid"])
@@ -61,11 +61,11 @@ def sentence(result: Result, engines: Sequence[dict[str, Any]]) -> str:
     words = [f"The model is wrong in {wrong} of {len(result.settings['tests'])} tests ({names})."]
     every = where(engines, specimen=ALL) or engines
     if tuned := where(every, tier="tuned"):
-        said = [f"{apart(row)} of {row['size']} ({row['engine']})" for row in tuned]
-        fits = [one for row in where(result.rows, part="fit", change=AS_IT_IS) for one in row["neighbours"]]
+        counts = [f"{apart(row)} of {row['size']} ({row['engine']})" for row in tuned]
+        fits = [count for row in where(result.rows, part="fit", change=AS_IT_IS) for count in row["neighbours"]]
         first, second, *_ = result.settings["specimens"][0]["grid"]
         words.append(
-            f"Tuned engines differ from the model in {listed(said)} runs. A slenderness "
+            f"Tuned engines differ from the model in {listed(counts)} runs. A slenderness "
             f"{number(math.degrees(second - first), 1)} deg smaller or larger changes {min(fits)} to {max(fits)} of "
             f"{len(result.settings['tests'])} outcomes of the model itself."
         )
@@ -81,27 +81,27 @@ def sentence(result: Result, engines: Sequence[dict[str, Any]]) -> str:
 def at_a_glance(result: Result) -> str:
     """How often the model is right about real blocks, beside what is simpler and, fitted alike, beside engines; ""
     where it was not judged."""
-    specimens = [one["name"] for one in result.settings["specimens"]]
+    specimens = [specimen["name"] for specimen in result.settings["specimens"]]
     held = where(result.rows, part="score", judged=BY_RECORD)
     if not (model := where(held, forecast=MODEL)):
         return ""
     rivals = {CURVE: "The curve is right", THRESHOLD: "one threshold of PGV", FREQUENT: FREQUENT}
-    told = [f"{words} in {_right(where(held, forecast=name))}" for name, words in rivals.items()]
+    rivals_right = [f"{words} in {_right(where(held, forecast=name))}" for name, words in rivals.items()]
     alike = where(result.rows, part="score", judged=IN_SAMPLE, forecast=ONE)
     engines = grouped(where(result.rows, part="engine", specimen=set(specimens)), "engine", "variant").values()
-    fitted = [f"{_right(some, False)} ({name_of(some[0])})" for some in engines]
+    fitted = [f"{_right(rows, False)} ({name_of(rows[0])})" for rows in engines]
     words = f"on a shake table the model is right in {_right(model)} of {model[0]['size']} tests ({listed(specimens)})."
     if pairs := where(result.rows, part="paired", forecast=MODEL, beside=CURVE):
         words += f" {_beside((where(pairs, specimen=ALL) or pairs)[-1], sum(row['size'] for row in model))}"
     return (
-        f"{words} {listed(told)}. All of these are held out by record. Engines go by another rule, one slenderness "
-        f"fitted to all tests. By this rule {listed([f'{_right(alike, False)} (the model)', *fitted])} are right. "
-        "Restitution was not measured."
+        f"{words} {listed(rivals_right)}. All of these are held out by record. Engines go by another rule, one "
+        f"slenderness fitted to all tests. By this rule {listed([f'{_right(alike, False)} (the model)', *fitted])} are "
+        "right. Restitution was not measured."
     )
 
 
 def _right(rows, shares=True):
-    """Right answers of each specimen, with their shares; "–" where they are not told."""
+    """Right answers of each specimen, with their shares; "–" where they are not disclosed."""
     right = listed(["–" if row["right"] is None else str(row["right"]) for row in rows])
     return f"{right} ({listed([percent(row['right'] / row['size']) for row in rows])})" if shares else right
 
@@ -151,11 +151,11 @@ def name_of(row: dict[str, Any]) -> str:
 def bounds(result: Result) -> str:
     """What a model can be asked for at most."""
     settings = result.settings
-    names = listed([one["name"] for one in settings["specimens"]])
+    names = listed([specimen["name"] for specimen in settings["specimens"]])
     count = len(settings["tests"])
     words = (
         f"{settings['campaign'].capitalize()}: {count} tests under {settings['records']} records at many scales; "
-        f"{listed([str(one) for one in settings['overturned']])} overturned ({names})."
+        f"{listed([str(specimen) for specimen in settings['overturned']])} overturned ({names})."
     )
     each = where(result.rows, part="score", forecast=EACH)
     model = where(result.rows, part="score", forecast=MODEL, judged=BY_RECORD)
@@ -163,10 +163,11 @@ def bounds(result: Result) -> str:
         " A PGA threshold for each record, fitted to the same tests, is right in "
         f"{listed([str(row['right']) for row in each])}"
     )
-    own = all(
-        2 * (one["size"] - one["right"]) < row["size"] - row["right"] for one, row in zip(each, model, strict=True)
+    not_by_chance = all(
+        2 * (specimen["size"] - specimen["right"]) < row["size"] - row["right"]
+        for specimen, row in zip(each, model, strict=True)
     )
-    words += ". Most of the model’s errors are therefore its own, not chance." if own else "."
+    words += ". Most of the model’s errors are therefore its own, not chance." if not_by_chance else "."
     if settings["agree"] is not None:
         words += f" The two blocks differ in shape and have the same outcome in {settings['agree']}."
     return words + (
@@ -188,7 +189,7 @@ def not_shown(result: Result) -> tuple[str, str]:
 
     runs = len(result.settings["tests"]) * len(result.settings["specimens"])
     boulders = bool(result.settings["cite"])  # the published campaign; of one's own nothing more is known
-    asked = " with five slopes, which was added when a referee asked for it" if boulders else " with five slopes"
+    slopes = " with five slopes, which was added when a referee asked for it" if boulders else " with five slopes"
     stone = (
         ", of one kind of stone, on one axis. The model’s block is symmetric; a boulder has another angle to either "
         "side, stands on three points, may twist, walk and wear. The spread stands for all of this. It was brought in "
@@ -197,7 +198,7 @@ def not_shown(result: Result) -> tuple[str, str]:
     granite = " Restitution and friction of granite on the table were not measured." if boulders else ""
     return (
         f"What this shows: of {runs} outcomes the model is right in {more_right(pairs[last, THRESHOLD])} more than a "
-        f"threshold of PGV, and in {more_right(pairs[last, CURVE])} more than a curve in PGA and PGV{asked}. That "
+        f"threshold of PGV, and in {more_right(pairs[last, CURVE])} more than a curve in PGA and PGV{slopes}. That "
         "curve holds for these blocks alone. Model and curve joined are compared with the curve above.",
         f"What it does not show: it is one campaign{stone if boulders else '.'} Outcomes do not tell slenderness and "
         "restitution apart: the fitted slenderness stands for what the model lacks. Intervals go by record, hold the "
@@ -209,14 +210,14 @@ def not_shown(result: Result) -> tuple[str, str]:
 
 def _left_out(settings):
     """Of the tests without a motion: whether they are like the others."""
-    missing, names = settings["missing"], listed([one["name"] for one in settings["specimens"]])
+    missing, names = settings["missing"], listed([item["name"] for item in settings["specimens"]])
     if not missing["tests"]:
         return ""
     words = f"{missing['tests']} tests have no motion at hand and are left out"
     if missing["overturned"]:
         here = len(settings["tests"])
-        shares = [percent(one / missing["tests"]) for one in missing["overturned"]]
-        others = [percent(one / here) for one in settings["overturned"]]
+        shares = [percent(item / missing["tests"]) for item in missing["overturned"]]
+        others = [percent(item / here) for item in settings["overturned"]]
         words += f": {listed(shares)} of them overturned ({names}), of the others {listed(others)}"
     if missing["ratios"]:
         words += (
@@ -229,8 +230,9 @@ def how(result: Result) -> tuple[str, ...]:
     s = result.settings
     steps = listed([f"{round(1 / step):g} Hz" for step in s["steps"]])
     blocks = "; ".join(
-        f"{one['name']}: centre of mass {one['height']:.3g} m up, radius of gyration {one['gyration']:.3g} m"
-        for one in s["specimens"]
+        f"{specimen['name']}: centre of mass {specimen['height']:.3g} m up, "
+        f"radius of gyration {specimen['gyration']:.3g} m"
+        for specimen in s["specimens"]
     )
     resampled = s["published"] and any(abs(1 / step / s["published"] - 1) > 1e-3 for step in s["steps"])
     published = f" (published at {s['published']:g} Hz; resampled by whoever made these files)" if resampled else ""
@@ -241,8 +243,8 @@ def how(result: Result) -> tuple[str, ...]:
         "other test” may have a record on both sides."
     )
     runs = (
-        f"Engines in question run all tests, the others one in {s['others']}, at the slenderness that is right most "
-        "often in the model. A failed run is not right, and differs."
+        f"Subject engines run all tests, other engines one in {s['others']}, at the slenderness that is right most "
+        "often in the model. A failed run counts as wrong and as differing."
     )
     if not s["cite"]:
         return (
@@ -253,11 +255,11 @@ def how(result: Result) -> tuple[str, ...]:
     return (
         f"Data: {s['cite']}. Nothing of them is stored or shown but sums over at least five tests.",
         f"Motions: the measured acceleration of the table at {steps}{published}, less the median of the first second. "
-        f"{rigid} Moment of inertia: of the two horizontal axes of the meshes the mean. {speed}.",
-        f"{intervals} PGA and PGV: as the campaign states them of what the table was to play; “of the table”: of its "
-        f"measured acceleration above {CORNER} Hz. The other specimen’s outcome is one of the same shaking. The "
-        "setting of the authors’ discrete elements is chosen in the same way; none was fitted to these outcomes as "
-        "the slenderness is.",
+        f"{rigid} The moment of inertia is the mean about the two horizontal axes of the mesh. {speed}.",
+        f"{intervals} PGA and PGV are those the campaign states for the motion sent to the table; “of the table” are "
+        f"those of its measured acceleration above {CORNER} Hz. The other specimen’s outcome is that under the same "
+        "motion. The setting of the authors’ discrete elements is chosen in the same way; none was fitted to these "
+        "outcomes as the slenderness is.",
         runs,
     )
 
@@ -311,7 +313,9 @@ def page(result: Result) -> Page:
 def _by_specimen(caption: str, rows: Sequence[dict[str, Any]], names: Sequence[Column], *columns: Column) -> Table:
     """A line for rows that differ in their specimen alone, with these columns of each specimen."""
     specimens = list(dict.fromkeys(row["specimen"] for row in rows))
-    lines = [{row["specimen"]: row for row in some} for some in grouped(rows, *(name.text for name in names)).values()]
+    lines = [
+        {row["specimen"]: row for row in members} for members in grouped(rows, *(name.text for name in names)).values()
+    ]
 
     def of_first(column):
         return Column(column.head, lambda line: column.text(next(iter(line.values()))))
@@ -332,7 +336,9 @@ def _scores(caption, rows):
 
 
 def _pairs(result):
-    rows = [row for some in grouped(where(result.rows, part="paired"), "forecast", "beside").values() for row in some]
+    rows = [
+        row for members in grouped(where(result.rows, part="paired"), "forecast", "beside").values() for row in members
+    ]
     return table(
         "Paired: how many more answers of the first are right, and by how much its Brier score is smaller (a yes or no "
         "is a probability of 1 or 0), with 95 % intervals by record; and who is right where the two disagree",
@@ -355,8 +361,8 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
 
 def glance(result: Result) -> Glance:
     endings = tuple(_endings(row, result.settings["records"]) for row in together(result))
-    told = {"real": at_a_glance(result), "near": near_boundaries(result)}
-    return Glance(says={key: words for key, words in told.items() if words}, endings=endings)
+    sentences = {"real": at_a_glance(result), "near": near_boundaries(result)}
+    return Glance(says={key: words for key, words in sentences.items() if words}, endings=endings)
 
 
 def _endings(row, records):
@@ -383,8 +389,8 @@ def _endings(row, records):
 
 def tally_of(row: dict[str, Any]) -> dict[str, Any]:
     """The row of an engine as `wording.equal_mark` reads it."""
-    said = {"runs": row["size"], "differing": apart(row), "share": apart(row) / row["size"]}
-    return said | {key: row[key] for key in ("failed", "equal", "interval")}
+    tally = {"runs": row["size"], "differing": apart(row), "share": apart(row) / row["size"]}
+    return tally | {key: row[key] for key in ("failed", "equal", "interval")}
 
 
 def _score(rows, **wanted):
@@ -393,14 +399,14 @@ def _score(rows, **wanted):
 
 def _bars(result: Result, engines: Sequence[dict[str, Any]]) -> Figure | None:
     scores, rows = where(result.rows, part="score"), []
-    for one in result.settings["specimens"]:
-        mine = where(scores, specimen=one["name"])
+    for specimen in result.settings["specimens"]:
+        mine = where(scores, specimen=specimen["name"])
         for name in BARS:
             if (row := _score(mine, forecast=name, judged=BY_RECORD)) is not None:
                 rows.append(_bar(row, name))
         same = _score(mine, forecast=ONE, judged=IN_SAMPLE)
         rows.append(_bar(same, "model, as engines"))
-        for row in where(engines, specimen=one["name"]):
+        for row in where(engines, specimen=specimen["name"]):
             failed = f" ({row['failed']} failed)" if row["failed"] else ""
             if row["right"] is not None:
                 rows.append(_bar(row, name_of(row) + failed))
@@ -462,17 +468,17 @@ def _right_of_engines(engines):
 
 
 def _fitted(result):
-    said = []
+    fits = []
     for row in where(result.rows, part="fit", change=AS_IT_IS):
         angles = [number(math.degrees(row[name]), 2) for name in ("slenderness", "centre", "spread")]
-        (one,) = (each for each in result.settings["specimens"] if each["name"] == row["specimen"])
-        said.append(
+        (specimen,) = (each for each in result.settings["specimens"] if each["name"] == row["specimen"])
+        fits.append(
             f"{row['specimen']}: {angles[0]} deg by itself, {angles[1]} deg with a spread of {angles[2]} deg "
-            f"({one['note']})."
+            f"({specimen['note']})."
         )
     return (
         "The one exception to the rule that no constant is fitted, as nobody knows on which points a block stands. "
-        "Slenderness that fits all tests best: " + " ".join(said)
+        "Slenderness that fits all tests best: " + " ".join(fits)
     )
 
 

@@ -32,7 +32,7 @@ from ...execution.sweep import Row
 from ...metrics.statistics import EQUAL, Confusion, clustered, confusion, equality, mcnemar
 from ...schemas.columns import declared, list_of, number_of, whole_of, word_of
 from ..rows import SHARED
-from .campaign import ALL, WHERE, Campaign, outcomes_of, read_campaign, told
+from .campaign import ALL, WHERE, Campaign, disclosed, outcomes_of, read_campaign
 from .judging import AS_IT_IS, Outcomes, pairs_of, rows_of
 
 # What its rows have; see `comparisons.studies.rows`.
@@ -42,7 +42,9 @@ COLUMNS = SHARED | declared(
     word_of("forecast", "predicted by", "what predicts the outcomes"),
     word_of("judged", "judged on tests", "on which tests, beside those it was fitted to"),
     whole_of("size", "size", "tests, five or more"),
-    whole_of("right", "right", "tests whose outcome is predicted; null: not told, see shake_table.campaign.told"),
+    whole_of(
+        "right", "right", "tests whose outcome is predicted; null: not disclosed, see shake_table.campaign.disclosed"
+    ),
     whole_of("model_right", "model right", "of the same tests, those whose outcome the model predicts"),
     whole_of("alone_right", "alone right", "right answers of the slenderness by itself, fitted to the same tests"),
     number_of("low", "low", "lower end of the 95 % interval of their share (bootstrap over records)"),
@@ -132,11 +134,11 @@ def over_slendernesses(case: Case, response: Response) -> dict[str, Any]:
     kinds, grid = case.tag["kinds"], case.tag["slendernesses"]
     scenes = [leaning(case.scene, slenderness, **kind) for kind in kinds for slenderness in grid]
     began = time.process_time()
-    found = simulate_many(scenes, workers=1)
+    runs = simulate_many(scenes, workers=1)
     seconds = time.process_time() - began
-    digits = np.where(found.failed, FAILED, np.where(found.overturns, OVERTURNS, STANDS))
+    digits = np.where(runs.failed, FAILED, np.where(runs.overturns, OVERTURNS, STANDS))
     return {
-        "outcomes": ["".join(one) for one in digits.reshape(len(kinds), -1).tolist()],
+        "outcomes": ["".join(row) for row in digits.reshape(len(kinds), -1).tolist()],
         "cost": {"grid_seconds": seconds},
     }
 
@@ -154,33 +156,35 @@ def ended_near(case: Case, response: Response) -> dict[str, Any]:
 NOT_RUN = "-"
 
 
-def engine_rows(campaign: Campaign, own: Sequence[Row], found: Sequence[Row]) -> list[dict[str, Any]]:
+def engine_rows(campaign: Campaign, model_runs: Sequence[Row], engine_runs: Sequence[Row]) -> list[dict[str, Any]]:
     """Rows of an engine beside the model, of each specimen and of all together: in what their outcomes differ, and
-    right answers where they are told. own, found: runs of the model and of the engine."""
-    case, records, rows = found[0].case, [test.record for test in campaign.tests], []
+    right answers where they are disclosed. model_runs, engine_runs: of one slenderness each."""
+    case, records, rows = engine_runs[0].case, [test.record for test in campaign.tests], []
     variant = case.variant or ""
     first = {"part": "engine", "engine": case.solver, "variant": variant}
     first["tier"] = get_engine(case.solver).variants[variant].kind
     sides = []
     for k, specimen in enumerate(campaign.specimens):
-        ours, theirs = ([row for row in some if row.case.tag["specimen"] == specimen.name] for some in (own, found))
+        ours, theirs = (
+            [row for row in runs if row.case.tag["specimen"] == specimen.name] for runs in (model_runs, engine_runs)
+        )
         near = np.array([row.values["near"] for row in ours])
         sides.append((_digits(campaign, theirs), _digits(campaign, ours), near))
-        said = answers(*sides[-1][:2], outcomes_of(campaign.tests, k), records)
+        judged = answers(*sides[-1][:2], outcomes_of(campaign.tests, k), records)
         differing = differences(*sides[-1], records)
-        rows.append({**first, "specimen": specimen.name, **differing, **said, "tilt": _tilts(ours, theirs)})
+        rows.append({**first, "specimen": specimen.name, **differing, **judged, "tilt": _tilts(ours, theirs)})
     if len(sides) > 1:
         engine, model, near = (np.concatenate(part) for part in zip(*sides, strict=True))
         together = differences(engine, model, near, records * len(sides))
-        rows.append({**first, "specimen": ALL, **together, **dict.fromkeys((*said, "tilt"))})
+        rows.append({**first, "specimen": ALL, **together, **dict.fromkeys((*judged, "tilt"))})
     return rows
 
 
 def _digits(campaign, rows):
     """A digit for each test."""
     digits = {"failed": FAILED, "overturns": OVERTURNS}
-    found = {row.case.tag["test"]: digits.get(row.values["outcome"], STANDS) for row in rows}
-    return np.array([found.get(test.name, NOT_RUN) for test in campaign.tests])
+    digit_of = {row.case.tag["test"]: digits.get(row.values["outcome"], STANDS) for row in rows}
+    return np.array([digit_of.get(test.name, NOT_RUN) for test in campaign.tests])
 
 
 def differences(engine: np.ndarray, model: np.ndarray, near: np.ndarray, records: Sequence[str]) -> dict[str, Any]:
@@ -190,23 +194,25 @@ def differences(engine: np.ndarray, model: np.ndarray, near: np.ndarray, records
     differences say, as those under one record are alike. A failed run is no difference of a sign, but differs. near: of
     each test, whether the model's own end is sensitive, see `ended_near`; on_edge: differences there.
     """
-    sound, asked = np.isin(engine, [STANDS, OVERTURNS]), engine != NOT_RUN
+    sound, run_tests = np.isin(engine, [STANDS, OVERTURNS]), engine != NOT_RUN
     names = np.array(records)
     pair = confusion(model[sound] == OVERTURNS, engine[sound] == OVERTURNS) if sound.any() else Confusion(0, 0, 0, 0)
-    equal, interval = equality((engine != model)[asked], names[asked].tolist())
+    equal, interval = equality((engine != model)[run_tests], names[run_tests].tolist())
     sign = np.where(sound, (model == OVERTURNS).astype(int) - (engine == OVERTURNS), 0)
     by_record = [int(np.sign(sign[names == name].sum())) for name in dict.fromkeys(records)]
-    one, other = by_record.count(1), by_record.count(-1)
+    model_alone, engine_alone = by_record.count(1), by_record.count(-1)
     return {
-        "size": int(asked.sum()),
+        "size": int(run_tests.sum()),
         "failed": int((engine == FAILED).sum()),
         **asdict(pair),
         "p_value": mcnemar(pair) if sound.any() else None,
-        "records_a": one,
-        "records_b": other,
-        "p_records": float(binomtest(one, one + other).pvalue) if one + other else None,
-        "near": int((asked & near).sum()),
-        "on_edge": int((asked & near & (engine != model)).sum()),
+        "records_a": model_alone,
+        "records_b": engine_alone,
+        "p_records": float(binomtest(model_alone, model_alone + engine_alone).pvalue)
+        if model_alone + engine_alone
+        else None,
+        "near": int((run_tests & near).sum()),
+        "on_edge": int((run_tests & near & (engine != model)).sum()),
         "equal": equal,
         "interval": list(interval),
     }
@@ -216,29 +222,29 @@ def answers(engine: np.ndarray, model: np.ndarray, measured: np.ndarray, records
     """Right answers of an engine, and of the model on the same tests, with the interval of their share; a failed run is
     not right. Their difference is a sum over the tests that differ; misses and false alarms say how failed ones ended.
     """
-    truth, asked = np.where(measured, OVERTURNS, STANDS), engine != NOT_RUN
-    hit = (truth == engine)[asked]
-    low, high = clustered(hit, np.array(records)[asked].tolist())
-    right = {"right": int(hit.sum()), "low": low, "high": high, "model_right": int((truth == model)[asked].sum())}
+    truth, run_tests = np.where(measured, OVERTURNS, STANDS), engine != NOT_RUN
+    hit = (truth == engine)[run_tests]
+    low, high = clustered(hit, np.array(records)[run_tests].tolist())
+    right = {"right": int(hit.sum()), "low": low, "high": high, "model_right": int((truth == model)[run_tests].sum())}
     wrong = {
         "misses": int((measured & (engine == STANDS)).sum()),
         "false_alarms": int((~measured & (engine == OVERTURNS)).sum()),
     }
-    sizes = len(hit), int((engine != model)[asked].sum())
-    return told(right, *sizes) | told(wrong, *sizes, int((engine == FAILED).sum()))
+    sizes = len(hit), int((engine != model)[run_tests].sum())
+    return disclosed(right, *sizes) | disclosed(wrong, *sizes, int((engine == FAILED).sum()))
 
 
-def _tilts(own, found):
+def _tilts(model_runs, engine_runs):
     """Median of the peak tilts of an engine over the model's, where both rock and stay upright; None: nowhere."""
-    model = {row.case.tag["test"]: row.values for row in own}
-    pairs = ((row.values, model[row.case.tag["test"]]) for row in found if not row.failed)
+    model = {row.case.tag["test"]: row.values for row in model_runs}
+    pairs = ((row.values, model[row.case.tag["test"]]) for row in engine_runs if not row.failed)
     ratios = [a["tilt"] / b["tilt"] for a, b in pairs if a["outcome"] == b["outcome"] == "rocks"]
     return float(np.median(ratios)) if ratios else None
 
 
 SEED = 0  # of the bootstrap
 QUICK = 20  # of so many tests one
-OTHERS = 6  # of so many tests engines that are not in question, and their further variants, run one
+OTHERS = 6  # of so many tests engines that are no subject, and further variants of subject engines, run one
 TIME_LIMIT = 900.0  # s, of an engine's run
 # What is changed in the model, one at a time; the first is as it is. Friction: granite on a steel table is not known.
 KINDS: tuple[dict[str, float], ...] = (
@@ -258,7 +264,7 @@ def plan(request: Request, *, data: Data = None) -> Plan:
 
     Rows by "part": "score" (of a forecast, see `judging`), "paired", "fit" (of the model to all tests), "engine"
     (beside the model) and "failure"; "absent", alone, without data. Arrays ``right/<kind>``: right answers of the model
-    by specimen and slenderness. What is stored of the tests: `campaign.told`.
+    by specimen and slenderness. What is stored of the tests: `campaign.disclosed`.
 
     Parameters
     ----------
@@ -275,26 +281,30 @@ def plan(request: Request, *, data: Data = None) -> Plan:
     kinds = _kinds(campaign)
     model = yield Batch(_on_grids(campaign, kinds), over_slendernesses, "model over slenderness")
     known = _outcomes(campaign, model, len(kinds))
-    places = [one[0].best(np.ones(len(campaign.tests), dtype=bool)) for one in known]
-    slendernesses = [float(one[0].slendernesses[place]) for one, place in zip(known, places, strict=True)]
+    places = [outcomes[0].best(np.ones(len(campaign.tests), dtype=bool)) for outcomes in known]
+    slendernesses = [float(outcomes[0].slendernesses[place]) for outcomes, place in zip(known, places, strict=True)]
     names = [_name(kind) for kind in kinds]
-    found, parts = zip(*(rows_of(campaign, k, one, names) for k, one in enumerate(known)), strict=True)
-    rows = [row for part in parts for row in part] + pairs_of(campaign, found)
+    probabilities, parts = zip(
+        *(rows_of(campaign, k, outcomes, names) for k, outcomes in enumerate(known)), strict=True
+    )
+    rows = [row for part in parts for row in part] + pairs_of(campaign, probabilities)
     settings = _settings(request, campaign, slendernesses) | {"kinds": names}
     settings["model_runs"] = len(model) * len(kinds) * known[0][0].slendernesses.size
     settings["cpu_seconds"] = float(sum(row.cost["grid_seconds"] for row in model))
     arrays = {
-        f"right/{name}": np.array([(one[k].model == one[k].measured[:, None]).sum(axis=0) for one in known])
+        f"right/{name}": np.array(
+            [(outcomes[k].model == outcomes[k].measured[:, None]).sum(axis=0) for outcomes in known]
+        )
         for k, name in enumerate(names)
     }
-    own = yield Batch(_at(campaign, slendernesses, "analytic", None, 1), ended_near, "model")
+    model_runs = yield Batch(_at(campaign, slendernesses, "analytic", None, 1), ended_near, "model")
     answer = Computed(settings, rows, arrays, seed=SEED)
     yield answer
-    for engine, variant, every in [one for name in request.engines for one in _variants(name)]:
+    for engine, variant, every in [outcomes for name in request.engines for outcomes in _variants(name)]:
         ran = yield Batch(
             _at(campaign, slendernesses, engine, variant, every), ended, f"{engine}, {variant}", TIME_LIMIT
         )
-        rows = [*rows, *engine_rows(campaign, own, ran), *(_failure(row) for row in ran if row.failed)]
+        rows = [*rows, *engine_rows(campaign, model_runs, ran), *(_failure(row) for row in ran if row.failed)]
         settings = {**settings, "variants": [*settings["variants"], variant_settings(engine, variant)]}
         answer = Computed(settings, rows, arrays, seed=SEED)
         yield answer
@@ -307,10 +317,13 @@ def _name(kind):
 
 
 def _variants(name: str) -> list[tuple[str, str, int]]:
-    """(engine, variant, of how many tests one is run): of those in question the main variant and the defaults, all."""
+    """(engine, variant, stride): subject engines run every test with their main variant and defaults."""
     engine = get_engine(name)
-    chosen = [engine.default_variant, *(one for one, spec in engine.variants.items() if spec.kind == "defaults")]
-    return [(name, one, 1 if engine.subject else OTHERS) for one in dict.fromkeys(chosen)]
+    chosen = [
+        engine.default_variant,
+        *(variant for variant, spec in engine.variants.items() if spec.kind == "defaults"),
+    ]
+    return [(name, variant, 1 if engine.subject else OTHERS) for variant in dict.fromkeys(chosen)]
 
 
 def _kinds(campaign: Campaign) -> list[dict[str, float]]:
@@ -321,15 +334,15 @@ def _kinds(campaign: Campaign) -> list[dict[str, float]]:
     SettingError
         A block cannot be of the slendernesses between which the fitted one is sought.
     """
-    slides = any(one.scene.friction is not None for one in campaign.specimens)
+    slides = any(specimen.scene.friction is not None for specimen in campaign.specimens)
     kinds = [dict(kind) for kind in KINDS if not (slides and "restitution" in kind)]
-    for one in campaign.specimens:
-        for slenderness, kind in product(one.span, kinds):
+    for specimen in campaign.specimens:
+        for slenderness, kind in product(specimen.span, kinds):
             try:
-                leaning(one.scene, slenderness, **kind)
+                leaning(specimen.scene, slenderness, **kind)
             except SceneError as error:
                 raise SettingError(
-                    f"{one.name}: a slenderness of {slenderness:.4g} rad, which is tried: {error}"
+                    f"{specimen.name}: a slenderness of {slenderness:.4g} rad, which is tried: {error}"
                 ) from error
     return kinds
 
@@ -371,13 +384,13 @@ def _outcomes(campaign: Campaign, rows: Sequence[Row], kinds: int) -> list[list[
     """By specimen and kind."""
     if failed := next((row for row in rows if row.failed), None):
         raise SettingError(f"test {failed.case.tag['test']}: the model failed ({failed.failure['reason']})")
-    found = []
+    by_specimen = []
     for k, specimen in enumerate(campaign.specimens):
-        own = [row.values["outcomes"] for row in rows if row.case.tag["specimen"] == specimen.name]
-        overturned = np.array([[[digit == OVERTURNS for digit in text] for text in one] for one in own])
+        texts_by_kind = [row.values["outcomes"] for row in rows if row.case.tag["specimen"] == specimen.name]
+        overturned = np.array([[[digit == OVERTURNS for digit in text] for text in texts] for texts in texts_by_kind])
         measured, grid = outcomes_of(campaign.tests, k), specimen.slendernesses()
-        found.append([Outcomes(grid, overturned[:, kind], measured) for kind in range(kinds)])
-    return found
+        by_specimen.append([Outcomes(grid, overturned[:, kind], measured) for kind in range(kinds)])
+    return by_specimen
 
 
 def _settings(request, campaign, slendernesses):
@@ -396,15 +409,15 @@ def _settings(request, campaign, slendernesses):
         "agree": _agree(tests),
         "specimens": [
             {
-                "name": one.name,
-                "height": one.scene.block.half_height,
-                "gyration": float(np.sqrt(one.scene.block.centre_inertia / one.scene.block.mass)),
-                "span": list(one.span),
-                "grid": one.slendernesses().tolist(),
+                "name": specimen.name,
+                "height": specimen.scene.block.half_height,
+                "gyration": float(np.sqrt(specimen.scene.block.centre_inertia / specimen.scene.block.mass)),
+                "span": list(specimen.span),
+                "grid": specimen.slendernesses().tolist(),
                 "slenderness": slenderness,
-                "note": one.note,
+                "note": specimen.note,
             }
-            for one, slenderness in zip(campaign.specimens, slendernesses, strict=True)
+            for specimen, slenderness in zip(campaign.specimens, slendernesses, strict=True)
         ],
         "equal": EQUAL,
         "others": OTHERS,
@@ -416,13 +429,13 @@ def _missing(campaign):
     """Of the tests without a motion: how many there are and, where it says nothing of single ones, how many of them
     overturned; and geometric means of PGV/PGA [s] of them and of the others, where they are stated."""
     tests = campaign.missing
-    found: dict[str, Any] = {"overturned": None, "ratios": None}
+    numbers: dict[str, Any] = {"overturned": None, "ratios": None}
     if tests:
-        found["overturned"] = [int(outcomes_of(tests, k).sum()) for k in range(len(campaign.specimens))]
+        numbers["overturned"] = [int(outcomes_of(tests, k).sum()) for k in range(len(campaign.specimens))]
         if all("ratio" in test.stated for test in (*tests, *campaign.tests)):
-            sides = ([test.stated["ratio"] for test in some] for some in (tests, campaign.tests))
-            found["ratios"] = [float(np.exp(np.log(one).mean())) for one in sides]
-    return {"tests": len(tests), **told(found, len(tests))}
+            sides = ([test.stated["ratio"] for test in members] for members in (tests, campaign.tests))
+            numbers["ratios"] = [float(np.exp(np.log(ratios).mean())) for ratios in sides]
+    return {"tests": len(tests), **disclosed(numbers, len(tests))}
 
 
 def _agree(tests):

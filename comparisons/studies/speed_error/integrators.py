@@ -140,7 +140,7 @@ def scipy_run(problem: Problem, rtol: float, method: str) -> Callable[[], tuple[
 
     def run():
         t, tilt, rate, side = problem.begin, problem.tilt, 0.0, problem.side
-        impacts, found = 0, math.nan
+        impacts, end_tilt = 0, math.nan
         for stop in problem.stops:
             pushed = stop <= problem.pulse_end
             while t < stop:
@@ -148,10 +148,10 @@ def scipy_run(problem: Problem, rtol: float, method: str) -> Callable[[], tuple[
                 if hit:
                     impacts, tilt, rate, side = impacts + 1, 0.0, problem.restitution * rate, -side
                     if abs(rate) < problem.rest_rate:
-                        return found, impacts
+                        return end_tilt, impacts
             if stop == problem.horizon:
-                found = tilt
-        return found, impacts
+                end_tilt = tilt
+        return end_tilt, impacts
 
     return run
 

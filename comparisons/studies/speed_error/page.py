@@ -100,21 +100,21 @@ def _within(row, error):
 def level_costs(result: Result) -> dict[str, dict[tuple[str, str], dict[float, float]]]:
     """{solver: {(scene, measure): {error: CPU time [s/s] of the cheapest level that, as all finer ones, keeps it}}} for
     the errors `WANTED` that are reached, of all scenes but the problems."""
-    found: dict[str, dict[tuple[str, str], dict[float, float]]] = {}
+    costs: dict[str, dict[tuple[str, str], dict[float, float]]] = {}
     for (scene, measure), rows in grouped(as_needed(result), "scene", "measure").items():
         if measure != FINE:
             for row in rows:
-                found.setdefault(row["name"], {}).setdefault((scene, measure), {})
+                costs.setdefault(row["name"], {}).setdefault((scene, measure), {})
             for error in WANTED:
                 for name, row in passing(rows, error).items():
-                    found[name][scene, measure][error] = row["cpu_per_second"]
-    return found
+                    costs[name][scene, measure][error] = row["cpu_per_second"]
+    return costs
 
 
 def equal_cost_tables(result: Result) -> list[Table | None]:
     """A table for each error: what it costs every solver in every scene."""
     costs, scenes, apart = level_costs(result), result.settings["scenes"], timed_apart(result)
-    places = list(dict.fromkeys(place for some in costs.values() for place in some))
+    places = list(dict.fromkeys(place for by_place in costs.values() for place in by_place))
 
     def cell(place, error):
         model = costs.get(KERNEL, {}).get(place, {}).get(error)
@@ -134,7 +134,7 @@ def equal_cost_tables(result: Result) -> list[Table | None]:
         table(
             "CPU time per simulated second [ms] (over the model’s) of the cheapest level that, as all finer ones, "
             f"keeps an error of {percent(error, 1)}",
-            [{"name": name, "costs": some} for name, some in costs.items()],
+            [{"name": name, "costs": by_place} for name, by_place in costs.items()],
             Column("solver", "name"),
             *(cell(place, error) for place in places),
         )
@@ -147,7 +147,7 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
     kept, apart, marks = keeping(result, ASKED), timed_apart(result), {}
     for name, *pair in grouped(_plain(result), "name", "engine", "variant") if KERNEL in kept else ():
         ratio = name in kept and kept[name]["cpu_per_second"] / kept[KERNEL]["cpu_per_second"]
-        if name in {NAME.of(one) for one in result.settings["variants"]}:
+        if name in {NAME.of(variant) for variant in result.settings["variants"]}:
             mark = Mark(f"{number(ratio, 2)} ×", "none", value=ratio) if ratio else NOT_REACHED
             marks[tuple(pair)] = Mark(APART, "none", apart[pair[0]]) if ratio and pair[0] in apart else mark
     heading = f"CPU time over the analytic model's at {percent(ASKED, 1)} of peak tilt, isolated rocking"
@@ -167,7 +167,7 @@ def glance(result: Result) -> Glance | None:
         says={"cost": words} if (words := at_a_glance(result)) else {},
         curves=tuple(_curves(result, rows)),
         scene=result.settings["scenes"][PLAIN]["title"],
-        advice=tuple(one for error in WANTED for one in advice(result, error)),
+        advice=tuple(recommendation for error in WANTED for recommendation in advice(result, error)),
         asked=tuple(name for name, engine in ENGINES.items() if engine.subject),
         alike=noise(result),
     )
@@ -180,22 +180,22 @@ def _plain(result):
 
 def _curves(result, rows):
     """Of every solver once: engines' main variants and those as they come, scripts, and the other solvers."""
-    listed = {NAME.of(one): one for one in result.settings["variants"]}
+    listed = {NAME.of(settings): settings for settings in result.settings["variants"]}
     main, apart = mains(result.settings["variants"]), timed_apart(result)
-    for (who, engine, variant), some in grouped(rows, "name", "engine", "variant").items():
-        tier = listed[who]["tier"] if who in listed else ""
-        if who in listed and tier != "defaults" and main[engine] != variant:
+    for (name_of_curve, engine, variant), levels in grouped(rows, "name", "engine", "variant").items():
+        tier = listed[name_of_curve]["tier"] if name_of_curve in listed else ""
+        if name_of_curve in listed and tier != "defaults" and main[engine] != variant:
             continue
         known = {"tuned": f"{engine}, tuned", "defaults": f"{engine}, defaults"}
-        name = known.get(tier, f"{engine}, script" if variant == SCRIPT else SHORT.get(who, engine))
+        name = known.get(tier, f"{engine}, script" if variant == SCRIPT else SHORT.get(name_of_curve, engine))
         name += f" ({APART})" if engine in apart else ""
         points = tuple(
             (row["cpu_per_second"], row["errors"]["peak_tilt"], not row["lost"], _says(row))
-            for row in some
+            for row in levels
             if not row["failure"] and "peak_tilt" in row["errors"]
         )
         kind = tier or ("tuned" if engine in ENGINES else "model")
-        yield Curve(who, name, kind, engine in ENGINES and ENGINES[engine].subject, points)
+        yield Curve(name_of_curve, name, kind, engine in ENGINES and ENGINES[engine].subject, points)
 
 
 def _says(row):
@@ -207,25 +207,28 @@ def _says(row):
 def keeping(result: Result, error: float) -> dict[str, Row]:
     """{solver: the row in `PLAIN` of its cheapest level that, as all finer ones, keeps an error}, cheapest first; the
     error is that of the peak tilt there and of the overturning boundaries."""
-    found, rows = {}, as_needed(result)
+    cheapest_levels, rows = {}, as_needed(result)
     judged = [*where(rows, scene=PLAIN, measure=PEAK), *where(rows, measure=BOUNDARY)]
-    for (name,), some in grouped(judged, "name").items():
-        by_scene = grouped(some, "scene")
-        kept = [{row["level"] for row in kept_from(one, lambda row: _within(row, error))} for one in by_scene.values()]
+    for (name,), members in grouped(judged, "name").items():
+        by_scene = grouped(members, "scene")
+        kept = [
+            {row["level"] for row in kept_from(scene_rows, lambda row: _within(row, error))}
+            for scene_rows in by_scene.values()
+        ]
         levels = [row for row in by_scene.get((PLAIN,), ()) if all(row["level"] in levels for levels in kept)]
         if levels:
-            found[name] = min(levels, key=lambda row: row["cpu_per_second"])
-    return dict(sorted(found.items(), key=lambda item: item[1]["cpu_per_second"]))
+            cheapest_levels[name] = min(levels, key=lambda row: row["cpu_per_second"])
+    return dict(sorted(cheapest_levels.items(), key=lambda item: item[1]["cpu_per_second"]))
 
 
 def advice(result: Result, error: float) -> list[Advised]:
-    """What keeps an error: of tuned variants of the engines in question, whose engine computes the impact, the cheapest
+    """What keeps an error: of tuned variants of subject engines, whose engine computes the impact, the cheapest
     level of the cheapest, and that of every other that costs the same within the `noise`, or was timed apart."""
     apart = timed_apart(result)
     able = {
-        NAME.of(one)
-        for one in where(result.settings["variants"], tier="tuned", applies_impact=False)
-        if ENGINES[one["engine"]].subject
+        NAME.of(variant)
+        for variant in where(result.settings["variants"], tier="tuned", applies_impact=False)
+        if ENGINES[variant["engine"]].subject
     }
     kept = [row for name, row in keeping(result, error).items() if name in able]
     least = min((row["cpu_per_second"] for row in kept if row["engine"] not in apart), default=0.0)
@@ -245,26 +248,26 @@ def _advised(result, error, row):
 
 
 def times(result: Result) -> str:
-    """CPU time of the engines in question, tuned, over the model's at the error `ASKED`: "94 (a) and 200 (b) times the
+    """CPU time of subject engines, tuned, over the model's at the error `ASKED`: "94 (a) and 200 (b) times the
     analytic model’s CPU time"; "" where none reaches it."""
-    told = [f"{number(cost / model, 2)} ({engine})" for engine, cost, model in _asked(result)]
-    return f"{listed(told)} times the analytic model’s CPU time" if told else ""
+    ratios = [f"{number(cost / model, 2)} ({engine})" for engine, cost, model in _asked(result)]
+    return f"{listed(ratios)} times the analytic model’s CPU time" if ratios else ""
 
 
 def at_a_glance(result: Result) -> str:
     """The same in sentences with the times themselves, and what a script costs; "" where none reaches it."""
-    found = _asked(result)
-    if not found:
+    costs = _asked(result)
+    if not costs:
         return ""
-    own = listed([f"{number(1e3 * cost, 2)} ms ({engine})" for engine, cost, _ in found])
-    over = listed([number(cost / model, 2) for _, cost, model in found])
-    alike = max(cost for _, cost, _ in found) <= noise(result) * min(cost for _, cost, _ in found)
+    engine_costs = listed([f"{number(1e3 * cost, 2)} ms ({engine})" for engine, cost, _ in costs])
+    over = listed([number(cost / model, 2) for _, cost, model in costs])
+    alike = max(cost for _, cost, _ in costs) <= noise(result) * min(cost for _, cost, _ in costs)
     words = (
-        f"a peak tilt within {percent(ASKED, 1)} of the slenderness takes tuned engines {own} of CPU time per "
-        f"simulated second. The analytic model takes {number(1e3 * found[0][2], 2)} ms: tuned engines take {over} "
+        f"a peak tilt within {percent(ASKED, 1)} of the slenderness takes tuned engines {engine_costs} of CPU time per "
+        f"simulated second. The analytic model takes {number(1e3 * costs[0][2], 2)} ms: tuned engines take {over} "
         "times as long."
     )
-    if alike and len(found) > 1:
+    if alike and len(costs) > 1:
         words += f" Costs within a factor of {number(noise(result), 2)} are not distinguished, so these are the same."
     scripts = [
         f"{number(1e3 * row['cpu_per_second'], 2)} ms with an error of {percent(row['error'])} ({row['engine']})"
@@ -275,7 +278,7 @@ def at_a_glance(result: Result) -> str:
 
 
 def _asked(result):
-    """(engine, CPU time, the model's) of the engines in question, tuned, that reach the error `ASKED`, but those timed
+    """(engine, CPU time, the model's) of subject engines, tuned, that reach the error `ASKED`, but those timed
     apart."""
     kept, apart = keeping(result, ASKED), timed_apart(result)
     model = kept.get(KERNEL)
@@ -287,12 +290,14 @@ def _asked(result):
 
 
 def reached(result: Result) -> list[Row]:
-    """The levels `keeping` the error `ASKED` of main variants, tuned, of the engines in question."""
+    """The levels `keeping` the error `ASKED` of tuned main variants of subject engines."""
     kept, main = keeping(result, ASKED), mains(result.settings["variants"])
     return [
-        kept[NAME.of(one)]
-        for one in where(result.settings["variants"], tier="tuned")
-        if ENGINES[one["engine"]].subject and main[one["engine"]] == one["variant"] and NAME.of(one) in kept
+        kept[NAME.of(variant)]
+        for variant in where(result.settings["variants"], tier="tuned")
+        if ENGINES[variant["engine"]].subject
+        and main[variant["engine"]] == variant["variant"]
+        and NAME.of(variant) in kept
     ]
 
 
@@ -325,7 +330,7 @@ def page(result: Result) -> Page:
     errors = grouped(rows, "scene", "measure")
     first = [key for key in errors if key in FIRST] or list(errors)[-1:]
     others = [key for key in errors if key not in first]
-    coarse, asked, fine = equal_cost_tables(result)
+    coarse, usual, fine = equal_cost_tables(result)
     return Page(
         _title(result),
         (
@@ -334,7 +339,7 @@ def page(result: Result) -> Page:
             f"Costs within a factor of {number(noise(result), 2)} are not distinguished."
             + "".join(f" {engine} was timed {why}: no ratio is given." for engine, why in timed_apart(result).items()),
         ),
-        first=(_figure([row for key in first for row in errors[key]], CPU, MAIN_CAPTION, rows, _leads(result)), asked),
+        first=(_figure([row for key in first for row in errors[key]], CPU, MAIN_CAPTION, rows, _leads(result)), usual),
         more=(
             coarse,
             fine,
@@ -342,17 +347,17 @@ def page(result: Result) -> Page:
             _figure([row for key in others if key[1] != FINE for row in errors[key]], CPU, CAPTION, rows),
             _figure([row for key in others if key[1] == FINE for row in errors[key]], CPU, FINE_CAPTION, rows),
             Head("The cheapest level of each solver"),
-            *(_costs(result, some) for some in errors.values()),
+            *(_costs(result, members) for members in errors.values()),
             _without_error(every),
             Head("Step and order"),
             _figure(rows, COLUMNS["step"], "Mean step: simulated time over steps.", rows),
             *(
-                _orders(measure, some, result.settings["scenes"])
-                for (measure,), some in grouped(rows, "measure").items()
+                _orders(measure, members, result.settings["scenes"])
+                for (measure,), members in grouped(rows, "measure").items()
             ),
             table(
                 "Cost over all scenes and levels, lowest to highest",
-                [{"name": name, "rows": some} for (name,), some in grouped(rows, "name").items()],
+                [{"name": name, "rows": members} for (name,), members in grouped(rows, "name").items()],
                 NAME_COLUMN,
                 Column("CPU time per simulated second [s/s]", lambda row: _range(row["rows"], "cpu_per_second", 1)),
                 Column("CPU time per step [µs]", lambda row: _range(row["rows"], "cpu_per_step", 1e6)),
@@ -397,7 +402,7 @@ def _assisted(result):
 def _title(result):
     place = f"Cost against error: {percent(ASKED, 1)} of peak tilt"
     if not (cost := times(result)):
-        return f"{place} is reached by {f'engines {APART}' if reached(result) else 'no engine in question'}"
+        return f"{place} is reached by {f'engines {APART}' if reached(result) else 'no subject engine'}"
     return f"{place} takes {cost}"
 
 
@@ -408,8 +413,8 @@ def _panel(row):
 
 def _leads(result):
     """(engine, variant) of engines' main variants, of scripts, and of the first variant of each other solver."""
-    found = mains([*result.settings["variants"], *as_needed(result)])
-    return [*found.items(), *((engine, SCRIPT) for engine in found)]
+    main_variants = mains([*result.settings["variants"], *as_needed(result)])
+    return [*main_variants.items(), *((engine, SCRIPT) for engine in main_variants)]
 
 
 def _figure(rows, x, caption, like, leads=()):
@@ -417,15 +422,15 @@ def _figure(rows, x, caption, like, leads=()):
     have a colour, in their order; none: all."""
     kept = {
         (*key, name)
-        for key, some in grouped(rows, "scene", "measure").items()
-        for name, row in passing(some, ASKED).items()
+        for key, members in grouped(rows, "scene", "measure").items()
+        for name, row in passing(members, ASKED).items()
         if not leads or (row["engine"], row["variant"]) in leads
     }
     ranks = {pair: rank for rank, pair in enumerate(leads)}
     like = sorted(like, key=lambda row: ranks.get((row["engine"], row["variant"]), len(ranks)))
     figures = [
         lines(
-            [row for row in some if row["error"] is not None],
+            [row for row in members if row["error"] is not None],
             x,
             Column(MEASURES[measure], lambda row: max(row["error"], FINEST if row["measure"] == FINE else DRAWN)),
             caption,
@@ -435,18 +440,18 @@ def _figure(rows, x, caption, like, leads=()):
             says=lambda row: f"{row['name']}, {level_words(row)}: {number(row['error'], 2)} in {CPU.text(row)} s",
             like=like,
         )
-        for (measure,), some in grouped(rows, "measure").items()
+        for (measure,), members in grouped(rows, "measure").items()
     ]
     return beside(*figures)
 
 
 def _costs(result, rows):
     levels = FINE_LEVELS if rows[0]["measure"] == FINE else LEVELS
-    found = {level: passing(rows, level) for level in levels}
+    by_level = {level: passing(rows, level) for level in levels}
     assisted = _assisted(result)
 
     def cell(level):
-        kept = found[level]
+        kept = by_level[level]
 
         def text(row):
             if (best := kept.get(row["name"])) is None:
@@ -459,7 +464,7 @@ def _costs(result, rows):
 
     return table(
         f"{rows[0]['title']}: CPU time [ms] to keep the {MEASURES[rows[0]['measure']]}",
-        [{"name": name} for name in dict.fromkeys(name for kept in found.values() for name in kept)],
+        [{"name": name} for name in dict.fromkeys(name for kept in by_level.values() for name in kept)],
         Column("solver", lambda row: row["name"] + (" (assisted)" if row["name"] in assisted else "")),
         *map(cell, levels),
     )
@@ -468,14 +473,14 @@ def _costs(result, rows):
 def _without_error(every):
     """Levels that failed, missed impacts or found no boundary, which figures and tables of cost leave out."""
     counted = []
-    for (name, model, title, measure), some in grouped(every, "name", "model", "title", "measure").items():
-        sound = [row for row in some if not row["failure"]]
+    for (name, model, title, measure), members in grouped(every, "name", "model", "title", "measure").items():
+        sound = [row for row in members if not row["failure"]]
         counted.append(
             {
                 "name": name if model == NEEDED else f"{name}: {model}",
                 "title": title,
-                "all": len(some),
-                "failed": len(some) - len(sound),
+                "all": len(members),
+                "failed": len(members) - len(sound),
                 "lost": sum(bool(row["lost"]) for row in sound),
                 "none": sum(measure not in row["errors"] for row in sound) if measure == "boundary_shift" else 0,
             }
@@ -494,8 +499,8 @@ def _without_error(every):
 
 def _orders(measure, rows, scenes):
     fits = {}
-    for (name, scene), some in grouped(rows, "name", "scene").items():
-        known = [(row["level"], row["error"]) for row in some if (row["error"] or 0) > ROUNDING]
+    for (name, scene), members in grouped(rows, "name", "scene").items():
+        known = [(row["level"], row["error"]) for row in members if (row["error"] or 0) > ROUNDING]
         if len(known) >= 3:
             order, error = fit(*zip(*known, strict=True))
             words = f"{round(order, 2) + 0.0:.2f} ± {error:.2f}".replace("-", "−")  # no minus before 0.00
@@ -534,8 +539,13 @@ def _more_than_needed(result, every):
         if key in plain and row is not plain[key] and "cpu_seconds" in row
     ]
     laws = [
-        {"name": SOLVER.of(some[0]), "title": some[0]["title"], "ratios": [row["ratio"] for row in some], **changes}
-        for (scene, _), some in grouped(where(pairs, law="bouc-wen"), "scene", "name").items()
+        {
+            "name": SOLVER.of(members[0]),
+            "title": members[0]["title"],
+            "ratios": [row["ratio"] for row in members],
+            **changes,
+        }
+        for (scene, _), members in grouped(where(pairs, law="bouc-wen"), "scene", "name").items()
         for changes in (result.settings["scenes"][scene]["bouc_wen"],)
     ]
 
@@ -575,19 +585,21 @@ def _how(result, every):
     same = sum(row["repeatable"] for row in every)
     differing = sorted({row["name"] for row in every if not row["repeatable"]})
     scenes = result.settings["scenes"].values()
-    differences = [one["reference_difference"].get(measure, 0.0) for one in scenes for measure in measures_of(one)]
+    differences = [
+        scene["reference_difference"].get(measure, 0.0) for scene in scenes for measure in measures_of(scene)
+    ]
     machine, load = result.provenance["machine"], result.settings.get("load")
     beside = f" Other processes took {percent(max(load))} of it at most." if load else ""
     return (
-        f"{result.settings['rounds']} fresh processes one after the other; in each, every solver has its turn after a "
-        "warm-up. CPU times are the least of the rounds, of the simulation "
-        "without import, compilation and building of the scene. The median round took up to "
-        f"{number(noise(result), 2)} times as long as the least for {NOISE} % of the levels: costs closer than that "
-        f"are not distinguished. Machine: {machine['processor']}, {machine['logical_cores']} cores.{beside}",
-        "References are the kernel at its tightest; an independent solution by scipy differs from them by at most "
-        f"{number(max(differences), 1)} in the errors shown. Solvers of the equations apply eq. (7): their error of "
-        f"restitution under a motion is rounding. The errors of {same} of {len(every)} levels are the same bit for "
-        f"bit in every round{'; not those of ' + ', '.join(differing) if differing else ''}.",
+        f"{result.settings['rounds']} fresh processes run one after the other. In each, every solver is warmed up and "
+        "timed. A CPU time is the least of these rounds; import, compilation and building of the scene are not in it. "
+        f"The median round took up to {number(noise(result), 2)} times as long as the least for {NOISE} % of the "
+        f"levels, so costs closer than that are not distinguished. Machine: {machine['processor']}, "
+        f"{machine['logical_cores']} cores.{beside}",
+        "References are computed by the kernel at its tightest tolerance. An independent solution by scipy differs "
+        f"from them by at most {number(max(differences), 1)} in the errors shown. Solvers of the equations apply eq. "
+        f"(7): their error of restitution under a motion is rounding. The errors of {same} of {len(every)} levels are "
+        f"the same bit for bit in every round{'; not those of ' + ', '.join(differing) if differing else ''}.",
         "On a free base the largest tilt is that of the start and has no error. Errors of the peak displacement and "
         "of the overturning boundary are relative. The boundary is searched: six runs, each at the amplitude where "
         "the one before would just overturn.",

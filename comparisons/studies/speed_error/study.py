@@ -421,16 +421,16 @@ def errors(trial: Trial, values: Mapping[str, Any], shifts: Sequence[float] | No
     run: Any = SimpleNamespace(impacts=[Impact(**impact) for impact in values["impacts"]])
     reference, end, gamma = trial.reference, values["end"], trial.scene.block.slenderness
     times = strong_time_errors(run, reference)
-    found = {"impact_time": times[np.isfinite(times)], "restitution": _restitution_errors(trial.scene, run)}
+    by_measure = {"impact_time": times[np.isfinite(times)], "restitution": _restitution_errors(trial.scene, run)}
     if values["peak_tilt"] is not None:
-        found["peak_tilt"] = [abs(values["peak_tilt"] - reference.peak_tilt) / gamma]
+        by_measure["peak_tilt"] = [abs(values["peak_tilt"] - reference.peak_tilt) / gamma]
     if values["peak_base_displacement"] is not None and "peak_displacement" in trial.measures:
-        found["peak_displacement"] = [abs(values["peak_base_displacement"] / reference.peak_base_displacement - 1)]
+        by_measure["peak_displacement"] = [abs(values["peak_base_displacement"] / reference.peak_base_displacement - 1)]
     if abs(end["time"] - trial.scene.duration) < 1e-9:
-        found["end_tilt"] = [abs(abs(end["tilt"]) - abs(reference.end.tilt)) / gamma]
+        by_measure["end_tilt"] = [abs(abs(end["tilt"]) - abs(reference.end.tilt)) / gamma]
     if shifts and abs(shifts[-1] - shifts[-2]) < STRAY:
-        found["boundary_shift"] = shifts[-LAST:]
-    known = {name: rms(found[name]) for name in trial.measures if len(found.get(name, ()))}
+        by_measure["boundary_shift"] = shifts[-LAST:]
+    known = {name: rms(by_measure[name]) for name in trial.measures if len(by_measure.get(name, ()))}
     return {"lost": lost_impacts(run, reference), **known}
 
 
@@ -480,7 +480,7 @@ def plan(
     settings = {
         "quick": request.quick,
         "rounds": rounds,
-        "load": [one.cost["load"] for one in loads],
+        "load": [load.cost["load"] for load in loads],
         "scenes": {trial.name: description(trial) for trial in scenes},
         "variants": [
             variant_settings(engine, variant, levels_of(kind, request.quick))
@@ -514,11 +514,11 @@ def _row(entry, timings):
     seconds = [timing.cost["cpu_seconds"] for timing in timings if timing.cost.get("cpu_seconds")]
     if first.failure or not seconds:
         return row
-    found = dict(values["errors"]) if "errors" in values else errors(trial, values, values["boundary_shifts"])
+    measured = dict(values["errors"]) if "errors" in values else errors(trial, values, values["boundary_shifts"])
     cpu, simulated, steps = statistics.median(seconds), values["end"]["time"], values["steps"]
     return row | {
-        "lost": found.pop("lost"),
-        "errors": found,
+        "lost": measured.pop("lost"),
+        "errors": measured,
         "cpu_seconds": cpu,
         "cpu_low": min(seconds),
         "cpu_high": max(seconds),

@@ -557,9 +557,9 @@ def _bearings():
                     motion=SampledMotion(0.005, amplitude * np.sin(10 * np.pi * t)),
                 ),
                 quick=amplitude == 1e-3,
-                tolerances=own,
+                tolerances=tolerances,
             )
-            for amplitude, own in ((1e-3, {}), (1e-9, {"event-driven": {"displacement": (1e-3, reason)}}))
+            for amplitude, tolerances in ((1e-3, {}), (1e-9, {"event-driven": {"displacement": (1e-3, reason)}}))
         ),
         *(
             HardCase("extreme bearing law, rocking", extreme.with_(name=name, bearings=law), quick=name == "alpha 200")

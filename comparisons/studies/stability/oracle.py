@@ -70,7 +70,9 @@ def twin_step(scene: Scene) -> float:
     elif motion is not None and motion.length > scene.end / HISTORY_POINTS:  # else no sample falls into it
         rates.append(motion.frequency)
     if scene.bearings is not None:
-        stiffness, damping = (scene.bearings.count * one for one in (scene.bearings.ka, scene.bearings.damping))
+        stiffness, damping = (
+            scene.bearings.count * constant for constant in (scene.bearings.ka, scene.bearings.damping)
+        )
         rates += [math.sqrt(stiffness / scene.total_mass), damping / scene.total_mass]
     return min(longest, 0.05 / max(rates)) if max(rates) else longest
 
@@ -112,7 +114,9 @@ def _free(scene: Scene) -> tuple[float, float, float, float]:
 def beyond_range(name: str) -> dict[str, float]:
     """{quantity: its value} of a case outside the statue range, in the kernel's run."""
     scene = hard_cases()[name].scene
-    return {str(one.quantity): float(one.value) for one in outside(scene, simulate(scene, history=False))}
+    return {
+        str(property.quantity): float(property.value) for property in outside(scene, simulate(scene, history=False))
+    }
 
 
 SLIPS = ("peak slip", "end slip")
@@ -125,8 +129,8 @@ def slips(run: Response) -> tuple[float, float]:
 
 def slip_errors(hard: HardCase, run: Response, judge: Response, unit: float) -> dict[str, float]:
     """Errors of the slips of a `run`, over `unit` [m]: against those known beforehand, else those of the judge."""
-    found = zip(SLIPS, slips(run), slips(judge), strict=True)
-    return {name: abs(own - hard.expected.get(name, other)) / unit for name, own, other in found}
+    pairs = zip(SLIPS, slips(run), slips(judge), strict=True)
+    return {name: abs(slip - hard.expected.get(name, other)) / unit for name, slip, other in pairs}
 
 
 def slip_unit(scene: Scene, model: Response) -> float:
@@ -152,18 +156,18 @@ def stepping_errors(hard: HardCase, model: Response) -> dict[str, float]:
     errors = {"outcome": float(model.outcome != judge.outcome)}
     if model.uplifts and "uplift time" in hard.expected:
         errors["uplift time"] = abs(model.uplifts[0] - hard.expected["uplift time"])
-    others, doubt = [_apart(hard, one, judge, unit) for one in coarser], 0.0
+    others, doubt = [_apart(hard, coarse, judge, unit) for coarse in coarser], 0.0
     for name, error in _apart(hard, model, judge, unit).items():
-        own = 0.0 if name in hard.expected else max(one.get(name, math.inf) for one in others)
-        errors[name], doubt = max(0.0, error - own), max(doubt, own)
+        error_of_judge = 0.0 if name in hard.expected else max(coarse.get(name, math.inf) for coarse in others)
+        errors[name], doubt = max(0.0, error - error_of_judge), max(doubt, error_of_judge)
     return errors | {"judge's doubt": doubt}
 
 
 def _apart(hard: HardCase, run: Response, judge: Response, unit: float) -> dict[str, float]:
     """{measure: distance of a run from the one that judges}; of tilt and displacement at peak and end."""
-    found, falls = slip_errors(hard, run, judge, unit), judge.overturning_time is not None
+    differences, falls = slip_errors(hard, run, judge, unit), judge.overturning_time is not None
     if run.overturning_time is not None and judge.overturning_time is not None:
-        found["overturning time"] = abs(run.overturning_time - judge.overturning_time)
+        differences["overturning time"] = abs(run.overturning_time - judge.overturning_time)
     columns = {"tilt": hard.scene.block.slenderness}
     if hard.scene.base is not None:
         columns["base_displacement"] = judge.peak_base_displacement
@@ -171,8 +175,8 @@ def _apart(hard: HardCase, run: Response, judge: Response, unit: float) -> dict[
         apart = [abs(getattr(run.end, column) - getattr(judge.end, column))]
         if not falls:  # the model's peaks leave the last fall out
             apart.append(abs(getattr(run, f"peak_{column}") - getattr(judge, f"peak_{column}")))
-        found[column.removeprefix("base_")] = max(apart) / scale
-    return found
+        differences[column.removeprefix("base_")] = max(apart) / scale
+    return differences
 
 
 RATES = {"tilt": "tilt_rate", "base_displacement": "base_velocity"}  # of the columns that are compared

@@ -37,7 +37,7 @@ SHORT = {TWIN: "2nd code", "time-stepping": "steps"}
 
 def _readable(words):
     """Words with powers of ten and minus signs as a reader writes them."""
-    powers = re.sub(r"\d[.\d]*e[-+]?\d+", lambda found: short(float(found[0])).removeprefix("1·"), words)
+    powers = re.sub(r"\d[.\d]*e[-+]?\d+", lambda match: short(float(match[0])).removeprefix("1·"), words)
     return powers.replace(" -", " −").replace("m/s2", "m/s²")
 
 
@@ -50,7 +50,7 @@ def page(result: Result) -> Page:
     cases, measures = result.settings["cases"], result.settings["measures"]
     cells, variants = _cells(result), _judged(result)
     within, apart = _parted(cases)
-    chosen = [one for one in variants if one["best"] or subject(one) and as_it_comes(one)]
+    chosen = [variant for variant in variants if variant["best"] or subject(variant) and as_it_comes(variant)]
     counts = sorted(_counts(result, cells), key=lambda row: -row[RIGHT])
     wrong = where(cells.values(), result={DIFFERS, FAILED})
     return Page(
@@ -70,79 +70,8 @@ def page(result: Result) -> Page:
                 else []
             ),
         ),
-        first=(
-            _strip(
-                cells,
-                within,
-                chosen,
-                "Default levels. Blank or ✓: right; ~: differs; ≠: another outcome; ✗: failed. Under the pointer: the "
-                "measure farthest outside its tolerance. 2nd code: the independent second implementation; steps: plain "
-                "time stepping of the equations. –: not run, or not modelled: these two have no friction.",
-            ),
-            table(
-                "Results at default levels",
-                counts,
-                NAME,
-                *(Column(f"{name} [-]", name) for name in (RIGHT, DIFFERS, FAILED)),
-                Column("right at finer levels [-]", FINER),
-                *([Column(f"right {APART}", APART)] if apart else []),
-            ),
-        ),
-        more=(
-            _matrix(cells, apart, chosen, "Cases outside the range, counted apart."),
-            _matrix(
-                cells,
-                cases,
-                [one for one in variants if one not in chosen],
-                "The engines’ other variants, all cases. –: not run, or no friction modelled.",
-            ),
-            table(
-                "Where default levels are not right",
-                wrong,
-                CASE,
-                NAME,
-                COLUMNS["result"],
-                Column("measure farthest outside", "measure"),
-                Column("value", "value", digits=None),
-                TOLERANCE,
-                Column("also outside", "others"),
-                Column("finer level that is right", "remedy"),
-            ),
-            Head("Measures and cases"),
-            table(
-                "Measures",
-                [
-                    {
-                        "kind": kind,
-                        "name": name,
-                        "unit": unit or "-",
-                        "what": what,
-                        "tolerance": limit,
-                        "reason": reason,
-                    }
-                    for kind, limits in result.settings["tolerances"].items()
-                    for name, (limit, reason) in limits.items()
-                    for unit, what in (measures[name],)
-                ],
-                Column("measure", "name"),
-                Column("solvers", "kind"),
-                Column("what it is", "what"),
-                TOLERANCE,
-                Column("unit", "unit"),
-                Column("reason", lambda row: _readable(row["reason"])),
-            ),
-            table(
-                "Cases",
-                [{**case, "case": name} for name, case in cases.items()],
-                CASE,
-                Column("what is hard", lambda row: _readable(row["title"])),
-                Column("judged by, and tolerances of its own", _judge),
-                Column(
-                    APART, lambda case: ", ".join(f"{name} {short(v)}" for name, v in _outside(case).items()) or "–"
-                ),
-                Column("duration [s]", "duration", digits=None),
-            ),
-        ),
+        first=_summary(cells, within, apart, chosen, counts),
+        more=_details(result, cases, measures, cells, variants, apart, chosen, wrong),
         how=(
             "The reference itself is judged by its independent second implementation and, for free rocking, by the "
             "closed form; with friction by Moreau’s time stepping, which shares no code with it. Trajectories are "
@@ -159,6 +88,78 @@ def page(result: Result) -> Page:
                 + f"\nlast state: {rows[0]['last_state']}\nsettings: {rows[0]['settings'] or rows[0]['set']}",
             )
             for (name, reason), rows in grouped(where(wrong, result=FAILED), NAME.of, "measure").items()
+        ),
+    )
+
+
+def _summary(cells, within, apart, chosen, counts):
+    """What stands on the report's first page, too."""
+    return (
+        _strip(
+            cells,
+            within,
+            chosen,
+            "Default levels. Blank or ✓: right; ~: differs; ≠: another outcome; ✗: failed. Under the pointer: the "
+            "measure farthest outside its tolerance. 2nd code: the independent second implementation; steps: plain "
+            "time stepping of the equations. –: not run, or not modelled: these two have no friction.",
+        ),
+        table(
+            "Results at default levels",
+            counts,
+            NAME,
+            *(Column(f"{name} [-]", name) for name in (RIGHT, DIFFERS, FAILED)),
+            Column("right at finer levels [-]", FINER),
+            *([Column(f"right {APART}", APART)] if apart else []),
+        ),
+    )
+
+
+def _details(result, cases, measures, cells, variants, apart, chosen, wrong):
+    """What stands on the study's own page alone."""
+    return (
+        _matrix(cells, apart, chosen, "Cases outside the range, counted apart."),
+        _matrix(
+            cells,
+            cases,
+            [variant for variant in variants if variant not in chosen],
+            "The engines’ other variants, all cases. –: not run, or no friction modelled.",
+        ),
+        table(
+            "Where default levels are not right",
+            wrong,
+            CASE,
+            NAME,
+            COLUMNS["result"],
+            Column("measure farthest outside", "measure"),
+            Column("value", "value", digits=None),
+            TOLERANCE,
+            Column("also outside", "others"),
+            Column("finer level that is right", "remedy"),
+        ),
+        Head("Measures and cases"),
+        table(
+            "Measures",
+            [
+                {"kind": kind, "name": name, "unit": unit or "-", "what": what, "tolerance": limit, "reason": reason}
+                for kind, limits in result.settings["tolerances"].items()
+                for name, (limit, reason) in limits.items()
+                for unit, what in (measures[name],)
+            ],
+            Column("measure", "name"),
+            Column("solvers", "kind"),
+            Column("what it is", "what"),
+            TOLERANCE,
+            Column("unit", "unit"),
+            Column("reason", lambda row: _readable(row["reason"])),
+        ),
+        table(
+            "Cases",
+            [{**case, "case": name} for name, case in cases.items()],
+            CASE,
+            Column("what is hard", lambda row: _readable(row["title"])),
+            Column("judged by, and tolerances of its own", _judge),
+            Column(APART, lambda case: ", ".join(f"{name} {short(v)}" for name, v in _outside(case).items()) or "–"),
+            Column("duration [s]", "duration", digits=None),
         ),
     )
 
@@ -185,16 +186,16 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
 
 def _judged(result):
     """The variants that have a row: all but the reference, which judges them."""
-    return [one for one in result.settings["variants"] if one["engine"] != REFERENCE]
+    return [variant for variant in result.settings["variants"] if variant["engine"] != REFERENCE]
 
 
 def _reference(result):
     """Who judges, and how the judge itself fares with others."""
-    own = where(result.rows, part=DEFAULT, engine=REFERENCE)
-    right = len(where(own, result=RIGHT))
+    model_rows = where(result.rows, part=DEFAULT, engine=REFERENCE)
+    right = len(where(model_rows, result=RIGHT))
     return (
         "The reference is the analytic model. It judges all others, and so has no row of its own. Its own judges, see "
-        f"the method, find it right in {right} of {len(own)} cases."
+        f"the method, find it right in {right} of {len(model_rows)} cases."
     )
 
 
@@ -204,11 +205,11 @@ def _cells(result):
     These are run in turn until one is right: the last one counts.
     """
     cells = {
-        (name, NAME.of(one)): NOT_MODELLED
-        if case["oracle"] == SLIDING and not may_slide(one["engine"], one["applies_impact"])
+        (name, NAME.of(variant)): NOT_MODELLED
+        if case["oracle"] == SLIDING and not may_slide(variant["engine"], variant["applies_impact"])
         else NOT_RUN
         for name, case in result.settings["cases"].items()
-        for one in _judged(result)
+        for variant in _judged(result)
     }
     finer = {(row["case"], NAME.of(row)): row for row in where(result.rows, part=FINER)}
     for row in where(result.rows, part=DEFAULT):
@@ -251,11 +252,11 @@ def _counts(result, cells):
         ran = {case: cell for (case, name), cell in cells.items() if name == NAME.of(variant) and "engine" in cell}
         beyond = [cell for case, cell in ran.items() if case in apart]
         rows = [cell for case, cell in ran.items() if case not in apart]
-        found = {kind: len(where(rows, result=kind)) for kind in (RIGHT, DIFFERS, FAILED)}
+        counts = {kind: len(where(rows, result=kind)) for kind in (RIGHT, DIFFERS, FAILED)}
         tried = [row for row in rows if row["remedy"] != NOT_TRIED]
         cured = len(tried) - len(where(tried, remedy=NONE_FOUND))
         right = f"{len(where(beyond, result=RIGHT))} of {len(beyond)}" if beyond else ""
-        yield {**variant, **found, "run": len(rows), "tried": len(tried), FINER: cured, APART: right}
+        yield {**variant, **counts, "run": len(rows), "tried": len(tried), FINER: cured, APART: right}
 
 
 def _outside(case):
@@ -278,7 +279,7 @@ def _title(cells, within, apart, engines):
     listed = _readable(f" ({'; '.join(none[:3])}{' …' if len(none) > 3 else ''})") if none else ""
     more = f"; {APART} {len(beyond)} of {len(apart)}" if apart else ""
     if len(names) > 2:
-        return f"Hard cases: no engine solves {len(none)} of {len(within)}{listed}{more}"
+        return f"Hard cases: no engine gets {len(none)} of {len(within)} right{listed}{more}"
     return f"Hard cases: {len(none)} of {len(within)} are not right in {' and '.join(names)}{listed}{more}"
 
 
@@ -288,8 +289,8 @@ def _most(counts):
     names = " and ".join(NAME.of(row) for row in counts if row[RIGHT] == most)
     run, right, tried, cured = (sum(row[key] for row in counts) for key in ("run", RIGHT, "tried", FINER))
     return (
-        f"Among time-stepping solvers, most cases are right in {names}: {most}. Of the {run - right} results of all of "
-        f"them that are not right, {tried} were run again at finer levels, and {cured} became right."
+        f"{names} does best: {most} cases are right. Of the {run - right} wrong results of all time-stepping solvers, "
+        f"{tried} were rerun at finer levels; {cured} then became right."
     )
 
 
@@ -301,7 +302,7 @@ def _matrix(cells, cases, variants, caption):
 
 def _strip(cells, cases, variants, caption):
     """A column for each case, a line for each variant; on a phone as `_matrix`."""
-    halves, names = _halves(cells, cases, variants), {NAME.of(one): _short(one) for one in variants}
+    halves, names = _halves(cells, cases, variants), {NAME.of(variant): _short(variant) for variant in variants}
     if not halves:
         return None
     foot = 14 + round(UPRIGHT * max(len(_readable(case)) for case in cases))
@@ -323,7 +324,7 @@ def _strip(cells, cases, variants, caption):
 
 
 def _halves(cells, cases, variants):
-    names = {NAME.of(one): _short(one) for one in variants}
+    names = {NAME.of(variant): _short(variant) for variant in variants}
     if not names or not cases:
         return []
     middle, foot, charts = (len(cases) + 1) // 2, 22 + round(SLANT * max(map(len, names.values()))), []
@@ -348,8 +349,8 @@ def _halves(cells, cases, variants):
 def _told(cell, case, name):
     """(sign, class, what it tells under the pointer) of a cell."""
     sign, kind = SIGNS[cell["sign"]]
-    found = f"{cell['measure']} {short(cell['value'])}, tolerance {short(cell['tolerance'])}"
-    return sign, kind, f"{_readable(case)}, {name}: {cell['result']}; {found}; finer levels: {cell['remedy']}"
+    worst = f"{cell['measure']} {short(cell['value'])}, tolerance {short(cell['tolerance'])}"
+    return sign, kind, f"{_readable(case)}, {name}: {cell['result']}; {worst}; finer levels: {cell['remedy']}"
 
 
 def _short(variant):
@@ -366,9 +367,9 @@ def _judge(case):
     known = {FREE: "closed form", SLIDING: "Moreau’s time stepping"}
     words = f"reference, itself by {known.get(case['oracle'], f'the {TWIN}')}"
     words += "" if until is None else f" (this one up to {until:g} s; beyond, the energy ledger)"
-    own = [
+    special = [
         f"{name} {short(limit)} for {kind} solvers: {reason}"
         for kind, limits in case["tolerances"].items()
         for name, (limit, reason) in limits.items()
     ]
-    return _readable("; ".join([words, *own]))
+    return _readable("; ".join([words, *special]))

@@ -257,9 +257,9 @@ def _errors(hard: HardCase, response: Response, truth: Oracle) -> dict[str, floa
     if hard.oracle == SLIDING and truth.response.overturning_time is None and truth.until >= truth.response.end.time:
         errors |= slip_errors(hard, response, truth.response, slip_unit(hard.scene, truth.response))
     if response.energy is None and truth.noise is not None:
-        found = energy_errors(hard.scene, response, until=comparable_until(hard.name)[0], step=hard.step or 0.0)
+        energy = energy_errors(hard.scene, response, until=comparable_until(hard.name)[0], step=hard.step or 0.0)
         errors["energy drift"], errors["energy gain"] = (
-            max(0.0, own - noise) for own, noise in zip(found, truth.noise, strict=True)
+            max(0.0, error - noise) for error, noise in zip(energy, truth.noise, strict=True)
         )
     return errors
 
@@ -270,8 +270,8 @@ def _trajectory_errors(hard: HardCase, response: Response, truth: Oracle) -> dic
     times, tilt = truth.tilt(kernel.history.time)
     errors = {"tilt": float(np.abs(column_at(response, times, "tilt") - tilt).max()) / hard.scene.block.slenderness}
     if hard.scene.base is not None:
-        own, x = (column_at(one, times, "base_displacement") for one in (response, truth.response))
-        errors["displacement"] = float(np.abs(own - x).max() / np.abs(x).max())
+        displacement, x = (column_at(run, times, "base_displacement") for run in (response, truth.response))
+        errors["displacement"] = float(np.abs(displacement - x).max() / np.abs(x).max())
     return errors
 
 
@@ -377,12 +377,12 @@ def plan(request: Request, names: Iterable[str] | None = None, columns: Sequence
     while left:
         label = "hard cases" if finer is None else f"finer levels, round {finer + 1}"
         runs = yield Batch([column.case(case, finer) for case, column in left], measure, label, limit)
-        found = [row_of(case, column, run) for (case, column), run in zip(left, runs, strict=True)]
-        rows += found
+        new_rows = [row_of(case, column, run) for (case, column), run in zip(left, runs, strict=True)]
+        rows += new_rows
         finer = 0 if finer is None else finer + 1
         left = [
             (case, column)
-            for (case, column), row in zip(left, found, strict=True)
+            for (case, column), row in zip(left, new_rows, strict=True)
             if row["result"] != RIGHT
             and finer < len(column.finer)
             and (column.best or not (request.quick or case.scene.duration > LONG))

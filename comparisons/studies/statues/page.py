@@ -58,7 +58,7 @@ def page(result: Result) -> Page:
     return Page(
         _title(result, counts),
         (
-            "A run that differs from the analytic model is reported as differing wherever it is shown.",
+            "Wherever a run that differs from the analytic model is shown, it is marked as differing.",
             *_with_friction(leading(where(counts, friction=DRAWN), settings["variants"])),
             *under_jumps(result),
             *(
@@ -67,73 +67,8 @@ def page(result: Result) -> Page:
                 for row in every
             ),
         ),
-        first=(
-            beside(
-                strip(result, "statues: shift of the boundary"),
-                ranks(
-                    counts,
-                    NAME,
-                    WRONG,
-                    "Share of runs that differ from the analytic model or fail, with 95 % Wilson intervals. Open "
-                    "marks: defaults; arrowheads: none.",
-                    Axis(WRONG.head, LEAST, 1.0, "log", TICKS),
-                    panel="friction",
-                    opened=as_it_comes,
-                ),
-            ),
-            table(
-                f"Engines: right in the outcome, the time of a fall, the number of impacts, within {percent(PEAK, 1)} "
-                f"of peaks and slip, {RESTITUTION_LIMIT:g} of the restitution and 10 % of an impact's loss",
-                counts,
-                NAME,
-                COLUMNS["tier"],
-                Column("scenes", "friction"),
-                Column("right [-]", "right"),
-                *ends(counts),
-                Column("right, of those not left out", "share", percent=True, within="share_within"),
-                Column("near an outcome boundary, and beyond it", "{beyond} of {edge}"),
-                Column("error of the slip, median", "slip", percent=True),
-                Column("worst", "slip_worst", percent=True),
-                Column("error of restitution by states at slipping impacts, rms [-]", "slipping"),
-                COLUMNS["lost"].called("of these missed"),
-                Column("CPU time over the model's [-]", lambda row: row["cpu"] and f"{number(row['cpu'], 2)} ×"),
-            ),
-            table(
-                "The lowest overturning boundary of each drawn statue under a pulse",
-                rated(result),
-                NAME,
-                Column("rating", lambda row: RATINGS[row["rating"]]),
-                FOUND,
-                MEDIAN,
-                LARGEST,
-            ),
-        ),
-        more=(
-            table(
-                "Runs that differ, without the variants “defaults”",
-                [row for row in _runs(result) if row["class"] == "differs" and row["tier"] != "defaults"],
-                NAME,
-                COLUMNS["index"],
-                COLUMNS["friction"],
-                Column("in what", lambda row: typeset("; ".join(row["differences"]))),
-            ),
-            listing(
-                "Each drawn statue under one pulse: shift of its lowest boundary",
-                where(result.rows, part="drawn edge"),
-                where(result.rows, part="drawn shift"),
-                COLUMNS["slenderness"].called("slenderness γ", digits=3),
-                COLUMNS["radius"],
-                Column(
-                    "base over block mass [-]", lambda row: "rigid" if row["base_mass"] is None else row["base_mass"]
-                ),
-                Column("bearings", lambda row: row["law"] or "–"),
-                COLUMNS["period"],
-            ),
-            missing(result),
-            _shares(cells),
-            _sliding([*summed(cells, "support"), *every]),
-            *(f"{NAME.of(row)}: {row['words']}" for row in settings["faults"]),
-        ),
+        first=_summary(result, counts),
+        more=_details(result, cells, settings, every),
         how=_how(result),
         evidence=(
             *(
@@ -142,6 +77,79 @@ def page(result: Result) -> Page:
             ),
             *failures(result),
         ),
+    )
+
+
+def _summary(result, counts):
+    """What stands on the report's first page, too."""
+    return (
+        beside(
+            strip(result, "statues: shift of the boundary"),
+            ranks(
+                counts,
+                NAME,
+                WRONG,
+                "Share of runs that differ from the analytic model or fail, with 95 % Wilson intervals. Open "
+                "marks: defaults; arrowheads: none.",
+                Axis(WRONG.head, LEAST, 1.0, "log", TICKS),
+                panel="friction",
+                opened=as_it_comes,
+            ),
+        ),
+        table(
+            f"Engines: right in the outcome, the time of a fall, the number of impacts, within {percent(PEAK, 1)} "
+            f"of peaks and slip, {RESTITUTION_LIMIT:g} of the restitution and 10 % of an impact's loss",
+            counts,
+            NAME,
+            COLUMNS["tier"],
+            Column("scenes", "friction"),
+            Column("right [-]", "right"),
+            *ends(counts),
+            Column("right, of those not left out", "share", percent=True, within="share_within"),
+            Column("near an outcome boundary, and beyond it", "{beyond} of {edge}"),
+            Column("error of the slip, median", "slip", percent=True),
+            Column("worst", "slip_worst", percent=True),
+            Column("error of restitution by states at slipping impacts, rms [-]", "slipping"),
+            COLUMNS["lost"].called("of these missed"),
+            Column("CPU time over the model's [-]", lambda row: row["cpu"] and f"{number(row['cpu'], 2)} ×"),
+        ),
+        table(
+            "The lowest overturning boundary of each drawn statue under a pulse",
+            rated(result),
+            NAME,
+            Column("rating", lambda row: RATINGS[row["rating"]]),
+            FOUND,
+            MEDIAN,
+            LARGEST,
+        ),
+    )
+
+
+def _details(result, cells, settings, every):
+    """What stands on the study's own page alone."""
+    return (
+        table(
+            "Runs that differ, without the variants “defaults”",
+            [row for row in _runs(result) if row["class"] == "differs" and row["tier"] != "defaults"],
+            NAME,
+            COLUMNS["index"],
+            COLUMNS["friction"],
+            Column("in what", lambda row: typeset("; ".join(row["differences"]))),
+        ),
+        listing(
+            "Each drawn statue under one pulse: shift of its lowest boundary",
+            where(result.rows, part="drawn edge"),
+            where(result.rows, part="drawn shift"),
+            COLUMNS["slenderness"].called("slenderness γ", digits=3),
+            COLUMNS["radius"],
+            Column("base over block mass [-]", lambda row: "rigid" if row["base_mass"] is None else row["base_mass"]),
+            Column("bearings", lambda row: row["law"] or "–"),
+            COLUMNS["period"],
+        ),
+        missing(result),
+        _shares(cells),
+        _sliding([*summed(cells, "support"), *every]),
+        *(f"{NAME.of(row)}: {row['words']}" for row in settings["faults"]),
     )
 
 
@@ -160,8 +168,8 @@ def _title(result, counts):
         for key in ("right", "runs")
     )
     return (
-        f"Random statues: {right[NONE]} of {whole[NONE]} runs of tuned engines are right without friction, "
-        f"{right[DRAWN]} of {whole[DRAWN]} where friction does not suffice; {largest(result)}"
+        f"Random statues: {right[NONE]} of {whole[NONE]} runs of tuned engines are right where blocks cannot slide, "
+        f"{right[DRAWN]} of {whole[DRAWN]} where they slide; {largest(result)}"
     )
 
 
@@ -174,18 +182,18 @@ def _with_friction(rows):
 
     if rows:
         yield (
-            "With friction, engines run only scenes in which it does not suffice. Right in all that is asked are "
-            f"{each(lambda row: '{right} of {runs}'.format(**row))}; the outcome alone is another one or none in "
+            "With friction, engines were run only in scenes where the block actually slides. All measures are right "
+            f"in {each(lambda row: '{right} of {runs}'.format(**row))} runs. The outcome is wrong or missing in "
             f"{each(lambda row: row['runs'] - row['alike'])}. At impacts with slip, restitution by states is off by "
-            f"{each(lambda row: number(row['slipping'], 2))}, rms; the limit of a trusted engine, {TRUSTED:g}, is one "
-            "for impacts without."
+            f"{each(lambda row: number(row['slipping'], 2))} (rms). The limit for a trusted engine, {TRUSTED:g}, "
+            "applies to impacts without slip."
         )
 
 
 def tallies(result: Result) -> list[dict[str, Any]]:
     """A row for each variant, without friction and with it: the `tally` of its runs, how many are right, shares with
     their 95 % intervals, and errors where blocks slide; None where none is judged, or slides."""
-    found = []
+    counted_rows = []
     for (friction, engine, variant), rows in grouped(_runs(result), _scenes, "engine", "variant").items():
         counts = tally(rows, "index", _turned)
         runs, right = counts["runs"], counts["runs"] - counts["differing"]
@@ -194,7 +202,7 @@ def tallies(result: Result) -> list[dict[str, Any]]:
         slipping = np.array([error for row in sound for error in row.get("slipping", ())])
         edge = where(rows, comparable=EDGE)
         ratios = [row["cpu_ratio"] for row in sound if "cpu_ratio" in row]
-        found.append(
+        counted_rows.append(
             {
                 "engine": engine,
                 "variant": variant,
@@ -214,7 +222,7 @@ def tallies(result: Result) -> list[dict[str, Any]]:
                 "cpu": float(np.median(ratios)) if ratios else None,
             }
         )
-    return sorted(found, key=lambda row: row["friction"] == DRAWN)
+    return sorted(counted_rows, key=lambda row: row["friction"] == DRAWN)
 
 
 def _turned(row):
@@ -259,17 +267,17 @@ def glance(result: Result) -> Glance:
 
 def summed(cells: Iterable[Mapping[str, Any]], key: Any) -> list[dict[str, Any]]:
     """The cells' counts added up by a key, with each of `SHARES`: (how many, of how many, share, its interval)."""
-    found = []
+    sums = []
     for (name,), members in grouped(cells, key).items():
         row = {k: sum(cell[k] for cell in members) for k, value in members[0].items() if type(value) is int}
         sound = row["runs"] - row["failed"] - row["undecided"]
         row |= {"engine": "analytic", "name": name, "upright_without": sound - row["falls_without"]}
         for share, (_, whole, _) in SHARES.items():
-            one = row[share] / row[whole] if row[whole] else None
+            fraction = row[share] / row[whole] if row[whole] else None
             within = wilson(row[share], row[whole]) if row[whole] else None
-            row |= {f"{share}_share": one, f"{share}_within": within}
-        found.append(row)
-    return found
+            row |= {f"{share}_share": fraction, f"{share}_within": within}
+        sums.append(row)
+    return sums
 
 
 def _sliding(rows):
@@ -311,10 +319,10 @@ def _shares(cells: Sequence[Mapping[str, Any]]) -> Figure | None:
             xs = [sum(row["name"]) / 2 for row in drawn]
             ys = [row[f"{share}_share"] for row in drawn]
             lows, highs = ([row[f"{share}_within"][end] for row in drawn] for end in (0, 1))
-            told = [f"{words}, of those {of}: {_counted(row, share)}" for row in drawn]
+            tooltips = [f"{words}, of those {of}: {_counted(row, share)}" for row in drawn]
             chart.reach(xs, ys, lows, highs, words, look=looks[words])
             chart.line(xs, ys, words, look=looks[words])
-            chart.dots(xs, ys, words, says=told, look=looks[words])
+            chart.dots(xs, ys, words, says=tooltips, look=looks[words])
         charts.append(chart)
     keys = {words: key_of(words, look=look) for words, look in looks.items()}
     caption = "The analytic model: share of scenes over friction, with 95 % Wilson intervals: " + "; ".join(
@@ -338,16 +346,16 @@ def _how(result: Result) -> tuple[str, ...]:
         f"{number(settings['ratio'], 2)} times the horizontal peak. What the shares say depends on how it is drawn.",
         "Without sliding: the same scene without friction, whose block turns about corners that never slip. It needs "
         "more than the friction where the demand |H|/N exceeds it before any last fall, or N falls to 0. Undecided: "
-        "the base goes on swinging, so that the end is not certain. Errors of the slip are relative, of blocks that "
-        "stay upright; a slip too small to count is compared as one of 0.005 R. CPU time is that of the stepping over "
-        "that of the model’s march, median over scenes.",
-        f"Engines run the first {len(scenes)} scenes in which the friction does not suffice; variants other than the "
-        f"main ones of the engines in question run one scene in {settings['fewer']}. Left out, of all engines alike: "
-        "the normal force falls to 0 without friction, the friction demand is more than any contact provides, or the "
-        "scene is near an outcome boundary: a change by 10⁻⁴, of the friction too, makes such a difference in the "
-        "model. Beyond it: runs of those scenes that fail, or lie outside what such changes do in the model.",
+        "the base goes on swinging, so that the end is not certain. Errors of the slip are relative, for blocks that "
+        "stay upright; a slip too small to count is taken as 0.005 R. CPU time is that of the stepping over that of "
+        "the model’s integration, median over scenes.",
+        f"Engines run the first {len(scenes)} scenes whose friction demand exceeds the friction. Only the main "
+        f"variants of subject engines run all of them; other variants run one in {settings['fewer']}. Left out of all "
+        "engines: scenes whose normal force falls to 0 without friction, whose friction demand no contact provides, "
+        "or which are near an outcome boundary (a change by 10⁻⁴, of the friction too, makes such a difference in the "
+        "model). “Beyond it” counts runs of such scenes that fail, or lie outside what such changes do in the model.",
         f"Boundaries: of {len(where(result.rows, part='drawn edge'))} of the statues, at rest; shapes of pulses take "
-        f"turns, frequencies are drawn from {FREQUENCY[0]:g} to {FREQUENCY[1]:g} times the rocking frequency; of each "
-        f"the lowest boundary that no other one is nearer to than {percent(APART, 1)}, with the block pressed on its "
+        f"turns, frequencies are drawn from {FREQUENCY[0]:g} to {FREQUENCY[1]:g} times the rocking frequency; the "
+        f"lowest boundary is taken, if no other one is nearer than {percent(APART, 1)} and the block is pressed on its "
         "base.",
     )

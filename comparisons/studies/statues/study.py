@@ -1,5 +1,7 @@
-"""Statues drawn at random in the promised range: engines beside the model without friction, with it where it does
-not suffice, and at the overturning boundaries of some; and what sliding does in the model.
+"""Statues drawn at random in the promised range: are engines right, and what does sliding change?
+
+Engines run beside the model without friction, with friction where the block slides, and at the overturning boundaries
+of some statues. What sliding changes is counted in the model.
 """
 
 import itertools
@@ -102,7 +104,7 @@ PARTS = {
 
 # scenes without friction; with it, and how many of these engines run; statues whose boundaries are sought
 FULL, QUICK = (500, 20_000, 50, 20), (20, 400, 10, 2)
-FEWER = 5  # variants other than the main ones of the engines in question run one scene in so many
+FEWER = 5  # variants other than the main ones of subject engines run one scene in so many
 BINS = 6  # of the friction, in which outcomes are counted
 SUPPORTS = ("rigid ground", "isolated")
 CHUNK = 500  # scenes held at once
@@ -153,8 +155,8 @@ def plan(
         {"part": "scene", "engine": "analytic", "variant": "", **row.case.tag, **row.values} for row in known.values()
     ]
     cases = [*_cases(request.engines, reached), *_cases(request.engines, [row.case for row in known.values()])]
-    found = yield Batch(cases, of_engine, "engines")
-    rows += [_run_row(row, known) for row in found]
+    engine_runs = yield Batch(cases, of_engine, "engines")
+    rows += [_run_row(row, known) for row in engine_runs]
     log("analytic boundaries of drawn statues")
     statues = drawn_edges(count if boundaries is None else boundaries)
     rows += [{"part": "drawn edge", **vars(edge), **drawn_columns(scene)} for scene, edge in statues]
@@ -187,16 +189,16 @@ def plan(
 def _recorded(folder: str | None) -> tuple[list[SampledMotion], str]:
     """(recorded motions, where they come from), none where the package that has them is not installed."""
     try:
-        found, _ = folder_motions(folder or PREFIX)
+        folder_records, _ = folder_motions(folder or PREFIX)
     except SceneError:
         if folder is not None:
             raise
         return [], ""
-    return [motion for motions in found.values() for motion in motions if motion.peak], source_of(folder)
+    return [motion for motions in folder_records.values() for motion in motions if motion.peak], source_of(folder)
 
 
 def _cases(engines: Sequence[str], known: Sequence[Case]) -> Iterator[Case]:
-    """Runs of scenes in engines: of all in the main variants of those in question, of one in `FEWER` in others."""
+    """Runs of scenes in engines: all in the main variants of subject engines, one in `FEWER` in others."""
     for engine in map(get_engine, engines):
         for variant in engine.variants:
             step = 1 if engine.subject and variant == engine.default_variant else FEWER
@@ -213,26 +215,29 @@ def fates(scenes: Sequence[Scene]) -> dict[str, np.ndarray]:
     overturned: with it alone. chosen: lacking, decided, and its peak tilt, if it lifts, within the range of a statue: a
     scene for engines.
     """
-    own, plain = simulate_many(scenes), simulate_many([scene.with_(friction=None) for scene in scenes], contact=True)
+    sliding, plain = (
+        simulate_many(scenes),
+        simulate_many([scene.with_(friction=None) for scene in scenes], contact=True),
+    )
     friction = np.array([scene.friction for scene in scenes])
     slenderness = np.array([scene.block.slenderness for scene in scenes])
-    level = ~own.lifted & (friction < np.tan(slenderness))  # such a block cannot lift: |H| <= mu N < N tan(gamma)
-    failed = own.failed | plain.failed
-    sound = ~failed & (own.decided | level) & plain.decided
+    level = ~sliding.lifted & (friction < np.tan(slenderness))  # such a block cannot lift: |H| <= mu N < N tan(gamma)
+    failed = sliding.failed | plain.failed
+    sound = ~failed & (sliding.decided | level) & plain.decided
     lacking = sound & ((plain.friction_demand > friction) | (plain.min_normal_ratio <= 0))
-    small = own.lifted & (own.peak_tilt < RANGE["tilt"][0] * slenderness)
-    falls, falls_without = sound & (own.names == FALLS), sound & (plain.names == FALLS)
+    small = sliding.lifted & (sliding.peak_tilt < RANGE["tilt"][0] * slenderness)
+    falls, falls_without = sound & (sliding.names == FALLS), sound & (plain.names == FALLS)
     return {
         "runs": np.ones(len(scenes), dtype=bool),
         "failed": failed,
         "undecided": ~failed & ~sound,
-        "moves": sound & ((own.names != "stands") | (plain.names != "stands")),
+        "moves": sound & ((sliding.names != "stands") | (plain.names != "stands")),
         "lacking": lacking,
-        "slides": sound & (own.names == "slides"),
+        "slides": sound & (sliding.names == "slides"),
         "falls_without": falls_without,
         "saved": falls_without & ~falls,
         "overturned": falls & ~falls_without,
-        "chosen": lacking & own.decided & ~small,
+        "chosen": lacking & sliding.decided & ~small,
     }
 
 
@@ -245,12 +250,12 @@ def _ensemble(
     for begin in range(0, most, CHUNK):
         numbers = range(begin, min(begin + CHUNK, most))
         scenes, kinds = zip(*(random_slider(records, seed, index) for index in numbers), strict=True)
-        found = fates(scenes)
-        engines = found.pop("chosen")
+        fates_of_scenes = fates(scenes)
+        engines = fates_of_scenes.pop("chosen")
         for k, (index, scene, kind) in enumerate(zip(numbers, scenes, kinds, strict=True)):
             place = SUPPORTS[scene.base is not None], kind, _bin(scene.friction)
-            cell = counts.setdefault(place, dict.fromkeys(found, 0))
-            for name, values in found.items():
+            cell = counts.setdefault(place, dict.fromkeys(fates_of_scenes, 0))
+            for name, values in fates_of_scenes.items():
                 cell[name] += int(values[k])
             if engines[k] and len(chosen) < few:
                 tag = {"index": index, "support": place[0], "motion": kind, "friction": scene.friction}
@@ -290,17 +295,17 @@ def of_engine(case: Case, response: Response) -> dict[str, Any]:
     """
     scene, reference = case.scene, Reference.of(case.scene)
     differences = compare(scene, response, reference).differences
-    quantities = [one.quantity for one in differences]
-    told = {"differences": [str(one) for one in differences], "quantities": quantities}
+    quantities = [difference.quantity for difference in differences]
+    compared = {"differences": [str(difference) for difference in differences], "quantities": quantities}
     if scene.friction is None:
         comparable = reference.comparable
-        return {"class": class_of(comparable, quantities), "comparable": comparable, **told}
+        return {"class": class_of(comparable, quantities), "comparable": comparable, **compared}
     model, radius = reference.model, scene.block.radius
     assert model is not None  # of_model had one
     upright, slips = FALLS not in (response.outcome, model.outcome), (_slip(response), _slip(model))
     return {
         "outcome": response.outcome,
-        **told,
+        **compared,
         "slip_error": _error(*slips, LEAST_SLIP / PEAK * radius)
         if upright and max(slips) >= LEAST_SLIP * radius
         else None,
@@ -322,11 +327,11 @@ def _slip(response: Response) -> float:
 def _restitutions(scene: Scene, model: Response, run: Response, until: float) -> dict[str, Any]:
     """Errors of the restitution at impacts up to a time, see `of_engine`."""
     end = min(until, model.end.time, run.end.time) - LAST * 2 * math.pi / scene.rocking_frequency
-    own = impacts_of(run)
-    wanted, partner = matched(scene, impacts_of(model), own, end)
-    slips = np.array([slips_at(model, time) for time in wanted[:, 0]], dtype=bool)
+    impacts = impacts_of(run)
+    reference, partner = matched(scene, impacts_of(model), impacts, end)
+    slips = np.array([slips_at(model, time) for time in reference[:, 0]], dtype=bool)
     met = partner >= 0
-    errors = own[partner[met], 2] / own[partner[met], 1] - wanted[met, 2] / wanted[met, 1]
+    errors = impacts[partner[met], 2] / impacts[partner[met], 1] - reference[met, 2] / reference[met, 1]
     return {
         "slipping": errors[slips[met]].tolist(),
         "sticking": errors[~slips[met]].tolist(),
@@ -350,7 +355,7 @@ def _run_row(row: Row, known: Mapping[int, Row]) -> dict[str, Any]:
     case, values = row.case, dict(row.values)
     model = None if case.scene.friction is None else known[case.tag["index"]]
     comparable = model.values["comparable"] if model else Reference.of(case.scene).comparable
-    found = {
+    identity = {
         "part": "run",
         "engine": case.solver,
         "variant": case.variant,
@@ -361,11 +366,11 @@ def _run_row(row: Row, known: Mapping[int, Row]) -> dict[str, Any]:
         "comparable": comparable,
     }
     if row.failed:
-        return {**found, "outcome": "failed", "failure": row.failure}
+        return {**identity, "outcome": "failed", "failure": row.failure}
     if model:
         cpu = row.cost["cpu_seconds"]
         values |= {"cpu_per_second": cpu / values.pop("simulated"), "cpu_ratio": cpu / model.cost["cpu_seconds"]}
-    return {**found, **values}
+    return {**identity, **values}
 
 
 BOUNDARY_SEED = 46
@@ -379,19 +384,19 @@ def drawn_edges(count: int) -> list[tuple[Scene, Edge]]:
     Scenes of `random_scene`, at rest; the pulses' shapes take turns. A statue without such a boundary, and one that has
     another boundary within `APART` of it, is passed over.
     """
-    found: list[tuple[Scene, Edge]] = []
+    drawn: list[tuple[Scene, Edge]] = []
     index = 0
-    while len(found) < count:
+    while len(drawn) < count:
         scene = random_scene(BOUNDARY_SEED, index).with_(motion=None, start=Start())
         low, high = map(math.log, FREQUENCY)
         frequency = math.exp(np.random.default_rng([BOUNDARY_SEED, index, 1]).uniform(low, high))
         index += 1
-        for edge in edges(scene, f"drawn block {index}", SHAPES[len(found) % len(SHAPES)], (frequency,)):
+        for edge in edges(scene, f"drawn block {index}", SHAPES[len(drawn) % len(SHAPES)], (frequency,)):
             room = min(1 - edge.low / edge.amplitude, edge.high / edge.amplitude - 1)
             if edge.rises and edge.min_normal >= 0 and room >= APART:
-                found.append((scene, edge))
+                drawn.append((scene, edge))
                 break
-    return found
+    return drawn
 
 
 def drawn_columns(scene: Scene) -> dict[str, Any]:

@@ -95,7 +95,7 @@ def test_misprints_are_seen_in_numbers(rows):
     [(0.212, 0.2124, True, REPRODUCED), (0.212, 0.2126, True, NOT_REPRODUCIBLE), (0.212, 0.212, False, OTHER_MOTION)],
 )
 def test_a_number_outside_the_printed_digits_is_not_reproduced(printed, found, own, status):
-    assert judged("", "", printed, found, 0.0005, own=own)["status"] == status
+    assert judged("", "", printed, found, 0.0005, papers_motion=own)["status"] == status
 
 
 @pytest.mark.parametrize(("period", "damping"), [(2.0, 0.05), (2.0, 0.30)])

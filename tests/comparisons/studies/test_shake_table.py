@@ -41,7 +41,7 @@ from comparisons.plotting.parts import where
 from comparisons.studies import get_study
 from comparisons.studies.rows import read_study, wrong_with
 from comparisons.studies.shake_table import campaign, study
-from comparisons.studies.shake_table.campaign import ALL, FEWEST, PADDED, outcomes_of, read_campaign, told
+from comparisons.studies.shake_table.campaign import ALL, FEWEST, PADDED, disclosed, outcomes_of, read_campaign
 from comparisons.studies.shake_table.judging import (
     BY_RECORD,
     MODEL,
@@ -274,7 +274,9 @@ def test_differences_of_an_engine_and_their_sign_by_hand():
 
 @pytest.mark.parametrize("sizes, few", [((5,), False), ((12, 0), False), ((4,), True), ((12, 1), True), ((0, 4), True)])
 def test_a_sum_over_fewer_than_five_tests_is_not_told(sizes, few):
-    assert told({"right": 3, "low": 0.1}, *sizes) == ({"right": None, "low": None} if few else {"right": 3, "low": 0.1})
+    assert disclosed({"right": 3, "low": 0.1}, *sizes) == (
+        {"right": None, "low": None} if few else {"right": 3, "low": 0.1}
+    )
 
 
 @pytest.mark.parametrize(
@@ -474,7 +476,7 @@ DAMAGE = {
     ),
     "four tests": (
         listed(*(f"{n}.csv,{n % 2},{n}" for n in range(FEWEST - 1))),
-        ("tests.csv: 4 tests", "fewer than 5 are not told", "add tests"),
+        ("tests.csv: 4 tests", "fewer than 5 are not disclosed", "add tests"),
     ),
     "at rest": (motion([0] * 50), ("tests.csv, row 4, motion = '2.csv'", "0 m/s2 throughout", "remove the test")),
     "constant": (motion([0.1] * 50), ("row 4, motion = '2.csv'", "0.1 m/s2 throughout", "remove the test")),
