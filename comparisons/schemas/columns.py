@@ -183,9 +183,9 @@ class Declaration:
 
     def head(self, name: str, percent: bool) -> str:
         """The name with the unit behind it, where it is a number; what is written in per cent says so itself."""
-        measured = not percent and self.type.partition(" or ")[0] in ("number", "whole number", "list")
-        unit = self.shown or self.unit
-        return f"{name} [{unit}]" if measured and name and unit and " " not in unit else name
+        unit, kind = self.shown or self.unit, self.type.partition(" or ")[0]
+        measured = kind in ("number", "whole number") or (kind == "list" and unit != "-")
+        return f"{name} [{unit}]" if measured and not percent and name and unit and " " not in unit else name
 
 
 TYPES = {

@@ -8,9 +8,9 @@ from .rows import SHARED
 # What its rows have; see `comparisons.studies.rows`.
 COLUMNS = SHARED | declared(
     word_of("quantity", "quantity", "whose error is bounded"),
-    word_of("scenes", "scenes", "on which it is measured"),
+    word_of("scenes", "scenes", "scenes on which it is measured"),
     number_of("bound", "tolerance", "largest error allowed; null: none is stated", "see unit"),
-    word_of("unit", "unit", "of error and bound"),
+    word_of("unit", "unit", "unit of error and bound"),
     number_of("measured", "measured when set", "error when the bound was set", "see unit", digits=3),
     number_of("found", "found", "error now", "see unit"),
     flag_of("holds", "holds", "whether the error now is within the bound; null: no bound is stated"),

@@ -104,12 +104,17 @@ RUN = (
     SCENE,
     COLUMNS["engine"],
     Column("outcome", lambda row: f"failed: {row['failure']['reason']}" if row["failure"] else row["outcome"]),
-    Column("overturning time [s]", lambda row: row.get("overturning_time"), digits=5),
-    Column("peak |φ|/γ [-]", lambda row: row.get("peak_tilt_ratio"), digits=4),
-    Column("peak displacement [m]", lambda row: row.get("peak_base_displacement"), digits=5),
-    Column("friction demand [-]", lambda row: row.get("friction_demand"), digits=3),
-    Column("least N/(m g) [-]", lambda row: row.get("min_normal_ratio"), digits=3),
-    Column("CPU time [s]", lambda row: row.get("cpu_seconds")),
+    *map(
+        COLUMNS.__getitem__,
+        (
+            "overturning_time",
+            "peak_tilt_ratio",
+            "peak_base_displacement",
+            "friction_demand",
+            "min_normal_ratio",
+            "cpu_seconds",
+        ),
+    ),
 )
 SHARES = (*CATEGORIES, WITHIN, "isolated lifts", "beyond x_max")
 
@@ -195,54 +200,59 @@ def _motion(result):
             f"all three hold under this motion: {together}. This study uses {result.settings['slenderness']:g} rad.",
             *([f"Not installed, and so not compared: {'; '.join(missing)}"] if missing else ()),
         ),
-        more=(
-            Head("What is printed, beside what is found"),
-            _table(
-                "Figs 4 to 6",
-                _beside(where(result.rows, part="value")),
-                NUMBER,
-                PAPER,
-                COLUMNS["study"].called("analytic model"),
-                Column("engines", "engines"),
-                STATUS,
-            ),
-            _spectra(result),
-            _table(
-                "A linear oscillator at the design period, by either definition of damping, beside the bearings",
-                where(result.rows, part="equivalent"),
-                COLUMNS["definition"],
-                COLUMNS["damping"],
-                COLUMNS["displacement"],
-                COLUMNS["nonlinear"],
-            ),
-            Head("Which slenderness?"),
-            _table(
-                "Slendernesses that fit the paper's claims",
-                claims,
-                COLUMNS["claim"],
-                Column("holds for γ [rad]", lambda row: _spans(row["intervals"])),
-            ),
-            _vulnerable(result),
-            Head("Does isolation help other blocks, and under other motions?"),
-            _benefit(result),
-            _table(
-                "Share of the map over slenderness and intensity",
-                [shares[0], {"motion": f"mean of {len(others)} synthetic motions", **mean}, *others],
-                COLUMNS["motion"],
-                *(
-                    Column(f"isolated upright {key}" if key == SHARES[-1] else key, key, digits=3, percent=True)
-                    for key in SHARES
-                ),
-            ),
-            Head("All runs"),
-            _agreement(runs),
-            _table("All runs", [row for same in grouped(runs, SCENE.of).values() for row in same], *RUN),
-        ),
+        more=_motion_details(result, runs, claims, shares, others, mean),
         evidence=tuple(
             (f"{row['engine']}, {_scene(row)}: {row['failure']['reason']}", row["failure"].get("message", ""))
             for row in runs
             if row["failure"]
         ),
+    )
+
+
+def _motion_details(result, runs, claims, shares, others, mean):
+    """What stands on the page of the paper's motion alone."""
+    return (
+        Head("What is printed, beside what is found"),
+        _table(
+            "Figs 4 to 6",
+            _beside(where(result.rows, part="value")),
+            NUMBER,
+            PAPER,
+            COLUMNS["study"].called("analytic model"),
+            Column("engines", "engines"),
+            STATUS,
+        ),
+        _spectra(result),
+        _table(
+            "A linear oscillator at the design period, by either definition of damping, beside the bearings",
+            where(result.rows, part="equivalent"),
+            COLUMNS["definition"],
+            COLUMNS["damping"],
+            COLUMNS["displacement"],
+            COLUMNS["nonlinear"],
+        ),
+        Head("Which slenderness?"),
+        _table(
+            "Slendernesses that fit the paper's claims",
+            claims,
+            COLUMNS["claim"],
+            Column("holds for γ [rad]", lambda row: _spans(row["intervals"])),
+        ),
+        _vulnerable(result),
+        Head("Does isolation help other blocks, and under other motions?"),
+        _benefit(result),
+        _table(
+            "Share of the map over slenderness and intensity",
+            [shares[0], {"motion": f"mean of {len(others)} synthetic motions", **mean}, *others],
+            COLUMNS["motion"],
+            *(
+                Column(f"isolated upright {key}" if key == SHARES[-1] else key, key, digits=3, percent=True)
+                for key in SHARES
+            ),
+        ),
+        Head("All runs"),
+        _agreement(runs),
+        _table("All runs", [row for same in grouped(runs, SCENE.of).values() for row in same], *RUN),
     )
 
 

@@ -64,54 +64,60 @@ from ..rows import SHARED
 
 # What its rows have; see `comparisons.studies.rows`.
 COLUMNS = SHARED | declared(
-    word_of("where", "where", "in the paper"),
-    word_of("quantity", "quantity", "with its unit"),
+    word_of("where", "where", "place in the paper"),
+    word_of("quantity", "quantity", "name of the quantity, with its unit"),
     number_of("paper", "paper", "what the paper prints", "of the quantity", type="number or word", digits=6),
     number_of("study", "this study", "what is found here", "of the quantity", type="number or word", digits=6),
     number_of("difference", "difference", "found over printed, less 1"),
     word_of("status", "status", "reproduced, corrected, derived, input, not printed or not checkable"),
-    word_of("note", "note", "on the status, in words"),
+    word_of("note", "note", "a note on the status"),
     word_of("printed", "printed", "the equation as printed"),
     word_of("corrected", "should be", "the equation corrected"),
     word_of("measure", "measure", "what shows the misprint, with its unit"),
     number_of(
-        "value_corrected", "value corrected", "of that measure with the corrected equation", "of the measure", digits=5
+        "value_corrected",
+        "value corrected",
+        "value of that measure with the corrected equation",
+        "of the measure",
+        digits=5,
     ),
-    number_of("value_printed", "value printed", "of that measure with the printed one", "of the measure", digits=5),
-    word_of("number", "number", "of the equation"),
+    number_of(
+        "value_printed", "value printed", "value of that measure with the printed equation", "of the measure", digits=5
+    ),
+    word_of("number", "number", "number of the equation"),
     word_of("what", "what", "what is computed"),
-    word_of("check", "how it was checked", "of the equation, with its unit"),
-    number_of("value", "value", "of the check", "of the check", digits=6),
+    word_of("check", "how it was checked", "what is computed to check the equation, with its unit"),
+    number_of("value", "value", "value of the check", "of the check", digits=6),
     flag_of("decided", "decided", "whether nothing can change it any more"),
-    number_of("overturning_time", "overturning time", "when the block has overturned", "s"),
+    number_of("overturning_time", "overturning time", "when the block has overturned", "s", digits=5),
     number_of("unstable_time", "unstable time", "when its overturning was certain", "s"),
     number_of("fall_time", "fall time", "last passage of the slenderness by a block that overturns", "s"),
     number_of("peak_tilt", "peak tilt", "largest |tilt|", "rad"),
-    number_of("peak_tilt_ratio", "peak tilt ratio", "largest |tilt| over the slenderness"),
-    number_of("peak_base_displacement", "peak base displacement", "largest displacement of the base", "m"),
+    number_of("peak_tilt_ratio", "peak |φ|/γ", "largest |tilt| over the slenderness", digits=4),
+    number_of("peak_base_displacement", "peak displacement", "largest displacement of the base", "m", digits=5),
     number_of("peak_base_acceleration", "peak base acceleration", "largest absolute acceleration of the base", "m/s2"),
     whole_of("impact_count", "impact count", "impacts of the run"),
-    number_of("friction_demand", "friction demand", "largest horizontal over normal force under the block"),
-    number_of("min_normal_ratio", "min normal ratio", "least normal force over the weight"),
+    number_of("friction_demand", "friction demand", "largest horizontal over normal force under the block", digits=3),
+    number_of("min_normal_ratio", "least N/(m g)", "least normal force over the weight", digits=3),
     table_of("end", "end", "time, tilt, displacement and rates at the end", "SI"),
     whole_of("steps", "steps", "steps of the run"),
     table_of("settings", "settings", "all settings of the run"),
-    table_of("versions", "versions", "of the packages that computed it"),
-    list_of("warnings", "warnings", "of the run"),
-    number_of("period", "period", "of the oscillator, or of the isolated structure", "s", digits=3),
+    table_of("versions", "versions", "versions of the packages that computed the run"),
+    list_of("warnings", "warnings", "warnings of the run"),
+    number_of("period", "period", "period of the oscillator, or of the isolated structure", "s", digits=3),
     number_of("damping", "its value", "equivalent viscous damping over the critical one", digits=3, percent=True),
-    word_of("definition", "damping", "of that damping"),
+    word_of("definition", "damping", "how that damping is defined"),
     number_of(
         "displacement", "peak displacement of the oscillator", "peak of the equivalent linear oscillator", "m", digits=3
     ),
     number_of("nonlinear", "of the bearings", "peak under the bearings' own law", "m", digits=3),
-    word_of("claim", "claim", "of the paper, on an outcome"),
-    list_of("intervals", "intervals", "of slenderness within which the claim holds: [[low, high]]", "rad"),
+    word_of("claim", "claim", "a claim of the paper on an outcome"),
+    list_of("intervals", "intervals", "intervals [low, high] of slenderness within which the claim holds", "rad"),
     whole_of("evaluations", "evaluations", "runs that the search took"),
-    number_of("step", "step", "of the scan over slenderness", "rad"),
-    word_of("motion", "motion", "under which the cells are computed"),
-    whole_of("cells", "cells", "of the map of slenderness and intensity"),
-    number_of("both stay upright", "both stay upright", "share of cells"),
+    number_of("step", "step", "step of the scan over slenderness", "rad"),
+    word_of("motion", "motion", "motion under which the cells are computed"),
+    whole_of("cells", "cells", "number of cells of the map of slenderness and intensity"),
+    number_of("both stay upright", "both stay upright", "share of cells where both blocks stay upright"),
     number_of(
         "only the isolated one does",
         "only the isolated one does",
@@ -122,15 +128,15 @@ COLUMNS = SHARED | declared(
         "only the free-standing one does",
         "share of cells where the free-standing block alone does",
     ),
-    number_of("both overturn", "both overturn", "share of cells"),
+    number_of("both overturn", "both overturn", "share of cells where both blocks overturn"),
     number_of(
         "only the isolated one does, within 0.30 m",
         "only the isolated one does, within 0.30 m",
-        "as above, the base within 0.30 m",
+        "share of cells where moreover the base stays within 0.30 m",
     ),
     number_of("isolated lifts", "isolated lifts", "share of cells where the isolated block lifts"),
-    number_of("beyond x_max", "beyond x max", "share of cells where the base goes beyond its limit"),
-    number_of("cpu_seconds", "cpu seconds", "CPU time of the run", "s"),
+    number_of("beyond x_max", "beyond x_max", "share of cells where the base goes beyond its limit"),
+    number_of("cpu_seconds", "CPU time", "CPU time of the run", "s"),
 )
 RUN = """engine variant? outcome failure? | scene overturning_time? unstable_time? peak_tilt? peak_tilt_ratio?
     peak_base_displacement? friction_demand? min_normal_ratio? end steps settings versions decided warnings differences
@@ -610,6 +616,7 @@ def _impact_by_balances(scene, rate):
     return np.linalg.solve(balances, [m * h * rate, (about + m * (h * h - b * b)) * rate])
 
 
+# A table of the paper's equations: long, as they are many.
 def _equations(scene, law, got, designed, jumps, literal):
     """Eqs (1) to (14), Fig. 3 and Table 1, each by a number that it must give."""
     run = simulate(load_scene("caryatid-isolated").with_(block={"slenderness": 0.15}), history=False)  # it rocks

@@ -21,12 +21,14 @@ from ..rows import SHARED
 
 # What its rows have; see `comparisons.studies.rows`.
 COLUMNS = SHARED | declared(
-    word_of("mistake", "mistake", "its name; null: the script as it is"),
+    word_of("mistake", "mistake", "name of the mistake; null: the script as it is"),
     word_of("done", "done", "what was done, in words"),
     word_of("group", "group", 'what it concerns: body, contact, steps, forces or motion; or "no matter"'),
     word_of("expected", "expected", "outcome of the analytic model"),
     word_of(
-        "outcome", "outcome", 'of the script\'s run: stands, rocks, overturns; "failed": no end, or a run that is none'
+        "outcome",
+        "outcome",
+        'outcome of the script\'s run: stands, rocks, overturns; "failed": no end, or one that is not physical',
     ),
     word_of("reason", "reason", "why the run failed; null: it did not"),
     number_of("error", "error", "error of restitution by the states at strong impacts: root mean square"),

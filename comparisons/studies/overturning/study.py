@@ -10,7 +10,6 @@ import numpy as np
 
 from analytic import load_scene, overturning_map, simulate
 from engines import get_engine
-from engines.contract import Variant
 
 from ...execution.cases import variant_settings
 from ...execution.plan import Computed, Plan, Request
@@ -41,11 +40,13 @@ COLUMNS = (
     | declared(
         whole_of("runs", "runs judged", "runs that the search took; of a scan, those that are judged"),
         list_of(
-            "interval",
-            "interval",
-            "of a scan: 95 % interval of the share that differs or failed (Wilson, by frequency)",
+            "interval", "interval", "95 % interval of the share of a scan that differs or failed (Wilson, by frequency)"
         ),
-        word_of("region", "region", 'of a confusion: "scan", or "outside", "inside" the band, "held down" where N < 0'),
+        word_of(
+            "region",
+            "region",
+            'region of a confusion table: "scan", "outside" or "inside" the band, "held down" where N < 0',
+        ),
         number_of("kappa", "kappa", "Cohen's kappa of the outcomes"),
         number_of("kappa_low", "kappa low", "lower end of kappa's 95 % interval"),
         number_of("kappa_high", "kappa high", "upper end of kappa's 95 % interval"),
@@ -53,7 +54,7 @@ COLUMNS = (
         number_of(
             "distance",
             "distance from the nearest boundary",
-            "from the nearest boundary of the analytic model, relative",
+            "relative distance from the nearest boundary of the analytic model",
             percent=True,
         ),
     )
@@ -124,14 +125,13 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
         for name, (shipped, block) in GROUNDS.items()
         if name in grid.grounds
     }
+    # 1. boundaries of the analytic model
     arrays, boundaries = _maps(grounds, grid), []
     for ground, shape in itertools.product(grounds, grid.shapes):
         log(f"analytic boundaries: {ground}, {shape}")
         boundaries += edges(grounds[ground], ground, shape, grid.frequencies)
     rows = [{"part": "edge", **vars(edge)} for edge in boundaries]
-    variants = [
-        (name, variant, spec) for name in request.engines for variant, spec in get_engine(name).variants.items()
-    ]
+    # 2. at default levels: outcomes of engines over a coarse scan, and their boundaries
     default, coarser = usual_settings(request.engines)
     runs, points = Runs(grounds, default), _scan(grounds, grid)
     known = _judged(grounds, points, boundaries)
@@ -141,9 +141,11 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
     rows += yield from runs.search_usual("shift", request.engines, boundaries)
     records = _compared(runs.outcomes, default, grounds, boundaries)
     rows += [*_confusions(records, default, grounds), *_disagreements(records)]
+    variants = ((name, variant) for name in request.engines for variant in get_engine(name).variants)
     described = [*itertools.starmap(_described, variants), STEPPING]
     settings = _settings(request, grid, grounds, described)
     yield Computed(settings, rows + runs.failures, arrays)
+    # 3. some of these boundaries at other levels
     chosen = [edge for edge in boundaries if edge.shape == SHAPES[0] and edge.frequency == LEVEL_FREQUENCY]
     for setting in _refined(described, grid.levels):
         rows += yield from runs.search("refinement", [setting], chosen, LEVEL_DISTANCES, LEVEL_TOLERANCE)
@@ -151,8 +153,9 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
     return Computed(settings, rows + runs.failures, arrays)
 
 
-def _described(engine: str, variant: str, spec: Variant) -> dict[str, Any]:
+def _described(engine: str, variant: str) -> dict[str, Any]:
     """A variant as listed in the settings; levels: those that are run."""
+    spec = get_engine(engine).variants[variant]
     tried = () if spec.applies_impact or spec.kind == "defaults" else spec.levels
     return variant_settings(engine, variant, tried) | {"friction": spec.friction}
 

@@ -103,9 +103,9 @@ def _details(runs, summaries, counts):
             RECORD,
             CONFIGURATION,
             COLUMNS["model_outcome"],
-            COLUMNS["outcome"],
+            COLUMNS["outcome"].called("engine"),
             COLUMNS["model_tilt"],
-            Column("peak tilt, engine [-]", lambda row: row.get("tilt")),
+            COLUMNS["tilt"].called("peak tilt, engine"),
             Column("in what", lambda row: typeset("; ".join(row.get("differences", ()))) or None),
         ),
     )

@@ -5,6 +5,7 @@ component's name alone, so that no result could choose it.
 """
 
 import hashlib
+import itertools
 import math
 from collections.abc import Iterable, Iterator
 from typing import Any
@@ -34,20 +35,20 @@ from ..rows import SHARED
 # What its rows have; see `comparisons.studies.rows`.
 COLUMNS = SHARED | declared(
     word_of("record", "record", "name of the record, of both its components"),
-    word_of("component", "component", 'of the record: "a" or "b"'),
+    word_of("component", "component", 'component of the record: "a" or "b"'),
     word_of("configuration", "configuration", '"free-standing" or "isolated"'),
     number_of("intensity", "intensity", "peak ground velocity times omega_r over g tan(slenderness), as scaled"),
     number_of("scale", "scale", "factor on the motion as it was recorded"),
-    number_of("base_mass", "base mass", "of the base over the block's"),
-    number_of("period", "period", "of block and base on the bearings, secant at x_max of the settings", "s"),
+    number_of("base_mass", "base mass", "mass of the base over the block's"),
+    number_of("period", "period", "period of block and base on the bearings, secant at x_max of the settings", "s"),
     number_of("damping", "damping", "equivalent viscous damping of the bearings there, over the critical one"),
-    word_of("law", "law", "of the bearings"),
+    word_of("law", "law", "law of the bearings"),
     number_of("tilt", "tilt", "peak tilt of the run over the slenderness"),
     number_of("displacement", "displacement", "peak base displacement of the run", "m"),
     number_of("horizon", "horizon", "time up to which peaks are compared in all engines", "s"),
     number_of("own_horizon", "own horizon", "time up to which the engine's own errors let peaks be compared", "s"),
     word_of("class", "class", '"right" or "differs" (how the block ends, and when), "failed" or "left out"'),
-    word_of("model_outcome", "model", "of the analytic model"),
+    word_of("model_outcome", "model", "outcome of the analytic model"),
     number_of("model_tilt", "peak tilt, model", "peak tilt of the analytic model over the slenderness"),
     number_of("model_displacement", "model displacement", "peak base displacement of the analytic model", "m"),
     number_of(
@@ -149,19 +150,15 @@ def plan(request: Request, *, records: Folder = None) -> Plan:
         Folder of records, or a set of FEMA P695, in place of all of these.
     """
     try:
-        folder, left = folder_motions(records or PREFIX)
+        moving, left_out = _shuffled(records)
     except SceneError as error:
         if records is not None:
             raise
         row = {"part": "absent", "engine": "analytic", "variant": "", "reason": f"{error.problem}; {error.remedy}"}
         return Computed({"quick": request.quick, "records": 0, "variants": []}, [row])
-    still = [name for name, motions in folder.items() if not all(motion.peak for motion in motions)]
-    left += [f"{name}: left out, it does not move" for name in still]
     many, few = QUICK if request.quick else FULL
-    names = [
-        str(name) for name in np.random.default_rng(SEED).permutation([name for name in folder if name not in still])
-    ]
-    model = yield Batch(_model_cases({name: folder[name] for name in names[:many]}), of_model, "analytic model")
+    names = list(moving)
+    model = yield Batch(_model_cases({name: moving[name] for name in names[:many]}), of_model, "analytic model")
     scenes = [(row.case.scene, {**row.case.tag, **row.values}) for row in model if not row.failed]
     known = [drawn for _, drawn in scenes]
     settings: dict[str, Any] = {
@@ -169,7 +166,7 @@ def plan(request: Request, *, records: Folder = None) -> Plan:
         "source": source_of(records),
         "records": len(names[:many]),
         "records_of_others": len(names[:few]),
-        "left_out": left,
+        "left_out": left_out,
         "ranges": RANGES,
         "laws": LAWS,
         "x_max": X_MAX,
@@ -180,21 +177,27 @@ def plan(request: Request, *, records: Folder = None) -> Plan:
     }
     rows: list[dict[str, Any]] = [{"part": "scene", "engine": "analytic", "variant": "", **drawn} for drawn in known]
     answer = Computed(settings, rows, seed=SEED)
-    for engine, variant, on_all in [
-        variant_of_engine for name in request.engines for variant_of_engine in _variants(name)
-    ]:
+    for engine, variant, on_all in itertools.chain.from_iterable(map(_variants, request.engines)):
         cases = [
             Case(scene, engine, variant, {"history": True}, {key: drawn[key] for key in (*NAMES, "horizon")})
             for scene, drawn in scenes
             if on_all or drawn["record"] in names[:few]
         ]
-        run = yield Batch(cases, of_engine, f"{engine}, {variant}", TIME_LIMIT)
-        mine = [_run_row(row, known) for row in run]
-        rows = [*rows, *mine]
+        runs = yield Batch(cases, of_engine, f"{engine}, {variant}", TIME_LIMIT)
+        rows = [*rows, *(_run_row(row, known) for row in runs)]
         settings = {**settings, "variants": [*settings["variants"], variant_settings(engine, variant)]}
         answer = Computed(settings, rows, seed=SEED)
         yield answer
     return answer
+
+
+def _shuffled(records: str | None) -> tuple[dict[str, list[SampledMotion]], list[str]]:
+    """({record: its components} in an order drawn by `SEED`, what is left out and why) of a folder of records."""
+    folder, left_out = folder_motions(records or PREFIX)
+    still = [name for name, motions in folder.items() if not all(motion.peak for motion in motions)]
+    left_out += [f"{name}: left out, it does not move" for name in still]
+    names = np.random.default_rng(SEED).permutation([name for name in folder if name not in still])
+    return {str(name): folder[str(name)] for name in names}, left_out
 
 
 def _variants(name: str) -> Iterator[tuple[str, str, bool]]:

@@ -49,30 +49,7 @@ def ground(row: Row) -> str:
 def causes(result: Result, variants: Mapping[str, Row]) -> Iterator[Figure | Table | str | None]:
     """Experiments that change one suspected cause: step phase, settings, friction, damping in flight."""
     phases, damped = where(result.rows, part="phase"), where(result.rows, part="flight damping")
-    points = [
-        {**row, "phase": phase, "error": error / row["step"], "by": f"step {1e3 * row['step']:g} ms"}
-        for row in phases
-        for key in (f"phase/{row['engine']}/{row['variant']}/{row['step']:g}",)
-        for phase, error in zip(result.arrays[f"{key}/phase"], result.arrays[f"{key}/error"], strict=True)
-    ]
-    yield lines(
-        points,
-        Column("place of the impact within the step [-]", "phase"),
-        Column("error of restitution over step [1/s]", "error"),
-        "Step phase: with a fixed step the error depends on where in the step the impact falls.",
-        panel=NAME.of,
-        by="by",
-        joined=False,
-    )
-    yield table(
-        "Step phase: a sawtooth of the impact's place within the step, fitted to the error by swings",
-        phases,
-        NAME,
-        Column("step [ms]", lambda row: 1e3 * row["step"]),
-        COLUMNS["explained"],
-        Column("least error [-]", lambda row: row["least"] * row["step"]),
-        Column("greatest error [-]", lambda row: row["most"] * row["step"]),
-    )
+    yield from _step_phases(result, phases)
     settings = [{**row, "ground": ground(row)} for row in where(result.rows, part="experiment")]
     changed: dict[str, Any] = dict(panel=lambda row: f"{row['experiment']}: {NAME.of(row)}", by="ground", log="xy")
     needed = [("x", mu, f"{ground}: {number(mu, 2)}") for ground, mu in result.settings["friction_needed"].items()]
@@ -115,6 +92,34 @@ def causes(result: Result, variants: Mapping[str, Row]) -> Iterator[Figure | Tab
             f"No cause was looked for in {', '.join(without)}: that takes a setting beside the accuracy parameter that "
             "the engine's record names as one to change alone, or a tuned variant with a fixed step."
         )
+
+
+def _step_phases(result, phases):
+    """The error over where in a step the impact falls."""
+    points = [
+        {**row, "phase": phase, "error": error / row["step"], "by": f"step {1e3 * row['step']:g} ms"}
+        for row in phases
+        for key in (f"phase/{row['engine']}/{row['variant']}/{row['step']:g}",)
+        for phase, error in zip(result.arrays[f"{key}/phase"], result.arrays[f"{key}/error"], strict=True)
+    ]
+    yield lines(
+        points,
+        Column("place of the impact within the step [-]", "phase"),
+        Column("error of restitution over step [1/s]", "error"),
+        "Step phase: with a fixed step the error depends on where in the step the impact falls.",
+        panel=NAME.of,
+        by="by",
+        joined=False,
+    )
+    yield table(
+        "Step phase: a sawtooth of the impact's place within the step, fitted to the error by swings",
+        phases,
+        NAME,
+        COLUMNS["step"],
+        COLUMNS["explained"],
+        Column("least error [-]", lambda row: row["least"] * row["step"]),
+        Column("greatest error [-]", lambda row: row["most"] * row["step"]),
+    )
 
 
 def _damping(damped, variants):
@@ -204,7 +209,7 @@ def contact(result: Result) -> Page:
         CONTACT_ERROR,
         Column("cause", lambda row: row["cause"] or f"none (below {settings['least']:g})"),
         COLUMNS["steps"],
-        Column("deepest [mm]", lambda row: 1e3 * row["deepest"] if "deepest" in row else None),
+        COLUMNS["deepest"],
         COLUMNS["energy_lost"],
         Column("main variant", lambda row: "yes" if row["best"] else "no"),
     )

@@ -40,7 +40,7 @@ from ..rows import SHARED
 # What its rows have; see `comparisons.studies.rows`.
 COLUMNS = SHARED | declared(
     number_of("ratio", "base mass over block mass", "base mass over block mass; null: rigid ground"),
-    word_of("scope", "scope", 'of a summary: "all" cells at the default level, or the "levels" of levels'),
+    word_of("scope", "scope", 'what a summary covers: "all" cells at the default level, or the "levels"'),
     whole_of("impacts", "impacts", "strong impacts with a known error"),
     number_of(
         "bias", "mean error by swings", "error of restitution by swing energies, e less eq. (7): mean over impacts"
@@ -59,8 +59,8 @@ COLUMNS = SHARED | declared(
     number_of(
         "worst_state", "worst impact by states", "error of restitution by the states at impacts: largest absolute value"
     ),
-    word_of("factor", "factor", 'of blocks on bearings: what they have in common, or "all"'),
-    number_of("of", "of", "of blocks on bearings: the factor's value", "rad, 1 or s", type="number or word"),
+    word_of("factor", "factor", 'what blocks on bearings have in common, or "all"'),
+    number_of("of", "value", "value of that factor", "rad, 1 or s", type="number or word"),
     number_of(
         "jump_rms",
         "base velocity jump, relative error, rms",
@@ -76,14 +76,18 @@ COLUMNS = SHARED | declared(
         "against (8) corrected",
         "error of the base's velocity jump against eq. (8) corrected, relative: root mean square",
     ),
-    number_of("jump_8_printed", "as printed", "the same against eq. (8) as printed"),
+    number_of(
+        "jump_8_printed",
+        "as printed",
+        "error of the base's velocity jump against eq. (8) as printed, relative: root mean square",
+    ),
     number_of("time_rms", "impact times, relative, rms", "error of impact times, relative: root mean square"),
     number_of("cpu_per_second", "CPU time per simulated second", "CPU time over simulated time", "s/s"),
     number_of("steps_per_second", "steps per simulated second", "steps over simulated time", "1/s", digits=3),
     number_of("order", "order by swings", "slope of log error over log accuracy parameter"),
     word_of("experiment", "experiment", "setting that is varied by itself"),
-    number_of("value", "value (SI)", "of that setting", "of the setting", digits=None),
-    number_of("step", "step", "step size", "s"),
+    number_of("value", "value (SI)", "value of the setting that is varied", "of the setting", digits=None),
+    number_of("step", "step", "step size", "s", shown="ms"),
     number_of(
         "explained",
         "variance explained",
@@ -91,26 +95,32 @@ COLUMNS = SHARED | declared(
         digits=3,
         percent=True,
     ),
-    number_of("least", "least", "end of that sawtooth nearer to zero, error over step", "1/s"),
-    number_of("most", "most", "its other end, error over step", "1/s"),
+    number_of("least", "least", "lower end of the fitted sawtooth, error over step", "1/s"),
+    number_of("most", "most", "upper end of the fitted sawtooth, error over step", "1/s"),
     number_of("friction", "friction there", "coefficient of friction of the variant"),
     number_of("friction_needed", "friction needed", "max |H|/N in the analytic model"),
     number_of(
         "predicted", "predicted by the damping alone", "error of restitution by damping in flight, computed", digits=3
     ),
     number_of("measured", "measured", "error of restitution that was measured", digits=3),
-    whole_of("count", "count", "runs that failed for this reason"),
-    table_of("tag", "tag", "which the first of these runs was"),
+    whole_of("count", "count", "number of runs that failed for this reason"),
+    table_of("tag", "tag", "scene of the first of these runs"),
     flag_of("best", "best", "whether the variant is its engine's main one"),
     flag_of("placed", "placed", "whether the engine says where the block's centre is"),
     number_of("error", "error of restitution", "error of restitution at the impact"),
-    word_of("cause", "cause", "of the error, one word; null below the least that has one"),
-    word_of("words", "how it shows: what it is", "the cause, in a sentence"),
-    table_of("parts", "parts", "of the error, by the impulses that made them; they add up to it"),
+    word_of("cause", "cause", "cause of the error in one word; null if the error is too small to have one"),
+    word_of("words", "how it shows: what it is", "the cause in a sentence"),
+    table_of("parts", "parts", "parts of the error by the impulses that made them; they add up to it"),
     whole_of("steps", "steps in contact", "steps during which the engine was in contact"),
-    number_of("energy_lost", "energy lost", "in the impact, over the kinetic energy before", digits=3, percent=True),
+    number_of(
+        "energy_lost",
+        "energy lost",
+        "energy lost in the impact over the kinetic energy before it",
+        digits=3,
+        percent=True,
+    ),
     table_of("frames", "frames", "what is drawn of the impact: times and values by frame"),
-    number_of("deepest", "deepest", "how deep the landing corner sinks in, at most", "m"),
+    number_of("deepest", "deepest", "largest penetration of the landing corner", "m", shown="mm"),
     word_of("why_not", "why not", "why the impact cannot be analysed"),
 )
 ERRORS = """runs failed impacts lost bias? rms? worst? rms_state? worst_state? jump_rms? jump_worst? jump_8?

@@ -28,7 +28,7 @@ from ..rows import SHARED
 COLUMNS = SHARED | declared(
     word_of("change", "change", "how the scene was changed; null: an engine in place of the model"),
     whole_of("outcomes_changed", "outcomes changed", "runs with another outcome than before the change"),
-    whole_of("to_overturning", "to overturning", "of these, runs that overturn only after it"),
+    whole_of("to_overturning", "to overturning", "number of these runs that overturn only after the change"),
     number_of("low", "low", "lower end of the 95 % Wilson interval of their share"),
     number_of("high", "high", "upper end of the 95 % Wilson interval of their share"),
     number_of(

@@ -38,14 +38,16 @@ from .judging import AS_IT_IS, Outcomes, pairs_of, rows_of
 # What its rows have; see `comparisons.studies.rows`.
 COLUMNS = SHARED | declared(
     word_of("specimen", "specimen", "block that was tested"),
-    word_of("test", "test", "its name in the campaign"),
+    word_of("test", "test", "name of the test in the campaign"),
     word_of("forecast", "predicted by", "what predicts the outcomes"),
-    word_of("judged", "judged on tests", "on which tests, beside those it was fitted to"),
+    word_of("judged", "judged on tests", "tests on which it is judged, beside those it was fitted to"),
     whole_of("size", "size", "tests, five or more"),
     whole_of(
-        "right", "right", "tests whose outcome is predicted; null: not disclosed, see shake_table.campaign.disclosed"
+        "right",
+        "right",
+        "number of tests whose outcome is predicted; null: not disclosed, see shake_table.campaign.disclosed",
     ),
-    whole_of("model_right", "model right", "of the same tests, those whose outcome the model predicts"),
+    whole_of("model_right", "model right", "number of the same tests whose outcome the model predicts"),
     whole_of("alone_right", "alone right", "right answers of the slenderness by itself, fitted to the same tests"),
     number_of("low", "low", "lower end of the 95 % interval of their share (bootstrap over records)"),
     number_of("high", "high", "upper end of the 95 % interval of their share (bootstrap over records)"),
@@ -59,10 +61,10 @@ COLUMNS = SHARED | declared(
         within="brier_interval",
     ),
     list_of("brier_interval", "brier interval", "95 % interval of it (bootstrap over records): [low, high]"),
-    word_of("change", "change of the model", "of the model: what is otherwise than in the scene"),
-    number_of("slenderness", "slenderness", "that is right most often", "rad"),
+    word_of("change", "change of the model", "what is changed in the model"),
+    number_of("slenderness", "slenderness", "slenderness that is right most often", "rad"),
     number_of("centre", "centre", "mean of the normal spread of slendernesses of least Brier score", "rad"),
-    number_of("spread", "spread", "its standard deviation", "rad"),
+    number_of("spread", "spread", "standard deviation of these slendernesses", "rad"),
     word_of("beside", "compared with", "forecast that it is compared with"),
     number_of("difference", "Brier score smaller by", "how much smaller its Brier score is, paired", within="interval"),
     list_of(
@@ -77,7 +79,7 @@ COLUMNS = SHARED | declared(
     whole_of(
         "records_b", "records b", "records most of whose differences are of tests that overturn in the engine alone"
     ),
-    number_of("p_records", "p, sign test by record", "of a sign test of these two"),
+    number_of("p_records", "p, sign test by record", "p of a sign test of the two numbers of records"),
     list_of(
         "neighbours", "neighbours", "tests that the model itself ends differently at the next slenderness of the grid"
     ),

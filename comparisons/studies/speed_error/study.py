@@ -48,7 +48,7 @@ from .integrators import PROBLEMS, SOLVER, timed
 # What its rows have; see `comparisons.studies.rows`.
 COLUMNS = SHARED | declared(
     word_of("model", "modelled", "how the engine's model stands for the scene"),
-    word_of("law", "law", "of the bearings"),
+    word_of("law", "law", "law of the bearings"),
     word_of("parameter", "parameter", "accuracy parameter whose value is the level"),
     table_of(
         "errors",
@@ -57,18 +57,18 @@ COLUMNS = SHARED | declared(
         "[slenderness]; impact_time [s]",
     ),
     whole_of("timings", "timings", "fresh processes in which the run was timed"),
-    number_of("cpu_low", "cpu low", "CPU time of one run: least", "s"),
-    number_of("cpu_high", "cpu high", "CPU time of one run: most", "s"),
+    number_of("cpu_low", "lowest CPU time", "CPU time of one run: least", "s"),
+    number_of("cpu_high", "highest CPU time", "CPU time of one run: most", "s"),
     flag_of("repeatable", "repeatable", "whether all of them gave the same numbers, bit for bit"),
     number_of("simulated", "simulated", "simulated time", "s"),
     whole_of("steps", "steps", "steps of the run"),
     number_of("step", "mean step", "mean step size", "s"),
     number_of("cpu_per_second", "CPU time per simulated second", "CPU time over simulated time", "s/s"),
-    number_of("cpu_per_step", "cpu per step", "CPU time over steps", "s"),
+    number_of("cpu_per_step", "CPU time per step", "CPU time over steps", "s"),
     list_of(
         "boundary_shifts",
         "boundary shifts",
-        "of the boundary of overturning from the reference's, relative, run by run",
+        "relative shift of the overturning boundary from the reference's, run by run",
     ),
     table_of("settings", "settings", "all settings of the run"),
 )

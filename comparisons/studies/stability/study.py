@@ -38,7 +38,7 @@ COLUMNS = SHARED | declared(
     table_of("set", "set", "settings that differ from the default"),
     word_of("result", "result", '"right", "differs" or "failed"'),
     list_of("outside", "outside", "measures that are outside their tolerance"),
-    table_of("errors", "errors", "by measure: [error, tolerance], each in the measure's unit"),
+    table_of("errors", "errors", "[error, tolerance] of each measure, in the measure's unit"),
     number_of("until", "until", "time up to which the motion is compared", "s"),
     whole_of("impacts", "impacts", "impacts of the run"),
     whole_of("steps", "steps", "steps of the run"),

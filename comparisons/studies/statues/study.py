@@ -49,11 +49,11 @@ COLUMNS = (
     SHARED
     | BOUNDARY
     | declared(
-        number_of("radius", "R", "of a drawn block, base corner to centre of mass", "m", digits=3),
-        number_of("base_mass", "base mass", "of a drawn block: of its base over its own; null: rigid ground"),
-        word_of("law", "law", "of a drawn block's bearings; null: none"),
+        number_of("radius", "R", "distance from a base corner to the centre of mass of a drawn block", "m", digits=3),
+        number_of("base_mass", "base mass", "mass of the base over the block's; null: rigid ground"),
+        word_of("law", "law", "law of the bearings; null: none"),
         number_of(
-            "period", "period", "of a drawn block on its bearings, at their stiffness after yielding", "s", digits=3
+            "period", "period", "period of the block on its bearings, at their stiffness after yielding", "s", digits=3
         ),
         whole_of("runs", "scenes", "scenes that the row sums up; of a boundary, runs that the search took"),
         whole_of("index", "scene", "number of the scene in its ensemble: one without a friction, one with", ""),
@@ -66,24 +66,24 @@ COLUMNS = (
             type="number or list",
             digits=3,
         ),
-        whole_of("undecided", "undecided", "of the runs, those whose end is not certain, with friction or without"),
+        whole_of("undecided", "undecided", "number of runs whose end is not certain, with friction or without"),
         whole_of(
-            "moves",
-            "that lift or slide",
-            "of the runs, those in which the block lifts or slides, with friction or without",
+            "moves", "that lift or slide", "number of runs in which the block lifts or slides, with friction or without"
         ),
         whole_of(
             "lacking",
             "that need more than the friction",
-            "of the runs, those that need more than the friction, before any last fall",
+            "number of runs whose friction demand exceeds the friction before any last fall",
         ),
-        whole_of("slides", "slides", "of the runs, those in which the block slides and never lifts"),
-        whole_of("falls_without", "falls without", "of the runs, those that overturn where the block cannot slide"),
-        whole_of("saved", "saved", "of these, those that stay upright as the block slides"),
-        whole_of("overturned", "overturned", "of the runs, those that overturn only as the block slides"),
+        whole_of("slides", "slide and never lift", "number of runs in which the block slides and never lifts"),
+        whole_of(
+            "falls_without", "overturn without sliding", "number of runs that overturn where the block cannot slide"
+        ),
+        whole_of("saved", "saved by sliding", "number of these that stay upright as the block slides"),
+        whole_of("overturned", "overturned by sliding", "number of runs that overturn only as the block slides"),
         flag_of("raised", "raised", "whether the motion has a vertical component"),
-        number_of("slip", "slip", "largest slip over the block's half width"),
-        number_of("tilt", "tilt", "peak tilt over the slenderness"),
+        number_of("slip", "largest slip", "largest slip over the block's half width"),
+        number_of("tilt", "peak tilt", "peak tilt over the slenderness"),
         number_of("slip_error", "slip error", "relative error of the largest slip, of a block that stays upright"),
         number_of("tilt_error", "tilt error", "relative error of the peak tilt, of a block that stays upright"),
         list_of("slipping", "slipping", "errors of the restitution at impacts in which the corner slides"),
@@ -116,6 +116,7 @@ Number = Annotated[int | None, typer.Option(min=1, max=10**6, help="Without fric
 Sliders = Annotated[int | None, typer.Option(min=1, max=10**7, help="With friction. Default 20000, quick 400.")]
 
 
+# Long: a plan reads from the first run to the last row.
 def plan(
     request: Request,
     boundaries: int | None = None,
