@@ -56,10 +56,16 @@ STORED = (
     "direction turned by 30°",
     "impacts lost",
 )
-LISTS = {  # columns of stored rows
+# columns of stored rows, listed as `PARTS`
+LISTS = {
     "comparisons/studies/rows.py": ("tier", "impacts lost"),
-    "comparisons/studies/stability/study.py": ("tier",),
+    "comparisons/studies/restitution/study.py": ("tier", "impacts lost"),
+    **{
+        f"comparisons/studies/{study}/study.py": ("tier",)
+        for study in ("recorded", "shake_table", "stability", "statues")
+    },
 }
+MAKERS = ("number_of", "whole_of", "word_of", "flag_of", "list_of", "table_of")
 CODE = re.compile(r"``.*?``|`[^`]*`|\"(?:" + "|".join(STORED) + r")\"", re.DOTALL)
 NO_TEXT = re.compile(r"^```.*?^```|\{[{%].*?[%}]\}|<style.*?</style>|<[^>]*>", re.DOTALL | re.MULTILINE)
 
@@ -74,6 +80,8 @@ def texts(file):
     nodes = list(ast.walk(ast.parse(source)))
     columns = (node.args for node in nodes if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "Column")
     heads = [given[0] for given in columns if given]
+    makers = (node.args for node in nodes if isinstance(node, ast.Call) and getattr(node.func, "id", "") in MAKERS)
+    heads += [given[1] for given in makers if len(given) > 1]  # of declared columns
     words = [node for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)]
     read = [node.value for node in words if " " in node.value or node in heads]
     return [comments, *(text for text in read if text not in STORED)]
