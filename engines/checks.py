@@ -6,7 +6,6 @@ Momentum of an engine's motion compared with the impulse of the bearing law on t
 from __future__ import annotations
 
 import math
-from array import array
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +15,7 @@ from analytic.motion import SampledMotion
 from analytic.response import Failure, Sliding
 from analytic.rocking import BearingLaw
 
-from .loads import ground_velocity
+from .loads import ground_velocities
 from .swings import ArrayModel
 
 if TYPE_CHECKING:
@@ -243,8 +242,7 @@ def missing_impulse(scene: Scene, trace: Trace) -> tuple[np.ndarray, np.ndarray]
     is constant for an exact solution, whatever the impacts.
     """
     law = bearing_impulse(scene, trace)
-    velocity = ground_velocity(scene.motion)
-    ground = np.fromiter(map(velocity, array("d", trace.time.tobytes())), float, len(trace.time)) if velocity else 0.0
+    ground = ground_velocities(scene.motion, trace.time) if scene.motion else 0.0
     left = momentum(scene, trace) + law + scene.total_mass * ground
     return left - left[0], law
 

@@ -167,36 +167,69 @@ if TYPE_CHECKING:
 
 
 def ground_velocity(motion: Motion | None) -> Callable[[float], float] | None:
-    """A function of time [s] giving the integral of the ground acceleration from 0 [m/s].
+    """A function of time [s], not negative, giving the integral of the ground acceleration from 0 [m/s].
 
     The mean acceleration of a step is the difference of two values over the time between them. An engine that samples
     the acceleration instead loses part of a pulse that starts or ends within a step.
     """
-    if motion is None:
-        return None
+    return _integrals(motion)[0] if motion else None
+
+
+def ground_gain(motion: Motion | None) -> Callable[[float, float], float] | None:
+    """A function of two times [s], in order, giving the velocity that the ground gains between them [m/s].
+
+    It is the difference of two values of `ground_velocity`, in one call.
+    """
+    return _integrals(motion)[1] if motion else None
+
+
+def ground_velocities(motion: Motion, time: np.ndarray) -> np.ndarray:
+    """`ground_velocity` at many times."""
+    if isinstance(motion, SampledMotion):
+        sums, level, slope = _tables(motion)
+        i = np.minimum((time / motion.dt).astype(int), len(sums) - 1)
+        u = time - i * motion.dt
+        return sums[i] + u * (level[i] + 0.5 * slope[i] * u)
+    angle = motion.frequency * np.clip(time - motion.start, 0.0, motion.length)
+    return motion.amplitude / motion.frequency * motion.form.integral(np, angle, motion.phase)
+
+
+def _tables(motion: SampledMotion) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Velocity [m/s], acceleration [m/s2] and its slope [m/s3] from each sample on; both are 0 after the last one."""
+    dt, a = motion.dt, motion.samples
+    sums = np.concatenate(([0.0], np.cumsum(0.5 * dt * (a[1:] + a[:-1]))))
+    return sums, np.append(a[:-1], 0.0), np.append(np.diff(a) / dt, 0.0)
+
+
+def _integrals(motion: Motion) -> tuple[Callable[[float], float], Callable[[float, float], float]]:
+    """(`ground_velocity`, `ground_gain`) of a motion."""
     return _sampled(motion) if isinstance(motion, SampledMotion) else _pulse(motion)
 
 
-def _sampled(motion: SampledMotion) -> Callable[[float], float]:
-    dt, a = motion.dt, motion.samples
+def _sampled(motion: SampledMotion) -> tuple[Callable[[float], float], Callable[[float, float], float]]:
     # compact, and read as quickly as a list
-    sums = array("d", np.concatenate(([0.0], np.cumsum(0.5 * dt * (a[1:] + a[:-1])))).tobytes())
-    level, slope = array("d", a.tobytes()), array("d", (np.diff(a) / dt).tobytes())
-    last, end = len(slope), sums[-1]
+    dt, (sums, level, slope) = motion.dt, (array("d", table.tobytes()) for table in _tables(motion))
+    last = len(sums) - 1
 
     def velocity(t):
-        if t <= 0:
-            return 0.0
         i = int(t / dt)
         if i >= last:
-            return end
+            return sums[last]
         u = t - i * dt
         return sums[i] + u * (level[i] + 0.5 * slope[i] * u)
 
-    return velocity
+    def gain(begin, end):
+        i, j = int(begin / dt), int(end / dt)
+        if j >= last:
+            return sums[last] - velocity(begin)
+        u, w = begin - i * dt, end - j * dt
+        before = sums[i] + u * (level[i] + 0.5 * slope[i] * u)
+        return sums[j] + w * (level[j] + 0.5 * slope[j] * w) - before
+
+    return velocity, gain
 
 
-def _pulse(motion: PulseMotion) -> Callable[[float], float]:
+def _pulse(motion: PulseMotion) -> tuple[Callable[[float], float], Callable[[float, float], float]]:
     frequency, start, length = motion.frequency, motion.start, motion.length
     size, phase = motion.amplitude / frequency, motion.phase
     integral = motion.form.integral
@@ -204,7 +237,7 @@ def _pulse(motion: PulseMotion) -> Callable[[float], float]:
     def velocity(t):
         return size * integral(math, frequency * min(max(t - start, 0.0), length), phase)
 
-    return velocity
+    return velocity, lambda begin, end: velocity(end) - velocity(begin)
 
 
 if TYPE_CHECKING:

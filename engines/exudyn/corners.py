@@ -133,8 +133,8 @@ def run(scene: Scene, settings: CompliantCorners) -> Run:
     model, contact_tilt = assemble(scene, settings, couple)
     sink = contact_tilt * scene.block.half_width
 
-    def drive(model, steps, record):
-        return Phases(model, settings, steps, record, sink=sink, settle=settle, early=early).run()
+    def drive(model, steps):
+        return Phases(model, settings, steps, sink=sink, settle=settle, early=early).run()
 
     ran = step_through(model, drive, 2 * contact_tilt, settle)
     return replace(ran, trace=replace(ran.trace, early=early)) if couple and ran.trace else ran

@@ -72,6 +72,4 @@ def run(scene: Scene, settings: NativeContact) -> Run:
         scene, numberOfSteps=math.ceil(scene.duration / settings.step - 1e-9), automaticStepSize=False
     )
     solver.timeIntegration.newton.useModifiedNewton = False
-    return step_through(
-        model, lambda model, steps, record: in_one_go(model, solver, steps, record), 4 * sink / scene.block.half_width
-    )
+    return step_through(model, lambda model, steps: in_one_go(model, solver, steps), 4 * sink / scene.block.half_width)

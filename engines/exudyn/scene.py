@@ -51,30 +51,26 @@ DISPLACEMENT, FORCE = exu.OutputVariableType.Displacement, exu.OutputVariableTyp
 
 
 class Bearing:
-    """All bearings as one spring and damper between ground and base. Within a step the spring follows the law along its
-    chord over the travel of the step before, by which the errors are those of the law as a formula; the history is
-    committed after each step.
+    """All bearings as one spring and damper between ground and base.
+
+    Within a step the spring follows the law along its chord over the travel of the step before; its errors are then
+    those of the law as a formula. The history is committed after each step.
 
     x, z : base displacement [m] and hysteretic force of one bearing [N] at the last accepted step.
     """
 
     def __init__(self, law: BearingLaw, displacement: float) -> None:
         self.law, self.x, self.z, self.connector = law, displacement, law.start(displacement), None
-
-    def spring(self, ahead: float) -> dict[str, list[float]]:
-        """Its parameters for the next step, in which the base is expected to move by `ahead` [m]."""
-        law = self.law
-        chord = law.kb + (law.hysteretic(self.z, ahead) - self.z) / ahead
-        place = self.x - (law.kb * self.x + self.z) / chord
-        return {"stiffness": [law.count * chord, 0.0, 0.0], "offset": [place, 0.0, 0.0]}
+        self.memory = law.unit.memory
 
     def commit(self, mbs: exu.MainSystem, x: float) -> float:
-        """Move the history to an accepted displacement; the hysteretic force there."""
-        if self.law.unit.memory:
-            ahead = x - self.x
-            self.x, self.z = x, self.law.hysteretic(self.z, ahead)
-            for name, value in self.spring(ahead or LEAST).items():
-                mbs.SetObjectParameter(self.connector, name, value)
+        """Move the history to an accepted displacement, and the spring with it; the hysteretic force there."""
+        law, ahead = self.law, x - self.x
+        self.x, self.z = x, law.hysteretic(self.z, ahead)
+        ahead = ahead or LEAST
+        chord = law.kb + (law.hysteretic(self.z, ahead) - self.z) / ahead
+        mbs.SetObjectParameter(self.connector, "stiffness", [law.count * chord, 0.0, 0.0])
+        mbs.SetObjectParameter(self.connector, "offset", [x - (law.kb * x + self.z) / chord, 0.0, 0.0])
         return self.z
 
 
@@ -270,8 +266,9 @@ def _add_bearing(model: Model) -> None:
     model.bearing = Bearing(law, model.scene.start.base_displacement)
     markers = [mbs.AddMarker(MarkerBodyPosition(bodyNumber=body)) for body in (model.ground, model.base)]
     damping = [law.count * law.damping, 0.0, 0.0]
-    spring = ObjectConnectorCartesianSpringDamper(markerNumbers=markers, damping=damping, **model.bearing.spring(LEAST))
+    spring = ObjectConnectorCartesianSpringDamper(markerNumbers=markers, damping=damping)
     model.bearing.connector = mbs.AddObject(spring)
+    model.bearing.commit(mbs, model.scene.start.base_displacement)
 
 
 def _add_loads(model: Model) -> None:

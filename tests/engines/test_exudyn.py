@@ -4,6 +4,7 @@ import gc
 import math
 import os
 import signal
+import sys
 import threading
 import time
 from dataclasses import asdict, replace
@@ -15,7 +16,7 @@ import pytest
 from bearing_laws import NAMES, bearings_of
 from engine_cases import scene
 
-from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start
+from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start, load_scene
 from analytic import simulate as exact
 from analytic.rocking import BearingLaw, restitution
 from analytic.scene import BEARINGS
@@ -93,17 +94,18 @@ def test_a_block_left_alone_does_not_sink(base):
     assert np.ptp(height) < 0.1 * sink  # what the tolerance of the steps leaves
 
 
-@pytest.mark.parametrize("law", NAMES)
-@pytest.mark.parametrize("way", [-3e-2, 2e-5, 0.2])
-def test_the_bearings_spring_meets_the_law_at_both_ends_of_a_step(law, way):
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("ahead", [-3e-2, 2e-5, 0.2])
+def test_the_bearings_spring_meets_the_law_at_both_ends_of_a_step(name, ahead):
+    """The travel of the last step is that expected of the next one."""
     from engines.exudyn.scene import Bearing
 
-    rule = BearingLaw.of(bearings_of(law, count=4))
-    bearing = Bearing(rule, 0.01)
-    spring = bearing.spring(way)
-    for travel in (0.0, way):
-        x, z = 0.01 + travel, rule.hysteretic(bearing.z, travel)
-        assert spring["stiffness"][0] * (x - spring["offset"][0]) == pytest.approx(rule.force(x, z), rel=1e-10)
+    law, spring = BearingLaw.of(bearings_of(name, count=4)), {}
+    bearing = Bearing(law, 0.01 - ahead)
+    bearing.commit(SimpleNamespace(SetObjectParameter=lambda number, field, value: spring.update({field: value})), 0.01)
+    for travel in (0.0, ahead):
+        x, z = 0.01 + travel, law.hysteretic(bearing.z, travel)
+        assert spring["stiffness"][0] * (x - spring["offset"][0]) == pytest.approx(law.force(x, z), rel=1e-10)
 
 
 @pytest.mark.parametrize(
@@ -184,6 +186,17 @@ def test_small_swings_on_the_stiff_corners_they_ask_for_are_stepped_implicitly()
     given = scene(0.2, duration=3.0, motion=PulseMotion("one-sine", 1.1 * 9.81 * math.tan(0.2), 20.0))
     response = simulate(given, stiffness=5e13)
     assert response.peak_tilt == pytest.approx(exact(given).peak_tilt, rel=0.02) and response.steps < 40_000
+
+
+@pytest.mark.parametrize("name", ["caryatid-isolated", "free-rocking-isolated"])
+def test_a_step_makes_at_most_ten_calls_of_python(name):
+    calls = []
+    sys.setprofile(lambda frame, event, argument: calls.append(None) if event == "call" else None)
+    try:
+        response = simulate(load_scene(name))
+    finally:
+        sys.setprofile(None)
+    assert response.failure is None and len(calls) <= 10 * response.steps
 
 
 # Coulomb's law.

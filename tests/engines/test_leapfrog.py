@@ -6,6 +6,7 @@ import bisect
 import importlib
 import math
 from functools import partial
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -22,7 +23,7 @@ from engines import get_engine
 from engines import loop as stepping
 from engines.checks import IMPULSE_LIMIT, energy_gain, impulse_error
 from engines.contract import Mismatch
-from engines.loads import added_mass, ground_velocity, placement
+from engines.loads import added_mass, ground_gain, ground_velocities, ground_velocity, placement
 from engines.loop import (
     GROWTH,
     HOLD,
@@ -84,6 +85,18 @@ def test_the_grounds_velocity_is_the_integral_of_its_acceleration(shape, phase):
     gained = np.cumsum(pulse.acceleration(0.5 * (time[1:] + time[:-1]))) * (time[1] - time[0])
     assert velocity(pulse.end + 1.0) == pytest.approx(gained[-1], abs=1e-8)
     np.testing.assert_allclose([velocity(t) for t in time[4000::4000].tolist()], gained[3999::4000], rtol=0, atol=1e-8)
+
+
+@pytest.mark.parametrize(
+    "motion", [PulseMotion("one-sine", 2.0, 5.0, start=0.3), SampledMotion(0.3, np.array([1.0, -2.0, 3.0, 4.0]))]
+)
+def test_the_grounds_velocity_is_the_same_at_many_times_and_between_two(motion):
+    """At samples, between them, at the last one and beyond it."""
+    velocity, gain, times = ground_velocity(motion), ground_gain(motion), np.linspace(0.0, 2.0, 41)
+    values = [velocity(t) for t in times.tolist()]
+    np.testing.assert_allclose(ground_velocities(motion, times), values, rtol=0, atol=1e-15)
+    for i, begin in enumerate(times.tolist()):
+        assert [gain(begin, t) for t in times[i:].tolist()] == [value - values[i] for value in values[i:]]
 
 
 # The length of steps: small where a point lands, held after it, growing else; jumps of the ground and the end met.
@@ -541,15 +554,19 @@ def mutate_exudyn(monkeypatch, gain, delay):
     """The spring of the bearings is `gain` times as stiff, and acts from where the base was `delay` [s] ago."""
     from engines.exudyn import scene as model
 
-    spring = model.Bearing.spring
+    commit = model.Bearing.commit
 
-    def changed(self, ahead):
-        one = spring(self, ahead)
-        k = gain * one["stiffness"][0]
-        late = {} if self.connector is None else {"damping": [self.law.count * self.law.damping - k * delay, 0.0, 0.0]}
-        return {**one, "stiffness": [k, 0.0, 0.0], **late}  # at x - delay v
+    def changed(self, mbs, x):
+        def change(connector, name, value):
+            if name == "stiffness":
+                value = [gain * value[0], 0.0, 0.0]
+                damping = self.law.count * self.law.damping - value[0] * delay  # the spring's force at x - delay v
+                mbs.SetObjectParameter(connector, "damping", [damping, 0.0, 0.0])
+            mbs.SetObjectParameter(connector, name, value)
 
-    monkeypatch.setattr(model.Bearing, "spring", changed)
+        return commit(self, SimpleNamespace(SetObjectParameter=change), x)
+
+    monkeypatch.setattr(model.Bearing, "commit", changed)
 
 
 def mutate_leapfrog(monkeypatch, gain, delay):
