@@ -198,11 +198,6 @@ def settled(trace: Trace) -> np.ndarray:
     return found if found.sum() >= 2 else np.ones(len(trace.time), dtype=bool)
 
 
-if TYPE_CHECKING:
-    from analytic import Scene
-
-    from .swings import Trace
-
 # `impulse_error` above which a run counts as failed. A doubled or missing force gives 1. Exact motions sampled at
 # random steps of 1/60 s on average give up to .03, tuned variants at most 2e-3.
 IMPULSE_LIMIT = 0.1

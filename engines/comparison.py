@@ -50,7 +50,7 @@ from .loads import FRICTION
 from .swings import Trace
 
 if TYPE_CHECKING:
-    from analytic import Scene
+    from analytic import Response, Scene
 
 CHANGE = 1e-4  # relative; errors of tuned engines are 1e-5 to 1e-4
 
@@ -87,9 +87,6 @@ def _changed(scene: Scene, **change: dict[str, float]) -> Iterator[Scene]:
     except SceneError:
         return
 
-
-if TYPE_CHECKING:
-    from analytic import Response, Scene
 
 PEAK, RESTITUTION, LOSS, FALL = 0.02, 0.01, 0.1, 0.02
 LEAST_DISPLACEMENT = 1e-5

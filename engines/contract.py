@@ -35,12 +35,12 @@ from analytic.errors import EngineBroken, EngineNotInstalled
 from analytic.motion import SampledMotion
 
 if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
+
+    from analytic import Scene
     from analytic.response import Caution, Failure
 
-    pass
     from .swings import Trace
-
-    pass
 
 # Kinds of a variant. "defaults": the engine as it comes, used as in a first script. "tuned": only the engine moves a
 # body or sets a velocity. "assisted": the adapter sets a velocity, a position or a constraint by the model's event.
@@ -320,9 +320,6 @@ class ToleranceRow:
     source: str
 
 
-if TYPE_CHECKING:
-    from importlib.metadata import EntryPoint
-
 GROUP = "rocking.engines"
 RESERVED = ("analytic",)  # the model's name among the solvers
 
@@ -368,9 +365,6 @@ def _resolve(entry: EntryPoint, origin: str, taken: Collection[str]) -> Engine:
 def _distribution(entry: EntryPoint) -> str:
     return f"{entry.dist.name} {entry.dist.version}" if entry.dist else "of no name"
 
-
-if TYPE_CHECKING:
-    from analytic import Scene
 
 NO_MATTER = "no matter"  # changes that look like mistakes
 GROUPS = ("body", "contact", "steps", "forces", "motion", NO_MATTER)

@@ -31,9 +31,9 @@ from .checks import HEIGHT_TOLERANCE, pivoting_centre, settled
 from .swings import LEAST_SLIDING, ArrayModel, Trace, to_contact
 
 if TYPE_CHECKING:
-    from analytic import Scene
+    from analytic import Response, Scene
 
-    from .swings import Swings, Trace
+    from .swings import Swings
 
 # A landing after which the block stays in flat contact counts as an impact with rate 0 after it, if the rate before it
 # is at least this many times the rate that just reaches contact_tilt. A weaker one is the end of a chatter.
@@ -309,10 +309,6 @@ def _where_it_moves(scene: Scene, trace: Trace, demand: np.ndarray, normal: np.n
         absolute[moves] = -(trace.bearing_force[moves] + friction * N) / scene.base.mass * clean
 
 
-if TYPE_CHECKING:
-    from analytic import Scene
-
-
 def finite_part(trace: Trace, failure: Failure | None) -> tuple[Trace | None, Failure | None]:
     """(steps before the first non-finite one, or None; failure with the last finite state)."""
     finite = np.isfinite(trace.time)
@@ -416,9 +412,6 @@ def ended_early(scene: Scene, trace: Trace) -> Failure | None:
         return Failure("the run ended early", f"last step at {end.time:.9g} s of {scene.duration:.9g} s", end)
     return None
 
-
-if TYPE_CHECKING:
-    from analytic import Response, Scene
 
 COUNTED = 0.1
 LEAST_TILT = 0.01  # of the slenderness: a smaller tilt is compared as one of that size

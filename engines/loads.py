@@ -39,7 +39,8 @@ from analytic.motion import SampledMotion
 from analytic.rocking import BearingLaw, RockingModel, momentum_restitution
 
 if TYPE_CHECKING:
-    from analytic import Scene
+    from analytic import PulseMotion, Scene
+    from analytic.motion import Motion
 
 # Of the restitution of (7). A block that is slowed further hardly reaches the ground; one that is sped up is lifted
 # where (f - 1) b |phi'| exceeds g `acts`: at f = 1.02 e is off by up to .06, at 1.05 by up to .4.
@@ -161,11 +162,6 @@ class Couple:
         return -self.inertia * self.gain * math.copysign(travel, rate) / step
 
 
-if TYPE_CHECKING:
-    from analytic import PulseMotion
-    from analytic.motion import Motion
-
-
 def ground_velocity(motion: Motion | None) -> Callable[[float], float] | None:
     """A function of time [s], not negative, giving the integral of the ground acceleration from 0 [m/s].
 
@@ -240,10 +236,6 @@ def _pulse(motion: PulseMotion) -> tuple[Callable[[float], float], Callable[[flo
     return velocity, lambda begin, end: velocity(end) - velocity(begin)
 
 
-if TYPE_CHECKING:
-    from analytic import Scene
-
-
 def placement(scene: Scene) -> tuple[float, float, float, float]:
     """Centre of the block and its velocity at the start: (x, z [m], x', z' [m/s]), z from its standing height.
 
@@ -261,9 +253,6 @@ def placement(scene: Scene) -> tuple[float, float, float, float]:
     )
 
 
-if TYPE_CHECKING:
-    from analytic import Scene
-
 UNIT_RADIUS = 1.0884  # m, of the Caryatid, for which the variants' times are given
 
 
@@ -271,9 +260,6 @@ def size_scale(scene: Scene) -> float:
     """Factor on times that are set for a block of `UNIT_RADIUS`: rocking scales with sqrt(R/g)."""
     return math.sqrt(scene.block.radius / UNIT_RADIUS)
 
-
-if TYPE_CHECKING:
-    from analytic import Scene
 
 # Largest step over the time in which the bearings' vibration advances by 1 rad; stable below 2.
 VIBRATION = 0.2

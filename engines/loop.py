@@ -219,11 +219,6 @@ def raw_trace_of(rows: Sequence[Sequence[float]] | np.ndarray, scene: Scene, con
     return Trace(t, tilt, rate, x, v, total, contact_tilt, centre=place, first_script=True)
 
 
-if TYPE_CHECKING:
-    from analytic import Scene
-
-    from .swings import Trace
-
 # s, at `scale.UNIT_RADIUS` and the default level. On a light base the error of e is proportional to it.
 SMALLEST_STEP = 1e-6
 # s, likewise: time before a landing in which the couple of a given restitution acts, a hundred of these. With 2e-4 and

@@ -30,9 +30,11 @@ from .loads import ALONE, holding, reached
 from .swings import find_swings
 
 if TYPE_CHECKING:
-    from analytic import Scene
+    from types import ModuleType
 
-    from .contract import Engine
+    from analytic import Response, Scene
+
+    from .swings import Trace
 
 
 def choose(engine: Engine, variant: str | None, changes: Mapping[str, Any]) -> tuple[str, Any]:
@@ -79,9 +81,6 @@ def refuse_restitution(engine: Engine, scene: Scene) -> None:
             f"leave it out, use the variant {able[0]}, {ALONE}" if able else f"leave it out, {ALONE}",
         )
 
-
-if TYPE_CHECKING:
-    from analytic import Response, Scene
 
 ROUNDING = 1e-9  # tolerance of a computed value at a limit
 # {quantity: (lowest value, highest value, in words)}
@@ -141,13 +140,6 @@ def _values(scene: Scene, response: Response) -> dict[str, float]:
         found["tilt"] = response.peak_tilt_ratio
     return found
 
-
-if TYPE_CHECKING:
-    from types import ModuleType
-
-    from analytic import Response, Scene
-
-    from .swings import Trace
 
 # A run that ends within this many settling times of the contact, or this many steps, after a landing or an uplift ends
 # during the impact. With an engine that switches corners within a step, as MuJoCo does, the block is then on both

@@ -127,10 +127,6 @@ def _touch(body: dartpy.dynamics.BodyNode, size: list[float], place: list[float]
     node.getDynamicsAspect().setFrictionCoeff(friction)
 
 
-if TYPE_CHECKING:
-    from analytic import Scene
-
-
 VARIANTS = {
     "impact-aware": Variant(
         ImpactAware(),

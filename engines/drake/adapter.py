@@ -96,9 +96,6 @@ def _solid(mass: float, inertia: float) -> SpatialInertia:
     return SpatialInertia(mass, [0.0, 0.0, 0.0], UnitInertia(*[inertia / mass] * 3))
 
 
-if TYPE_CHECKING:
-    from analytic import Scene
-
 VARIANTS = {
     "first-script": Variant(
         FirstScript(1e-3),  # Drake's own default

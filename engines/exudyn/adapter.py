@@ -25,6 +25,9 @@ from . import stepping as phases
 from .scene import MEASURED
 
 if TYPE_CHECKING:
+    from analytic import Scene
+
+    from ..contract import Run
     from .native import NativeContact
     from .scene import CompliantCorners
 
@@ -140,13 +143,6 @@ CONSTANTS = {
     "engines.loads:VIBRATION": "step over the time in which the bearings' vibration advances by 1 rad",
 }
 
-
-if TYPE_CHECKING:
-    from analytic import Scene
-
-    from ..contract import Run
-    from .native import NativeContact
-    from .scene import CompliantCorners
 
 # Replayed bearing force, over f0: round-off stays below 1e-12.
 REPLAY_LIMIT = 1e-9

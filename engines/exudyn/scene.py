@@ -40,7 +40,6 @@ from ..loads import placement
 
 if TYPE_CHECKING:
     from analytic import Scene
-    from analytic.rocking import BearingLaw
 
     from ..loads import Couple
 
@@ -218,12 +217,6 @@ class Model:
         ]
 
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from analytic import Scene
-
-
 def standing_until(scene: Scene) -> float:
     """Time [s] at which a run begins: the beginning of the motion, if everything is at rest until then."""
     return min(scene.motion.start, scene.duration) if scene.motion and scene.start == Start() else 0.0
@@ -304,9 +297,6 @@ def read_back(model: Model) -> dict[str, tuple[Any, Any]]:
         values[f"{item['objectType']} {number} {name}"] = (item[name], wanted)
     return values
 
-
-if TYPE_CHECKING:
-    from analytic import Scene
 
 # The block for which the default values were determined: the Caryatid, mass [kg], radius [m], gravity [m/s2].
 MEASURED = 3172.05, 1.0884, 9.81

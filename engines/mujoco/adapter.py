@@ -203,10 +203,6 @@ class MujocoBodies:
         self.model.dof_M0[0] = self.model.body_mass[1] = self.base.mass + added
 
 
-if TYPE_CHECKING:
-    from analytic import Scene
-
-
 # tests/engines/test_physics.py shows it: friction and contact are one convex problem, in which a sliding contact opens.
 SLIPPING = (
     "a corner that slides rises, the faster the higher, by some millimetres at 1 m/s: a block whose friction is below "

@@ -247,9 +247,6 @@ class BulletBodies:
         pybullet.changeDynamics(self.body, BASE, mass=self.mass + added, physicsClientId=self.client)
 
 
-if TYPE_CHECKING:
-    from analytic import Scene
-
 THICKNESS = 1.0  # m, of the slab
 # Gap [m] below which Bullet keeps contact points: its own default. It is global to the process and not returned by the
 # getter, so that it is set in every client.
@@ -385,10 +382,6 @@ CONSTANTS = {
     f"{HERE}:STANDING_REST": "the same on two corners",
     f"{HERE}:MOST_ITERATIONS": "iterations of the contact solver, at most",
 }
-
-
-if TYPE_CHECKING:
-    from analytic import Scene
 
 
 TUNED, FIXED = ImpactAware(1e-3, 1e-3), FixedStep(1e-4)

@@ -138,10 +138,6 @@ class ChipmunkBodies:
         require(expected)
 
 
-if TYPE_CHECKING:
-    from analytic import Scene
-
-
 VARIANTS = {
     "impact-aware": Variant(
         ImpactAware(),
