@@ -32,7 +32,9 @@ from .simulating import Simulator
 
 # Engines are imported by name, not by statement, so that a result of one engine does not depend on the other engines.
 # The subject engines come first.
-_records: list[Engine] = [import_module(f"{__name__}.{one.name}").ENGINE for one in iter_modules(__path__) if one.ispkg]
+_records: list[Engine] = [
+    import_module(f"{__name__}.{package.name}").ENGINE for package in iter_modules(__path__) if package.ispkg
+]
 _declared = {engine.name: engine for engine in sorted(_records, key=lambda engine: (not engine.subject, engine.name))}
 BUILT_IN = tuple(_declared)
 _found, BROKEN = find_engines(_declared)  # BROKEN: the errors of entries that hold no engine, by name

@@ -1,6 +1,7 @@
-"""Checks that every engine run must pass at any step: bearing law, position of the block, no energy gain.
+"""Checks that every engine run must pass at any step size.
 
-Momentum of an engine's motion compared with the impulse of the bearing law on that motion.
+They concern the bearing law, the position of the block, its energy, and its momentum, which is compared with the
+impulse of the bearing law on the engine's motion.
 """
 
 from __future__ import annotations
@@ -105,7 +106,7 @@ def slips(scene: Scene, trace: Trace) -> np.ndarray | None:
 
 
 def slip_of(scene: Scene, trace: Trace) -> Sliding | None:
-    """What `slips` comes to, all 0 where that is no slip; its work and modes are not known."""
+    """The `Sliding` of a run from its `slips`: all 0 where they are too small. Its work and modes are not known."""
     if (slip := slips(scene, trace)) is None:
         return None
     peak = float(np.abs(slip).max())
@@ -115,11 +116,11 @@ def slip_of(scene: Scene, trace: Trace) -> Sliding | None:
 
 
 def check_place(scene: Scene, trace: Trace, overturned: bool) -> Failure | None:
-    """A `Failure` if at the end the block has sunk into its base, left it or, without a friction in the scene, slid on
-    it, else None.
+    """A `Failure` if at the end the block has sunk into its base, left it or slid on it, else None.
 
-    During the run it may fly and land again, if it lands where it stood. A block that overturns may do so anywhere.
-    None, too, if the block's position was not read from the engine, and in a first script, whose contact is soft.
+    A block may slide where the scene gives a friction. During the run it may fly, if it lands where it stood. A block
+    that overturns may end anywhere. Nothing is checked where the block's position was not read from the engine, and in
+    a first script, whose contact is soft.
     """
     if trace.centre is None or overturned or trace.first_script:
         return None
@@ -194,8 +195,8 @@ def settled(trace: Trace) -> np.ndarray:
     """
     crossings = trace.time[1:][np.diff(np.sign(trace.tilt)) != 0]
     last = np.searchsorted(crossings, trace.time, side="right") - 1
-    found = trace.time - np.concatenate(([-math.inf], crossings))[last + 1] >= trace.settle
-    return found if found.sum() >= 2 else np.ones(len(trace.time), dtype=bool)
+    clean = trace.time - np.concatenate(([-math.inf], crossings))[last + 1] >= trace.settle
+    return clean if clean.sum() >= 2 else np.ones(len(trace.time), dtype=bool)
 
 
 # `impulse_error` above which a run counts as failed. A doubled or missing force gives 1. Exact motions sampled at

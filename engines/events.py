@@ -1,15 +1,14 @@
-"""Location of impacts, uplifts and rests in a trace, and its contact forces, by the model's equations.
+"""Events of a trace (impacts, uplifts, rests), its contact forces and its end; matching of two runs' impacts.
 
-The end of a trace: a state that is not finite, overturning, or an end before the scene's duration.
+Events and contact forces follow from the states by the model's equations. A trace ends at a state that is not finite,
+at overturning, or before the scene's duration.
 
-Matching of the impacts of two runs of one scene: which count, which match, which have no match.
+Impacts are those at tilt 0. The analytic model also has impacts in which a corner lands at another tilt after a flight.
+They are left out here, as the trace of an engine does not show them.
 
-Impacts are those at tilt 0. A corner that lands at another tilt, after a flight, is an impact of the analytic model,
-too, but the trace of an engine does not tell it. It is left out here.
-
-Two impacts on the same side match if they are closer to each other than to the next ones on that side. An impact counts
-if its rate is at least `COUNTED` of the largest of its run, and at least that of a swing of a tenth of `LEAST_TILT`: an
-engine cannot tell smaller ones from the compliance of its contact.
+Two impacts of two runs on the same side match if they are closer to each other than to the next ones on that side. An
+impact counts if its rate is at least `COUNTED` of the largest of its run, and at least that of a swing of a tenth of
+`LEAST_TILT`: an engine cannot tell smaller ones from the compliance of its contact.
 """
 
 from __future__ import annotations
@@ -288,8 +287,11 @@ def at_contact(scene: Scene, trace: Trace) -> tuple[np.ndarray, np.ndarray, np.n
 
 
 def _where_it_moves(scene: Scene, trace: Trace, demand: np.ndarray, normal: np.ndarray, absolute: np.ndarray) -> None:
-    """Write over the measures of a block that sticks where its corner slides or is in the air: (S1) to (S4) of
-    `analytic.sliding.equations` at the scene's friction. While a compliant contact relaxes nothing is measured."""
+    """Replace the measures where a corner slides or the block is in the air; the given ones hold where it sticks.
+
+    They follow from (S1) to (S4) of `analytic.sliding.equations` at the scene's friction. Nothing is measured while a
+    compliant contact relaxes.
+    """
     model, mu = ArrayModel.of(scene), scene.friction
     apart = trace.centre - pivoting_centre(scene, trace)
     flies = apart[:, 1] > HEIGHT_TOLERANCE * model.R
@@ -429,7 +431,7 @@ def impacts_of(response: Response) -> np.ndarray:
 
 
 def matched(scene: Scene, impacts: np.ndarray, others: np.ndarray, until: float) -> tuple[np.ndarray, np.ndarray]:
-    """(`impacts` that count up to `until`, index in `others` of the match of each, -1 without one)."""
+    """(`impacts` that count up to the time `until`; for each the index of its match in `others`, or -1)."""
     partner = np.full(len(impacts), -1)
     for side in (-1.0, 1.0):
         mine, theirs = (np.flatnonzero(np.sign(rows[:, 1]) == side) for rows in (impacts, others))
@@ -454,8 +456,8 @@ def counts(scene: Scene, impacts: np.ndarray, share: float = COUNTED) -> np.ndar
     return ~small
 
 
-def parting(scene: Scene, one: Response, other: Response) -> float:
+def parting(scene: Scene, first: Response, second: Response) -> float:
     """Time [s] of the first impact that counts of either run without a match in the other; inf where all match."""
-    pairs = (one, other), (other, one)
-    rows = (matched(scene, impacts_of(here), impacts_of(there), math.inf) for here, there in pairs)
-    return float(min(impacts[partner < 0, 0].min(initial=math.inf) for impacts, partner in rows))
+    pairs = (first, second), (second, first)
+    matches = (matched(scene, impacts_of(run), impacts_of(other), math.inf) for run, other in pairs)
+    return float(min(impacts[partner < 0, 0].min(initial=math.inf) for impacts, partner in matches))

@@ -1,6 +1,6 @@
-"""A run in a process of its own, so that of a hang, a crash or Ctrl-C only that run is lost.
+"""A run in a process of its own, so that a hang, a crash or Ctrl-C loses only that run.
 
-Suppression of what a package prints when it is imported; other output passes.
+`without` suppresses what a package prints when it is imported; other output passes.
 """
 
 from __future__ import annotations

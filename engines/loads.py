@@ -1,8 +1,9 @@
-"""A given restitution in a contact engine: a couple on the block before each landing.
+"""Loads that an engine is given, and its start: couple, ground velocity, placement, time scale, vibration.
 
-A contact engine computes the restitution of eq. (7), and parameters of its contact do not change it: an impulse at the
-landing corner has no moment about that corner. A couple takes a share of the tilt rate before the landing instead. It
-acts from the time at which the block, at its rate w0 at tilt phi0, would need less than `acts` to reach the ground:
+A couple on the block before each landing gives a contact engine the restitution of a scene. The engine itself computes
+that of eq. (7), and parameters of its contact do not change it: an impulse at the landing corner has no moment about
+that corner. The couple takes a share of the tilt rate before the landing instead. It acts from the time at which the
+block, at its rate w0 at tilt phi0, would need less than `acts` to reach the ground:
 
     M = -J' k phi',   J' = J_O - (m h)^2/M on a base, J_O on the ground,   k = (1 - f) |w0/phi0|
 
@@ -11,17 +12,13 @@ that of (7). Gravity and base accelerate the block meanwhile, by a, of which it 
 a (T - f T0)/phi0, with T0 = |phi0/w0| the time to the ground without couple and T = T0 ln(1/f)/(1 - f) with it. The
 base keeps the momentum of block and base, so the jump of its velocity is that of (8) for the given restitution.
 
-Ground velocity over time, exact for records and pulses; its differences are the impulses of an engine's steps.
+The ground velocity is exact for records and pulses; its differences are the impulses of an engine's steps. The start of
+the block is the same for every engine. Times scale with the size of the block.
 
-Initial position and velocity of the block, the same for every engine.
-
-Scaling of times with the size of the block.
-
-A base on stiff or viscous bearings in a leapfrog engine: its longest stable step and its added mass.
-
-The viscous force is implicit: the known force c v acts on a base heavier by `added_mass`, which is exact if the other
-forces are constant in the step. Applied explicitly, it would be unstable where step times c/mass exceeds 2; a tenth of
-that makes PyBullet's block fall .25 s late.
+Stiff or viscous bearings limit the step of a leapfrog engine, and add mass to the base: the viscous force is implicit.
+The known force c v acts on a base heavier by `added_mass`, which is exact if the other forces are constant in the step.
+Applied explicitly, it would be unstable where step times c/mass exceeds 2; a tenth of that makes PyBullet's block fall
+.25 s late.
 """
 
 from __future__ import annotations
@@ -50,47 +47,49 @@ ALONE = "or run the analytic model, which takes any up to 1: `rocking run SCENE`
 
 
 def reached(scene: Scene) -> bool:
-    """Whether a couple gives the restitution that a scene asks for, if it does."""
-    given, own = scene.block.restitution, momentum_restitution(scene)
-    return given is None or own > 0 and LEAST * own <= given <= MOST * own
+    """Whether a couple can give the restitution of a scene; true where the scene gives none."""
+    given, momentum = scene.block.restitution, momentum_restitution(scene)
+    return given is None or momentum > 0 and LEAST * momentum <= given <= MOST * momentum
 
 
 def share_of(scene: Scene) -> float | None:
-    """f of a scene that gives the restitution, else None.
+    """The share f of a scene that gives the restitution, else None.
 
     Raises
     ------
     SceneError
         It is not within `LEAST` and `MOST`.
     """
-    given, own = scene.block.restitution, momentum_restitution(scene)
+    given, momentum = scene.block.restitution, momentum_restitution(scene)
     if given is None:
         return None
     if not reached(scene):
         raise SceneError(
             "block.restitution",
             given,
-            f"{'above' if given > MOST * own else 'below'} what a couple before each landing reaches, {LEAST:g} to "
-            f"{MOST:g} times the {own:.6g} of eq. (7)",
+            f"{'above' if given > MOST * momentum else 'below'} what a couple before each landing reaches, "
+            f"{LEAST:g} to {MOST:g} times the {momentum:.6g} of eq. (7)",
             f"give one between, leave it out, {ALONE}",
         )
-    return given / own
+    return given / momentum
 
 
 def holding(scene: Scene) -> Scene:
-    """The scene; where it gives the restitution, with as much friction as the strongest couple asks of the pivot.
+    """The scene, with more friction where it gives the restitution and the pivot would slip under the couple.
 
-    That is (1 - mt) h/b, mt the block's share of the moving mass, 0 on the ground. With less the pivot slips: on the
-    ground with friction .6, e is up to .3 off.
+    The strongest couple needs a friction of (1 - mt) h/b, mt the block's share of the moving mass, 0 on the ground.
+    With less the pivot slips: on the ground with friction .6, e is up to .3 off.
     """
     if scene.block.restitution is None:
         return scene
-    asked = (1 - scene.mass_share) / math.tan(scene.block.slenderness)
-    return scene if asked <= (scene.friction or FRICTION) else scene.with_(friction=asked)
+    needed = (1 - scene.mass_share) / math.tan(scene.block.slenderness)
+    return scene if needed <= (scene.friction or FRICTION) else scene.with_(friction=needed)
 
 
 def unkept_friction(scene: Scene) -> str:
-    """That a script does not keep the friction of a scene, a sentence: a couple needs more; "" where it does.
+    """A sentence that says that a script does not keep the friction of a scene; "" where it does.
+
+    It does not where the couple of a given restitution needs more.
 
     Raises
     ------
@@ -108,9 +107,10 @@ def unkept_friction(scene: Scene) -> str:
 
 @dataclass
 class Couple:
-    """The couple of a scene. kept: f; inertia: J' [kg m2]; acts: time before a landing [s]; gain: k, 0 outside it.
+    """The couple of a scene.
 
-    Rates are half a step early, as in `stepping`; steps: the last two, rate: the last one.
+    kept: f. inertia: J' [kg m2]. acts: time before a landing [s]. gain: k [1/s], 0 while no couple acts. steps: the
+    last two. rate: the last one; rates are half a step early, as in `engines.loop`.
     """
 
     kept: float
@@ -122,7 +122,7 @@ class Couple:
 
     @classmethod
     def of(cls, scene: Scene, acts: float) -> Self | None:
-        """That of a scene which gives the restitution, else None. acts [s].
+        """The couple of a scene that gives the restitution, else None. acts [s].
 
         Raises
         ------

@@ -1,12 +1,13 @@
-"""The stepping loop of a leapfrog engine: step lengths, loads, stored rows, and the end of a run.
+"""The stepping loop of a leapfrog engine: step lengths, loads, recorded rows, and the end of a run.
 
 Leapfrog: displacements are known at the steps' ends t_n, velocities half a step earlier. The time between the
 velocities at t_n - h/2 and t_n + h'/2 is (h + h')/2, but an engine multiplies the loads of a step by its own h'. Loads
 scaled by (h + h')/(2 h') make the scheme second order for any sequence of steps, the start included (h = 0).
 
-Only the engine moves a body or sets a velocity. The adapter gives it the loads and the length of the step.
+Only the engine moves a body or sets a velocity. The adapter gives it the loads and the length of the step, and checks
+once that it holds the values it was given (`require`).
 
-Length of the next step of a simulation with contacts, from gaps and closing speeds only.
+The length of a step in a simulation with contacts follows from gaps and closing speeds only:
 
     h = clamp(min((1 + growth) h, share * gap/closing over contact points on their way to a landing), h_min, h_max)
 
@@ -14,13 +15,9 @@ A point is on its way to a landing if it closes with a gap above near * g h^2, o
 grow for 4 steps after a point that has sunk closes as fast. The rule holds for any scene in which gravity g sets the
 time scale of free motion: it uses neither shapes nor the theory of rocking.
 
-Rows of a leapfrog engine: their largest number, failures at their end, and their conversion to a `Trace`.
-
 A row is (time [s], length of the step that led there [s], tilt [rad], its rate [rad/s], base displacement [m] and
 velocity [m/s], hysteretic force of one bearing [N], total force without viscous part [N]) and, where read, the block's
 centre x, z [m] and x', z' [m/s] as in `Trace.centre`. Rates are half a step early, except at the start.
-
-Check that an engine holds the values it was given; no run uses other values.
 """
 
 from __future__ import annotations
@@ -109,10 +106,10 @@ def fixed_rule(step: float) -> Rule:
 def limits(
     duration: float, largest: float, jumps: Iterable[float] = ()
 ) -> tuple[float, Callable[[float, float], tuple[float, float]]]:
-    """(first time that the steps must meet, a function (t, step) -> adjusted step and the next such time).
+    """Return the first time that the steps must meet, and a function that shortens a step to meet it.
 
-    These times are the `jumps` of the ground acceleration, in ascending order, and the end of the run. `largest` is the
-    longest step. All are in the same unit.
+    The times are the `jumps` of the ground acceleration, in ascending order, and the end of the run. The function maps
+    (t, step) to the adjusted step and the next such time. `largest` is the longest step. All are in the same unit.
     """
     ahead = iter(jumps)
     jump, gate = next(ahead, math.inf), duration - ROUNDING * largest + 2 * ROUNDING * largest
@@ -129,9 +126,10 @@ def limits(
 
 
 def aligned(step: float, ahead: float) -> float:
-    """The step [s] of a leapfrog, shortened if needed so that a jump of the ground acceleration `ahead` [s] from now
-    falls between two impulses, each of which covers half of the steps before and after it. An impulse that contains the
-    jump delays the uplift of a block.
+    """The step [s] of a leapfrog, shortened if a jump of the ground acceleration lies `ahead` [s] within it.
+
+    The jump must fall between two impulses, each of which covers half of the steps before and after it. An impulse that
+    contains the jump delays the uplift of a block.
     """
     if not LEAST_AHEAD * step < ahead <= step:
         return step
@@ -151,7 +149,7 @@ def row_limit(duration: float, largest: float) -> int:
 
 
 def failure_of(scene: Scene, rows: Sequence[Sequence[float]] | np.ndarray, ended: str | None) -> Failure | None:
-    """The `Failure` of a run that "not finite" or "too many steps" ended, or None."""
+    """The `Failure` of a run that ended as "not finite" or "too many steps", else None."""
     count, t = len(rows) - 1, rows[-1][0]
     if ended == "not finite":
         return Failure("the state is no longer finite", f"at step {count}, t = {t:.9g} s")
@@ -219,12 +217,12 @@ def raw_trace_of(rows: Sequence[Sequence[float]] | np.ndarray, scene: Scene, con
     return Trace(t, tilt, rate, x, v, total, contact_tilt, centre=place, first_script=True)
 
 
-# s, at `scale.UNIT_RADIUS` and the default level. On a light base the error of e is proportional to it.
+# s, at `loads.UNIT_RADIUS` and the default level. On a light base the error of e is proportional to it.
 SMALLEST_STEP = 1e-6
 # s, likewise: time before a landing in which the couple of a given restitution acts, a hundred of these. With 2e-4 and
 # 4e-4 e is up to 2 and 4 times as far off on a base.
 ACTS = 1e-4
-SMEARED = 3  # steps before and after an impact over which a contact solver may spread it; see `leapfrog.trace_of`
+SMEARED = 3  # steps before and after an impact over which a contact solver may spread it; see `trace_of`
 LANDING = 1.0  # largest landing speed of a corner, over the slenderness, the width 2 b and sqrt(g/R)
 # Numbers that were chosen in impact-aware steps, for `engines.contract.Variant.constants`.
 CONSTANTS = {
@@ -296,27 +294,20 @@ def march(
 ) -> tuple[np.ndarray, str]:
     """Step until the duration is over, the block has overturned, a state is not finite or there is no solution.
 
+    Return (rows, ended): rows as in the module's docstring, the start first; one of `ENDS`, or the message of a
+    `NoSolution`.
+
     Parameters
     ----------
-    bodies : Bodies
-        At the scene's start.
-    scene : Scene
-    duration : float
-        Duration of the run [s], in place of the scene's.
-    rule : function
-        A rule of `engines.loop`; its contact points are the bottom corners.
-    loads : function
-        (time, step, step before, base velocity, bearing force without viscous part) -> the arguments of `Bodies.step`.
-    largest : float
-        Longest step [s].
+    bodies, scene
+        The bodies of the scene at its start.
+    duration, largest : float
+        Duration of the run, in place of the scene's, and longest step [s].
+    rule, loads : function
+        A `Rule`, whose contact points are the bottom corners; and (time, step, step before, base velocity, bearing
+        force without viscous part) -> the arguments of `Bodies.step`.
     jumps : iterable of float
         Times [s] of jumps of the ground acceleration, with which the steps are aligned.
-
-    Returns
-    -------
-    rows, ended
-        Rows as in `engines.loop`, the start first; and "done", "overturned", "not finite", "too many steps", or the
-        message of a `NoSolution`.
     """
     law, start, loaded = BearingLaw.of(scene.bearings), scene.start, scene.bearings is not None
     half, high, fallen = scene.block.half_width, scene.block.half_height, 0.5 * math.pi

@@ -2,6 +2,12 @@
 
 An engine returns its accepted steps as a `Trace`. Events, peaks and contact forces are determined here, outside the
 engine, so that all engines are measured alike. The time this takes is not part of ``cpu_seconds``.
+
+An impact is reported where the swings before and after it are both resolved, that is, exceed contact_tilt. Its tilt
+rates and base velocities are extrapolated to tilt = 0 by the model's equations of flight. In a scene with a friction
+the block may pass tilt = 0 in the air, which is no impact. If no resolved swing follows a landing, the block came to
+rest, at the limit time of the model's impacts after it. Friction demand and normal force follow from the states and the
+model's accelerations.
 """
 
 from __future__ import annotations
@@ -54,6 +60,9 @@ def observe(
 ) -> Response:
     """The response of an engine's run.
 
+    Its outcome is "stands" where |tilt| never exceeded ``trace.contact_tilt`` or `STILL` of the slenderness, and
+    "failed" where states are not finite or `_judged` finds a failure.
+
     Parameters
     ----------
     scene : Scene
@@ -69,22 +78,9 @@ def observe(
         "overturned" if the adapter stopped the run. If the last step lies before |tilt| = pi/2, the rest of the fall is
         taken at the model's acceleration.
     warnings : iterable of Caution or str
-        Warnings of the engine. Those of the motion's record, and of a run outside the model
-        (`analytic.kernel.decision.model_warnings`), are added.
+        Warnings of the engine. Those of the motion's record and of a run outside the model are added.
     **run
         engine, variant, cpu_seconds, steps, settings, versions: copied to the response.
-
-    Returns
-    -------
-    Response
-        The outcome is "stands" where |tilt| never exceeded ``trace.contact_tilt`` or `matching.STILL` of the
-        slenderness, and "failed" where states are not finite or `_judged` finds a failure.
-
-    An impact is reported where the swings before and after it are both resolved, that is, exceed contact_tilt. Its tilt
-    rates and base velocities are extrapolated to tilt = 0 by the model's equations of flight. In a scene with a
-    friction the block may pass tilt = 0 in the air, which is no impact. If no such swing follows, the block came to
-    rest, at the limit time of the model's impacts after the last landing. Friction demand and normal force follow from
-    the states and the model's accelerations.
     """
     finite, failure = finite_part(trace, failure)
     if finite is None:
@@ -149,7 +145,7 @@ def _judged(
     failure: Failure | None,
     warnings: Iterable[Caution | str],
 ) -> tuple[Failure | None, Iterable[Caution | str]]:
-    """(failure or None, warnings) of a run: the engine's own failure, or the first check that is not met.
+    """Judge a run: (the engine's own failure, or the first check that is not met, or None; warnings).
 
     The checks are: the scene's duration is reached; the block is where it should be (`check_place`); no energy is
     gained (`check_energy`); impacts gain no energy, are resolved and are not skipped by the steps (`check_impacts`);
@@ -183,14 +179,16 @@ def failed_response(
 
     run: as in `observe`; cpu_seconds and steps may be left out.
     """
-    said = _warnings(scene, warnings)
-    return Response.unmeasured(outcome="failed", decided=False, scene=scene.name, failure=failure, warnings=said, **run)
+    cautions = _warnings(scene, warnings)
+    return Response.unmeasured(
+        outcome="failed", decided=False, scene=scene.name, failure=failure, warnings=cautions, **run
+    )
 
 
 def _warnings(scene: Scene, warnings: Iterable[Caution | str]) -> tuple[Caution, ...]:
     """The engine's warnings, sentences as `Caution`, and those about the motion's record, without repetition."""
-    own = (Caution("engine", one) if isinstance(one, str) else one for one in warnings)
-    return tuple(dict.fromkeys((*about_record(scene.motion), *own)))
+    cautions = (Caution("engine", warning) if isinstance(warning, str) else warning for warning in warnings)
+    return tuple(dict.fromkeys((*about_record(scene.motion), *cautions)))
 
 
 def _check_finite(seen: Mapping[str, Any]) -> Failure | None:

@@ -1,8 +1,7 @@
 """From a scene and an engine to a response: the code that all engines share.
 
-Choice of a variant and check of what is asked of it: its settings, and no given restitution.
-
-The statue range: scenes for which the tuned variants are tested. Nothing is promised outside it.
+The variant and its settings are checked first (`choose`), and a given restitution is refused where the engine computes
+the impact itself. Tuned variants are tested in the range of statues `RANGE`; a response outside it carries a warning.
 """
 
 from __future__ import annotations
@@ -102,8 +101,8 @@ def in_words() -> str:
 
 
 def outside(scene: Scene, response: Response) -> tuple[Caution, ...]:
-    """A warning for each quantity of the scene, and for the run's peak tilt, that lies outside the range."""
-    found = []
+    """Warnings: one for each quantity of the scene, and for the run's peak tilt, that lies outside the range."""
+    cautions = []
     for name, value in _values(scene, response).items():
         low, high, _ = RANGE[name]
         if not low * (1 - ROUNDING) <= value <= high * (1 + ROUNDING):
@@ -111,8 +110,8 @@ def outside(scene: Scene, response: Response) -> tuple[Caution, ...]:
                 f"{NAMES.get(name, name)} {value:.3g} is outside the range in which engines are tested "
                 f"({_words(name)}): nothing is promised there"
             )
-            found.append(Caution("engine", words, name, value, low if value < low else high))
-    return tuple(found)
+            cautions.append(Caution("engine", words, name, value, low if value < low else high))
+    return tuple(cautions)
 
 
 def _words(name: str) -> str:
@@ -122,23 +121,24 @@ def _words(name: str) -> str:
 
 
 def _values(scene: Scene, response: Response) -> dict[str, float]:
-    """{quantity of `RANGE`: its value}, of those that the scene has; a block that never lifts has no tilt.
+    """Return {quantity of `RANGE`: its value} for the quantities that the scene has.
 
-    Period and viscous damping are those of block and base on the stiffness after yielding.
+    A block that never lifts has no tilt. Period and viscous damping are those of block and base on the stiffness after
+    yielding.
     """
     block, base = scene.block, scene.base
     inertia = block.inertia / (block.mass * block.radius**2)
-    found = {"slenderness": block.slenderness, "inertia": inertia, "radius": block.radius}
+    values = {"slenderness": block.slenderness, "inertia": inertia, "radius": block.radius}
     if base is not None:
-        found["base_mass"] = base.mass / block.mass
+        values["base_mass"] = base.mass / block.mass
     if scene.bearings is not None:
         law = BearingLaw.of(scene.bearings)
         omega = math.sqrt(law.count * law.kb / scene.total_mass)
-        found["period"] = 2 * math.pi / omega if omega else math.inf
-        found["damping"] = law.count * law.damping / (2 * omega * scene.total_mass) if omega else 0.0
+        values["period"] = 2 * math.pi / omega if omega else math.inf
+        values["damping"] = law.count * law.damping / (2 * omega * scene.total_mass) if omega else 0.0
     if response.outcome not in LEVEL:  # an engine that stands has a tilt of rounding
-        found["tilt"] = response.peak_tilt_ratio
-    return found
+        values["tilt"] = response.peak_tilt_ratio
+    return values
 
 
 # A run that ends within this many settling times of the contact, or this many steps, after a landing or an uplift ends
@@ -249,11 +249,11 @@ class Simulator(Engine):
         return response, traces[0]
 
     def _held(self, scene: Scene, variant: str) -> Scene:
-        """The scene as it is run: by a couple, with the friction that this asks for."""
+        """The scene as it is run: with more friction where a couple needs it."""
         return scene if self.variants[variant].applies_impact else holding(scene)
 
     def _given(self, scene: Scene, response: Response) -> tuple[Caution, ...]:
-        """That a scene gives the restitution: no run of it rates an engine."""
+        """The warning that a scene gives the restitution, so that its runs rate no engine; () where it does not."""
         if (e := scene.block.restitution) is None:
             return ()
         words = f"restitution given, {e:.4g}: it is the scene's, and says nothing of the engine's own impact"
@@ -265,16 +265,16 @@ class Simulator(Engine):
         from .observe import failed_response, observe
 
         run = self.run(scene, name, chosen)
-        on = self._run_on(scene, name, chosen, run)
-        beyond, said = _beyond(scene, on) if on else (None, ())
+        longer = self._run_on(scene, name, chosen, run)
+        beyond, warnings = _beyond(scene, longer) if longer else (None, ())
         given: dict[str, Any] = dict(
             engine=self.name,
             variant=name,
             settings=asdict(chosen),
             versions=self.versions(),
-            cpu_seconds=run.cpu_seconds + (on.cpu_seconds if on else 0.0),
-            steps=run.steps + (on.steps if on else 0),
-            warnings=(*run.warnings, *said),
+            cpu_seconds=run.cpu_seconds + (longer.cpu_seconds if longer else 0.0),
+            steps=run.steps + (longer.steps if longer else 0),
+            warnings=(*run.warnings, *warnings),
         )
         if run.trace is None:
             failure = run.failure or Failure("the run ended before its first step")
@@ -283,7 +283,7 @@ class Simulator(Engine):
         return seen, run.trace
 
     def _run_on(self, scene: Scene, name: str, chosen: Any, run: Run) -> Run | None:
-        """The same run for longer, if the scene ends during a change of contact; else None."""
+        """The same run of a longer scene, if the scene ends during a change of contact; else None."""
         if run.trace is None or run.failure or run.ended:
             return None
         time, swings = run.trace.time, find_swings(run.trace)
@@ -300,9 +300,9 @@ def _place(error: Exception, adapter: ModuleType) -> str:
     """The innermost line of the adapter's package in the error's traceback, else the first line of its `run`."""
     package = adapter.__name__.partition(".")[0]
     passed = [(frame.f_globals.get("__name__", ""), line) for frame, line in traceback.walk_tb(error.__traceback__)]
-    found = [place for place in passed[1:] if place[0].partition(".")[0] == package]
+    frames = [place for place in passed[1:] if place[0].partition(".")[0] == package]
     begins = getattr(getattr(adapter.run, "__code__", None), "co_firstlineno", 1)
-    return "{}, line {}".format(*found[-1] if found else (adapter.__name__, begins))
+    return "{}, line {}".format(*frames[-1] if frames else (adapter.__name__, begins))
 
 
 def _beyond(scene: Scene, on: Run) -> tuple[Trace | None, tuple[Caution, ...]]:

@@ -1,9 +1,4 @@
-"""exudyn's variants, and checks of a run that exudyn's solver does not make.
-
-exudyn's calls in each variant, for `engines.contract.Variant.calls`.
-
-Chosen numbers of compliant-corners and their meaning, for `engines.contract.Variant.constants`.
-"""
+"""exudyn's variants: their calls, their chosen numbers, and the run with checks that exudyn's solver does not make."""
 
 from __future__ import annotations
 
@@ -20,8 +15,7 @@ from analytic.rocking import BearingLaw
 
 from ..checks import replay_bearing
 from ..contract import Variant
-from . import corners, native
-from . import stepping as phases
+from . import corners, native, stepping
 from .scene import MEASURED
 
 if TYPE_CHECKING:
@@ -78,16 +72,16 @@ def compliant_corners(settings: CompliantCorners) -> dict[str, str]:
         "MainSolverExplicit; settings: of every solver",
         f"explicit.timeIntegration.absoluteTolerance = {settings.tolerance:g} * min(scale, 1 / scale)": "",
         "explicit.timeIntegration.relativeTolerance = 1e-14": "round-off",
-        f"explicit.timeIntegration.minimumStepSize = {phases.LEAST_STEP:g}": "s",
-        f"settings.timeIntegration.initialStepSize = {phases.FIRST * settings.longest_step:g} * scale": "s",
+        f"explicit.timeIntegration.minimumStepSize = {stepping.LEAST_STEP:g}": "s",
+        f"settings.timeIntegration.initialStepSize = {stepping.FIRST * settings.longest_step:g} * scale": "s",
         **QUICKER,
         "implicit.timeIntegration.solverType = DynamicSolverType.GeneralizedAlpha": "of a "
         "MainSolverImplicitSecondOrder, while the block pivots or stands",
-        f"rounding = {phases.ROUNDING:.6g} * k * R": "N",
-        f"implicit.timeIntegration.newton.absoluteTolerance = max({phases.RESIDUAL:g} * m * g, rounding)": "N",
+        f"rounding = {stepping.ROUNDING:.6g} * k * R": "N",
+        f"implicit.timeIntegration.newton.absoluteTolerance = max({stepping.RESIDUAL:g} * m * g, rounding)": "N",
         "implicit.timeIntegration.newton.numericalDifferentiation.minimumCoordinateSize = 1": "",
         "implicit.timeIntegration.newton.numericalDifferentiation.relativeEpsilon = "
-        f"{phases.DIFFERENCE / 2:g} * m * g / (k * R)": "a corner must not leave its contact",
+        f"{stepping.DIFFERENCE / 2:g} * m * g / (k * R)": "a corner must not leave its contact",
         "implicit.timeIntegration.adaptiveStep = False": "",
         "implicit.timeIntegration.automaticStepSize = False": f"steps of {settings.pivoting_step:g} * scale s, "
         "shorter on stiff bearings",

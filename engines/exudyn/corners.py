@@ -1,6 +1,6 @@
 """exudyn, variant compliant-corners: a stiff contact at each bottom corner.
 
-The contact law is the adapter's own, of the Hunt-Crossley type; exudyn integrates it by the two methods of `phases`.
+The contact law is the adapter's own, of the Hunt-Crossley type; exudyn integrates it by the two methods of `Phases`.
 The contact is plastic (`rebound`), without slip (`friction`) and planar, as Housner assumes. Agreement with his formula
 verifies the law and the integration; it is not independent evidence.
 """

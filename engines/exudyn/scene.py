@@ -1,11 +1,7 @@
-"""A scene as exudyn bodies, loads and bearing; the variants add the contact between block and base.
+"""A scene in exudyn: bodies, loads, bearings with their history; settings of compliant-corners and their scaling.
 
-Coordinates: ground frame, x horizontal, y up; exudyn's rotation is counter-clockwise, so theta = -tilt. The ground
-motion enters as inertial load, x is relative to the ground.
-
-An exudyn system of one scene: bodies, bearings with their history, and the anchor of the friction.
-
-Settings of compliant-corners, and their scaling with a scene's weight, size and gravity.
+The variants add the contact between block and base. Coordinates: ground frame, x horizontal, y up; exudyn's rotation is
+counter-clockwise, so theta = -tilt. The ground motion enters as an inertial load, and x is relative to the ground.
 """
 
 from __future__ import annotations

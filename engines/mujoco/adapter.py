@@ -6,9 +6,7 @@ a0. There is no coefficient of restitution. With b = 1/step a corner stops in th
 its velocity. The impact is then that of eq. (7), as the other corner may lift in the same solve. k only has to remove
 the penetration slowly.
 
-Tested with mujoco 4.0.0; diagexact needs 3.9.
-
-The scene as a MuJoCo model.
+The scene is an MJCF model. Tested with mujoco 4.0.0; diagexact needs 3.9.
 """
 
 from __future__ import annotations
@@ -251,9 +249,9 @@ def versions() -> dict[str, str]:
 def run(scene: Scene, variant: str, settings: Settings) -> Run:
     """The `Run` of a scene."""
     edge = FIRST_CONTACT * scene.block.slenderness
-    said: list[str] = []
+    messages: list[str] = []
     handler = mujoco.get_mju_user_warning()
-    mujoco.set_mju_user_warning(said.append)  # otherwise MuJoCo writes a log file into the working directory
+    mujoco.set_mju_user_warning(messages.append)  # otherwise MuJoCo writes a log file into the working directory
     try:
         ran = run_of(
             scene,
@@ -265,8 +263,8 @@ def run(scene: Scene, variant: str, settings: Settings) -> Run:
         return Run(None, 0, 0.0, Failure("MuJoCo does not run the scene", str(error)))
     finally:
         mujoco.set_mju_user_warning(handler)
-    if not said:
+    if not messages:
         return ran
-    words = "; ".join(line.strip() for line in said)  # of a bad state, at which MuJoCo would reset to the start
+    words = "; ".join(line.strip() for line in messages)  # of a bad state, at which MuJoCo would reset to the start
     message = f"{ran.failure.message}. {words}" if ran.failure else words
     return replace(ran, failure=Failure(ran.failure.reason if ran.failure else "MuJoCo warned", message))

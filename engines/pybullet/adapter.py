@@ -1,21 +1,10 @@
 """PyBullet's variants: Bullet computes contact and impact. Tested with PyBullet 3.2.7.
 
-Import of PyBullet without the line that it prints.
-
-Links and joints in Bullet without its default damping and motors.
-
-A scene built in Bullet, and read back to check the values that Bullet uses.
+In order: joints without Bullet's default damping and motors; the scene of the tuned variants (`BulletBodies`), which is
+read back to check the values that Bullet uses; the scene of a first script with the API's defaults (`FreeBox`);
+Bullet's calls and the chosen numbers of each variant; the variants; the run.
 
 The pitfalls named in the comments were observed with PyBullet 3.2.7.
-
-The scene as in a first script for PyBullet, with the API's defaults.
-
-They include damping of .04 on every body, a motor of 1 N s per step in the base's joint, friction of .5 times .5, and
-contact parameters for games.
-
-Bullet's calls in each variant, for `engines.contract.Variant.calls`.
-
-Chosen numbers of impact-aware and their meaning, for `engines.contract.Variant.constants`.
 """
 
 from __future__ import annotations
@@ -25,8 +14,7 @@ from dataclasses import replace
 from importlib.metadata import version
 from typing import TYPE_CHECKING
 
-import numpy  # noqa: F401 imported before PyBullet, which would load it slowly
-import numpy as np
+import numpy as np  # before PyBullet, which would load it slowly
 
 from analytic.response import Caution, Failure
 
@@ -197,18 +185,18 @@ class BulletBodies:
 
     def _check(self, scene: Scene, rough: float, links: list[tuple], states: list[tuple[float, float]]) -> None:
         """Compare what Bullet reports with what the scene needs; raises `Mismatch` naming what differs."""
-        told = [pybullet.getDynamicsInfo(self.body, link, self.client) for link in (-1, *self.joints)]
+        dynamics = [pybullet.getDynamicsInfo(self.body, link, self.client) for link in (-1, *self.joints)]
         joints = [pybullet.getJointInfo(self.body, joint, self.client) for joint in self.joints]
-        now = pybullet.getJointStates(self.body, self.joints, self.client)
+        moved = pybullet.getJointStates(self.body, self.joints, self.client)
         require(
             [
-                ("masses", [one[0] for one in told], [0.0, *(link[0] for link in links)]),
-                ("friction", [one[1] for one in told], rough),
-                ("restitution", [one[5] for one in told], 0.0),
-                ("block: inertia", told[TILT + 1][2], scene.block.centre_inertia),
-                ("joints: types", [one[2] for one in joints], [link[3] for link in links]),
-                ("joints: damping and friction", [one[6:8] for one in joints], 0.0),
-                ("start", [one[:2] for one in now], states[: len(links)]),
+                ("masses", [row[0] for row in dynamics], [0.0, *(link[0] for link in links)]),
+                ("friction", [row[1] for row in dynamics], rough),
+                ("restitution", [row[5] for row in dynamics], 0.0),
+                ("block: inertia", dynamics[TILT + 1][2], scene.block.centre_inertia),
+                ("joints: types", [row[2] for row in joints], [link[3] for link in links]),
+                ("joints: damping and friction", [row[6:8] for row in joints], 0.0),
+                ("start", [row[:2] for row in moved], states[: len(links)]),
             ]
         )
 
