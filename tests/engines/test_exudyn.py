@@ -69,9 +69,9 @@ def test_settings_go_with_weight_size_and_gravity(gravity, factors):
 
     mass, radius, usual = MEASURED
     block = Block(mass=64 * mass, radius=4 * radius, slenderness=0.2)
-    found = scaled(Scene(block=block, start=Start(tilt=0.1), gravity=gravity * usual), CompliantCorners())
+    settings = scaled(Scene(block=block, start=Start(tilt=0.1), gravity=gravity * usual), CompliantCorners())
     wanted = {name: factors.get(name, 1) * value for name, value in asdict(CompliantCorners()).items()}
-    assert asdict(found) == pytest.approx(wanted)
+    assert asdict(settings) == pytest.approx(wanted)
 
 
 @pytest.mark.parametrize("share, base", [(0.59, None), (0.8, 3172.05)])
@@ -149,9 +149,9 @@ def test_the_implicit_steps_change_no_impact_and_save_most_steps(base, monkeypat
     monkeypatch.setattr("engines.exudyn.stepping.WORTHWHILE", math.inf)
     explicit = simulate(given)
     assert both.steps < 0.5 * explicit.steps and len(both.impacts) >= 2
-    for one, other in zip(both.impacts[:3], explicit.impacts[:3], strict=True):
-        assert one.time == pytest.approx(other.time, abs=1e-5)
-        assert ratio(one) == pytest.approx(ratio(other), abs=3e-6)
+    for impact, reference in zip(both.impacts[:3], explicit.impacts[:3], strict=True):
+        assert impact.time == pytest.approx(reference.time, abs=1e-5)
+        assert ratio(impact) == pytest.approx(ratio(reference), abs=3e-6)
 
 
 def test_the_error_of_time_falls_with_the_square_of_the_implicit_step():
@@ -169,10 +169,10 @@ def test_where_newton_finds_no_end_the_explicit_steps_go_on(monkeypatch):
 
     usual, usual_settings = simulate(RELEASED).steps, stepping.solver_settings
 
-    def hopeless(*asked, **settings):
-        made = usual_settings(*asked, **settings)
-        made.timeIntegration.newton.relativeTolerance = 1e-300
-        return made
+    def hopeless(*arguments, **values):
+        settings = usual_settings(*arguments, **values)
+        settings.timeIntegration.newton.relativeTolerance = 1e-300
+        return settings
 
     for name, value in (("solver_settings", hopeless), ("RESIDUAL", 1e-30), ("ROUNDING", 0.0)):
         monkeypatch.setattr(f"engines.exudyn.stepping.{name}", value)
@@ -226,11 +226,11 @@ def test_the_anchor_of_a_block_in_the_air_goes_with_its_lower_corner():
     from engines.exudyn.scene import DISPLACEMENT, Anchor
 
     gaps, moved = {"left": (0.3, 0.2, 0.0), "right": (0.1, 0.05, 0.0)}, []
-    told = SimpleNamespace(
-        GetObjectOutput=lambda one, kind: gaps[one] if kind == DISPLACEMENT else (0.0, 0.0, 0.0),
+    system = SimpleNamespace(
+        GetObjectOutput=lambda corner, kind: gaps[corner] if kind == DISPLACEMENT else (0.0, 0.0, 0.0),
         SetObjectParameter=lambda *given: moved.append(given),
     )
-    Anchor(("left", "right"), 0.5, 1e6).commit(told)
+    Anchor(("left", "right"), 0.5, 1e6).commit(system)
     assert moved == [(corner, "offset", [0.1, 0.0, 0.0]) for corner in ("left", "right")]
 
 
