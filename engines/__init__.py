@@ -62,7 +62,7 @@ def get_engine(name: str) -> Simulator:
 
 
 def available_engines(names: Iterable[str] | None = None) -> tuple[tuple[str, ...], dict[str, str]]:
-    """(engines of `names` that can be used, {name: why not} for the others); None: all that are declared.
+    """Sort engines: (those of `names` that can be used, {name: why not} for the others); None: all that are declared.
 
     Raises
     ------
@@ -81,7 +81,7 @@ def available_engines(names: Iterable[str] | None = None) -> tuple[tuple[str, ..
 
 
 def missing_words(missing: Mapping[str, str]) -> list[str]:
-    """Sentences on `missing` engines, {name: why} of `available_engines`; all extras of this project in one line."""
+    """Sentences on the `missing` engines of `available_engines`, with all extras of this project in one line."""
     extras = [name for name in missing if name in ENGINES and ENGINES[name].install == EXTRA.format(name)]
     words = [why for name, why in missing.items() if name not in extras]
     if extras:

@@ -58,7 +58,9 @@ def replay_bearing(scene: Scene, trace: Trace) -> float:
 
 
 def energy_balance(scene: Scene, trace: Trace) -> tuple[np.ndarray, np.ndarray]:
-    """(balance, kinetic) [J], shape (n,): mechanical energy + loss in the bearings - input work, 0 at the start.
+    """Return (balance, kinetic energy) [J], shape (n,).
+
+    The balance is mechanical energy + loss in the bearings - input work, 0 at the start.
 
     Taken in the ground's frame, where the ground motion is the inertial load -a_g on both masses and -a_v on the block.
     For an exact solution it is constant while the block pivots or flies, and every impact lowers it. The work is
@@ -232,7 +234,7 @@ def momentum(scene: Scene, trace: Trace) -> np.ndarray:
 
 
 def missing_impulse(scene: Scene, trace: Trace) -> tuple[np.ndarray, np.ndarray]:
-    """(unexplained impulse up to each step [N s], the law's impulse [N s]), shapes (n,).
+    """Return (unexplained impulse up to each step, the law's impulse) [N s], shapes (n,).
 
     The first is momentum + impulse of the bearings + total mass times ground velocity, less its value at the start. It
     is constant for an exact solution, whatever the impacts.

@@ -55,14 +55,14 @@ CHANGE = 1e-4  # relative; errors of tuned engines are 1e-5 to 1e-4
 
 
 def near_copies(scene: Scene) -> Iterator[Scene]:
-    """The scene with its slenderness, restitution (or friction, if given), motion or start changed by +-`CHANGE`."""
+    """Copies of the scene with slenderness, restitution (or a given friction), motion or start changed by +-`CHANGE`."""
     for factor in (1 + CHANGE, 1 - CHANGE):
         yield from _changed(scene, block={"slenderness": scene.block.slenderness * factor})
     yield from changed_copies(scene, CHANGE).values()
 
 
 def changed_copies(scene: Scene, change: float) -> dict[str, Scene]:
-    """{name: scene} with restitution (or friction, if given), motion and start changed by +-change, relative."""
+    """Copies {name: scene} with restitution (or a given friction), motion or start changed by +-change, relative."""
     copies = {}
     e, start = restitution(scene), scene.start
     for sign, word in ((1, "up"), (-1, "down")):

@@ -212,7 +212,7 @@ class Engine:
     origin: str = ""
 
     def load(self) -> ModuleType:
-        """The adapter's module.
+        """Import the adapter's module.
 
         Raises
         ------
@@ -256,7 +256,7 @@ class Engine:
         return import_module(self.tolerances).TOLERANCES
 
     def known_mistakes(self) -> dict[str, Mistake]:
-        """{key: mistake}; the package need not be installed."""
+        """The engine's mistakes, {key: mistake}; its package need not be installed."""
         return {mistake.key: mistake for mistake in import_module(self.mistakes).MISTAKES} if self.mistakes else {}
 
     @property
@@ -270,12 +270,12 @@ class Engine:
 
     @property
     def variants(self) -> dict[str, Variant]:
-        """{name: variant}; the first is taken where none is named."""
+        """The engine's variants, {name: variant}; the first is the main one."""
         return self.load().VARIANTS
 
     @property
     def default_variant(self) -> str:
-        """Name of the main variant, the first, which is taken where none is named."""
+        """Name of the main variant, which is taken where none is named."""
         return next(iter(self.variants))
 
     def versions(self) -> dict[str, str]:

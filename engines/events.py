@@ -52,7 +52,7 @@ MOST_RESTITUTION = 1.2
 def find_events(
     scene: Scene, trace: Trace, swings: Swings
 ) -> tuple[tuple[Impact, ...], tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
-    """(impacts, uplifts, rests, missed) of the swings of a trace; see `observe`.
+    """Find the events of a trace: (impacts, uplifts, rests, missed); see `engines.observe`.
 
     missed: times [s] at which a swing ends and the next begins on the other side without a resolved impact or landing
     between them, although both count by `strong_swings`.
@@ -138,7 +138,7 @@ def _passes(trace: Trace, swings: Swings, i: int, apart: float, before: float, a
 
 
 def strong_swings(model: ArrayModel, trace: Trace, swings: Swings) -> np.ndarray:
-    """Whether the block, unforced, would reach the impact at a rate that counts; shape of `swings`."""
+    """Whether the unforced block would reach the impact of each swing at a rate that counts."""
     bounds = np.column_stack([swings.first, swings.last + 1]).ravel()[:-1]
     speed = np.maximum.reduceat(_speeds(model, trace), bounds)[::2]
     return speed >= _least_speed(model, trace, speed.max())
@@ -219,7 +219,7 @@ def check_impacts(scene: Scene, trace: Trace, impacts: Sequence[Impact], missed:
 def _limit_time(
     model: ArrayModel, scene: Scene, trace: Trace, last: int, side: float, landing: float, rate: float
 ) -> tuple[float, float]:
-    """(limit time of the model's impacts after a landing, |tilt''| toward contact there)."""
+    """Return (limit time of the model's impacts after a landing [s], |tilt''| toward contact there [rad/s2])."""
     ground = float(scene.motion.acceleration(landing)) if scene.motion else 0.0
     up = float(vertical_acceleration(scene.motion, landing))
     pull = -side * float(model.accelerations(side, 0.0, 0.0, ground, trace.bearing_force[last], up)[0])
@@ -251,7 +251,7 @@ def _contact_acceleration(model: ArrayModel, scene: Scene, trace: Trace, steps: 
 
 
 def contact_measures(scene: Scene, trace: Trace) -> tuple[float, float, float]:
-    """(max |H|/N, min N/(m g), max |absolute base acceleration| [m/s2]) over the steps of a trace."""
+    """Extremes over a trace: (max |H|/N, min N/(m g), max |absolute base acceleration| [m/s2])."""
     demands, normals, peaks = [], [], []
     for piece in trace.pieces():
         demand, normal, absolute = at_contact(scene, piece)
@@ -262,7 +262,7 @@ def contact_measures(scene: Scene, trace: Trace) -> tuple[float, float, float]:
 
 
 def at_contact(scene: Scene, trace: Trace) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(|H|/N, N/(m g), absolute base acceleration [m/s2]) at the steps."""
+    """Contact measures at the steps: (|H|/N, N/(m g), absolute base acceleration [m/s2])."""
     model = ArrayModel.of(scene)
     level = _contact_acceleration(model, scene, trace)
     vertical = vertical_acceleration(scene.motion, trace.time)
@@ -312,7 +312,7 @@ def _where_it_moves(scene: Scene, trace: Trace, demand: np.ndarray, normal: np.n
 
 
 def finite_part(trace: Trace, failure: Failure | None) -> tuple[Trace | None, Failure | None]:
-    """(steps before the first non-finite one, or None; failure with the last finite state)."""
+    """Cut a trace before its first non-finite step: (the steps, or None; failure with the last finite state)."""
     finite = np.isfinite(trace.time)
     for name in Trace.COLUMNS[1:]:
         finite &= np.isfinite(getattr(trace, name))
@@ -330,7 +330,7 @@ def finite_part(trace: Trace, failure: Failure | None) -> tuple[Trace | None, Fa
 
 
 def upto_overturning(scene: Scene, trace: Trace, ended: str | None) -> tuple[Trace, float | None]:
-    """(trace up to |tilt| = pi/2, with that state as its last step; its time), or (the whole trace, None)."""
+    """Cut a trace at |tilt| = pi/2: (trace with that state as its last step, its time), or (whole trace, None)."""
     limit = math.pi / 2
     over = np.flatnonzero(np.abs(trace.tilt) >= limit)
     if len(over) and over[0] > 0:
@@ -361,7 +361,7 @@ def upright_part(scene: Scene, trace: Trace, falls: bool) -> Trace:
 
 
 def _upto_crossing(trace: Trace, last: int, level: float) -> Trace:
-    """The steps before step `last`, in whose interval |tilt| passes `level`, then the state at the passage."""
+    """Cut a trace where |tilt| passes `level`, between the steps last - 1 and last; the passage is its last step."""
     pair = slice(last - 1, last + 1)
     tilt = math.copysign(level, trace.tilt[last])
     t = _crossing(trace.time[pair], trace.tilt[pair], trace.tilt_rate[pair], tilt)
@@ -421,7 +421,7 @@ STILL = 0.02 * LEAST_TILT  # of the slenderness: a block whose peak tilt is smal
 
 
 def impacts_of(response: Response) -> np.ndarray:
-    """Rows of time [s], rate before and rate after [rad/s] of the impacts that end no flight, shape (impacts, 3)."""
+    """Impacts that end no flight: rows of time [s], rate before and rate after [rad/s], shape (impacts, 3)."""
     rows = [(impact.time, impact.rate_before, impact.rate_after) for impact in response.impacts]
     impacts = np.array(rows, dtype=float).reshape(-1, 3)
     modes = response.sliding.modes if response.sliding else ()
@@ -431,7 +431,7 @@ def impacts_of(response: Response) -> np.ndarray:
 
 
 def matched(scene: Scene, impacts: np.ndarray, others: np.ndarray, until: float) -> tuple[np.ndarray, np.ndarray]:
-    """(`impacts` that count up to the time `until`; for each the index of its match in `others`, or -1)."""
+    """Match impacts: (`impacts` that count up to the time `until`; index of the match of each in `others`, or -1)."""
     partner = np.full(len(impacts), -1)
     for side in (-1.0, 1.0):
         mine, theirs = (np.flatnonzero(np.sign(rows[:, 1]) == side) for rows in (impacts, others))

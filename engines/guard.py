@@ -47,7 +47,7 @@ def run_apart(
     time_limit: float,
     meanwhile: AbstractContextManager[Any] | None = None,
 ) -> tuple[Any, Failure | None]:
-    """(result of ``function(*arguments)``, None), or (None, `Failure`) if its process did not return one.
+    """Call a function in a process of its own: (result, None), or (None, `Failure`) without a result.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def run_apart(
 
 
 def _answer(reader: Any, process: Any, time_limit: float) -> tuple[str, Any]:
-    """("value", result of the function), ("mistake", error) or ("failure", (reason, message))."""
+    """Await the process: ("value", result of the function), ("mistake", error) or ("failure", (reason, message))."""
     if not connection.wait([reader, process.sentinel], time_limit):
         if TRACE is not None:
             os.kill(process.pid, TRACE)

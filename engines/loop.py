@@ -64,7 +64,7 @@ Rule = Callable[[Sequence[tuple[float, float]]], float]  # from (gap, closing sp
 
 
 def gap_rule(largest: float, smallest: float, gravity: float) -> Rule:
-    """The rule in the module's docstring; before the first step, h is the smallest one.
+    """The `Rule` in the module's docstring; before the first step, h is the smallest one.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def gap_rule(largest: float, smallest: float, gravity: float) -> Rule:
 
 
 def fixed_rule(step: float) -> Rule:
-    """A constant step [s]."""
+    """The `Rule` of a constant step [s]."""
     return lambda points: step
 
 
@@ -481,7 +481,7 @@ def run_of(
 
 
 def step_limits(scene: Scene, settings: Settings) -> tuple[float, float]:
-    """(largest, smallest) step [s] of a scene; stiff bearings may need shorter steps than the settings ask for."""
+    """Limits of a scene's steps: (largest, smallest) [s]. Stiff bearings may shorten those of the settings."""
     if isinstance(settings, FirstScript):
         return settings.step, settings.step
     scale = size_scale(scene)
@@ -494,8 +494,9 @@ def step_limits(scene: Scene, settings: Settings) -> tuple[float, float]:
 
 
 def contact_tilt(scene: Scene, largest: float, smallest: float, depth: float) -> float:
-    """Tilt [rad] below which the block counts as in flat contact: twice the largest penetration of a corner, over 2 b.
+    """Tilt [rad] below which the block counts as in flat contact.
 
+    It is twice the largest penetration of a corner, over 2 b.
     A corner whose landing the rule anticipates sinks by its speed times the smallest step, any other by `depth` g h^2
     at most.
     """

@@ -112,7 +112,7 @@ def observe(
 def _measured(
     scene: Scene, trace: Trace, beyond: Trace, overturning_time: float | None
 ) -> tuple[dict[str, Any], Any, bool]:
-    """({field of `Response`: number or events}, times of missed impacts, whether the block lifted)."""
+    """Measure a run: ({field of `Response`: number or events}, times of missed impacts, whether the block lifted)."""
     end = trace.time[-1]
     swings = find_swings(beyond)
     impacts, *times = find_events(scene, beyond, swings)

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 
 def choose(engine: Engine, variant: str | None, changes: Mapping[str, Any]) -> tuple[str, Any]:
-    """(name, settings) of an engine's variant with fields replaced.
+    """Choose an engine's variant: (name, settings with fields replaced).
 
     Parameters
     ----------
@@ -96,8 +96,8 @@ NAMES = {"base_mass": "base mass over block mass", "tilt": "peak tilt over slend
 
 
 def in_words() -> str:
-    """The limits, in one line."""
-    return ", ".join(map(_words, RANGE))
+    """The range of statues in one line."""
+    return ", ".join(map(_limits_in_words, RANGE))
 
 
 def outside(scene: Scene, response: Response) -> tuple[Caution, ...]:
@@ -108,14 +108,14 @@ def outside(scene: Scene, response: Response) -> tuple[Caution, ...]:
         if not low * (1 - ROUNDING) <= value <= high * (1 + ROUNDING):
             words = (
                 f"{NAMES.get(name, name)} {value:.3g} is outside the range in which engines are tested "
-                f"({_words(name)}): nothing is promised there"
+                f"({_limits_in_words(name)}): nothing is promised there"
             )
             cautions.append(Caution("engine", words, name, value, low if value < low else high))
     return tuple(cautions)
 
 
-def _words(name: str) -> str:
-    """The limits of a quantity."""
+def _limits_in_words(name: str) -> str:
+    """The limits of a quantity in words."""
     low, high, words = RANGE[name]
     return words.format(low=low, high=high)
 
@@ -162,7 +162,7 @@ class Simulator(Engine):
         """
         adapter = self.load()
         try:
-            ran = adapter.run(self._held(scene, variant), variant, settings)
+            ran = adapter.run(self._as_run(scene, variant), variant, settings)
             if not isinstance(ran, Run):
                 raise TypeError(f"{self.adapter}.run returned a {type(ran).__name__}, no engines.contract.Run")
         except Exception as error:
@@ -201,11 +201,12 @@ class Simulator(Engine):
         model = self._model(scene)
         response, _ = self._traced(scene, variant, history, settings, model)
         response = replace(
-            response, warnings=(*response.warnings, *outside(scene, response), *self._given(scene, response))
+            response,
+            warnings=(*response.warnings, *outside(scene, response), *self._restitution_warning(scene, response)),
         )
         if response.failure or not compare:
             return response
-        if (held := self._held(scene, response.variant).friction) != scene.friction and scene.friction is not None:
+        if (held := self._as_run(scene, response.variant).friction) != scene.friction and scene.friction is not None:
             words = f"the contact's friction is {held:.3g}, not the scene's {scene.friction:.3g}, as by a smaller one"
             return replace(response, comparable=f"{words} a couple before the landing slips")
         return compared(scene, response, Reference.of(scene, model))
@@ -213,7 +214,7 @@ class Simulator(Engine):
     def traced(
         self, scene: Scene, *, variant: str | None = None, history: bool = True, **settings: float
     ) -> tuple[Response, Trace | None]:
-        """(response, trace or None) of `simulate`, without the comparison.
+        """Simulate without the comparison: (response, trace or None).
 
         A scene without a duration is first run to the end of the analytic model's run, where most engines end, too. If
         the engine's own end state is not decided there, it runs longer (`analytic.solver.until_decided`).
@@ -228,18 +229,18 @@ class Simulator(Engine):
     def _traced(
         self, scene: Scene, variant: str | None, history: bool, settings: Mapping[str, float], model: Response | None
     ) -> tuple[Response, Trace | None]:
-        """`traced`, given the analytic model's run."""
+        """Do `traced`, given the analytic model's run."""
         name, chosen = choose(self, variant, settings)
         if not self.variants[name].takes_restitution:
             refuse_restitution(self, scene)
-        if (friction := self._held(scene, name).friction) is not None and hasattr(chosen, "friction"):
+        if (friction := self._as_run(scene, name).friction) is not None and hasattr(chosen, "friction"):
             chosen = replace(chosen, friction=friction)
         if model is None:
-            return self._once(scene, name, chosen, history)
+            return self._observed(scene, name, chosen, history)
         traces: list[Trace | None] = []
 
         def attempt(cut):
-            response, trace = self._once(cut, name, chosen, history)
+            response, trace = self._observed(cut, name, chosen, history)
             traces[:] = [trace]  # of the last attempt
             return response
 
@@ -248,24 +249,25 @@ class Simulator(Engine):
         )
         return response, traces[0]
 
-    def _held(self, scene: Scene, variant: str) -> Scene:
+    def _as_run(self, scene: Scene, variant: str) -> Scene:
         """The scene as it is run: with more friction where a couple needs it."""
         return scene if self.variants[variant].applies_impact else holding(scene)
 
-    def _given(self, scene: Scene, response: Response) -> tuple[Caution, ...]:
+    def _restitution_warning(self, scene: Scene, response: Response) -> tuple[Caution, ...]:
         """The warning that a scene gives the restitution, so that its runs rate no engine; () where it does not."""
         if (e := scene.block.restitution) is None:
             return ()
         words = f"restitution given, {e:.4g}: it is the scene's, and says nothing of the engine's own impact"
-        if (friction := self._held(scene, response.variant).friction) != scene.friction:
+        if (friction := self._as_run(scene, response.variant).friction) != scene.friction:
             words += f"; the contact's friction is {friction:.3g}, as with less a couple before the landing slips"
         return (Caution("engine", words, "restitution", e),)
 
-    def _once(self, scene: Scene, name: str, chosen: Any, history: bool) -> tuple[Response, Trace | None]:
+    def _observed(self, scene: Scene, name: str, chosen: Any, history: bool) -> tuple[Response, Trace | None]:
+        """Run a scene that has a duration: (response, trace or None)."""
         from .observe import failed_response, observe
 
         run = self.run(scene, name, chosen)
-        longer = self._run_on(scene, name, chosen, run)
+        longer = self._longer_run(scene, name, chosen, run)
         beyond, warnings = _beyond(scene, longer) if longer else (None, ())
         given: dict[str, Any] = dict(
             engine=self.name,
@@ -282,7 +284,7 @@ class Simulator(Engine):
         seen = observe(scene, run.trace, beyond=beyond, history=history, failure=run.failure, ended=run.ended, **given)
         return seen, run.trace
 
-    def _run_on(self, scene: Scene, name: str, chosen: Any, run: Run) -> Run | None:
+    def _longer_run(self, scene: Scene, name: str, chosen: Any, run: Run) -> Run | None:
         """The same run of a longer scene, if the scene ends during a change of contact; else None."""
         if run.trace is None or run.failure or run.ended:
             return None
@@ -297,7 +299,7 @@ class Simulator(Engine):
 
 
 def _place(error: Exception, adapter: ModuleType) -> str:
-    """The innermost line of the adapter's package in the error's traceback, else the first line of its `run`."""
+    """Where an adapter raised an error: the innermost line of its package, else the first line of its `run`."""
     package = adapter.__name__.partition(".")[0]
     passed = [(frame.f_globals.get("__name__", ""), line) for frame, line in traceback.walk_tb(error.__traceback__)]
     frames = [place for place in passed[1:] if place[0].partition(".")[0] == package]
@@ -306,7 +308,7 @@ def _place(error: Exception, adapter: ModuleType) -> str:
 
 
 def _beyond(scene: Scene, on: Run) -> tuple[Trace | None, tuple[Caution, ...]]:
-    """(finite part of the trace, warnings) of a run that went on beyond the scene's end."""
+    """Read a run that went on beyond the scene's end: (its trace, or None if it fails there; warnings)."""
     from .events import finite_part
 
     trace, failure = finite_part(on.trace, on.failure) if on.trace else (None, on.failure)

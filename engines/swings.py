@@ -186,7 +186,7 @@ def to_contact(scene: Scene, trace: Trace, swings: Swings, direction: int) -> tu
     flight, side = _Flight(scene, trace, swings, direction, index, edge), swings.side
     if flight.carried.any():
         t, state = flight.to_edge(t, state)
-    pace, decay = _paces(flight.model)
+    pace, decay = _base_rates(flight.model)
     toward = np.where(flight.carried, 0, direction)  # the root to take first; 0: the nearer one
     for correction in range(1 + CORRECTIONS):
         pull = side * flight.slope(t, *state)[1]
@@ -223,16 +223,16 @@ class _Flight:
             edge,
         )
         self.ground = scene.motion.acceleration if scene.motion else np.zeros_like
-        self.slips = _slips(scene, trace, index, swings.side)
+        self.slips = _sliding_directions(scene, trace, index, swings.side)
         self.carried, self.fast = index != edge, np.zeros(len(index), dtype=bool)
         law = self.model.bearing
         self.viscous = law.count * law.damping
         lasting = trace.bearing_force - self.viscous * trace.base_velocity
-        self.beyond = _branch(law, trace.base_displacement[edge], lasting[edge], trace.base_velocity[edge])
+        self.beyond = _law_force(law, trace.base_displacement[edge], lasting[edge], trace.base_velocity[edge])
         self.along, self.impulse = _tangent(trace, swings, direction), _impulse(trace, lasting, self.viscous)
 
     def to_edge(self, t: np.ndarray, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """(t, state) at the edge: in each part of the way there the bearings act by their mean force in the trace."""
+        """Integrate to the edge: (t, state). In each part of the way the bearings act by their mean force there."""
         end = self.time[self.edge]
         for until in end + np.multiply.outer(CARRY, t - end):
             h = until - t
@@ -255,7 +255,7 @@ class _Flight:
             force = self._force(t, x, v)
         tilting, sliding = self.model.accelerations(side, tilt, rate, ground, force, up)
         if self.slips.any():
-            slid = _slid(self.scene, self.model, side, self.slips, (tilt, rate), (ground, force, up))
+            slid = _sliding_accelerations(self.scene, self.model, side, self.slips, (tilt, rate), (ground, force, up))
             tilting, sliding = (np.where(self.slips, *pair) for pair in zip(slid, (tilting, sliding), strict=True))
         return np.stack([rate, tilting, v, np.broadcast_to(sliding, rate.shape)])
 
@@ -268,7 +268,7 @@ class _Flight:
 
 
 def _before_landing(trace: Trace, swings: Swings) -> np.ndarray:
-    """Index of the last clean step of each swing: where a couple acts before the landing, one without it."""
+    """Index of the last clean step of each swing: before the couple, where one acts before the landing."""
     if not trace.early:
         return swings.last
     # A step before the one at which the couple begins: a leapfrog's rate there is half that of the next step.
@@ -276,7 +276,7 @@ def _before_landing(trace: Trace, swings: Swings) -> np.ndarray:
     return np.clip(before, swings.clean, swings.last)
 
 
-def _slips(scene: Scene, trace: Trace, index: np.ndarray, side: np.ndarray) -> np.ndarray:
+def _sliding_directions(scene: Scene, trace: Trace, index: np.ndarray, side: np.ndarray) -> np.ndarray:
     """Direction in which the block's corner slides at these steps, +1 or -1; 0 where it sticks."""
     if scene.friction is None or trace.centre is None:
         return np.zeros(len(index))
@@ -286,8 +286,8 @@ def _slips(scene: Scene, trace: Trace, index: np.ndarray, side: np.ndarray) -> n
     return np.where(np.abs(speed) > least, np.sign(speed), 0.0)
 
 
-def _slid(scene, model, side, slips, block, acting):
-    """(phi'', x'') of a block whose corner slides; block: tilt and rate; acting: a_g, bearing force, a_v.
+def _sliding_accelerations(scene, model, side, slips, block, acting):
+    """Accelerations (phi'', x'') of a block whose corner slides; block: tilt and rate; acting: a_g, bearing force, a_v.
 
     Equations (S1) to (S4) of `analytic.sliding.equations` with eta'' = 0 and H = -sigma mu N.
     """
@@ -300,7 +300,7 @@ def _slid(scene, model, side, slips, block, acting):
 
 
 def _runge_kutta(slope, t, state, h, steps):
-    """(t, state) after so many steps of length h of the classical method; `slope(t, *state)` is its derivative."""
+    """Take steps of length h of the classical method: (t, state) at the end; `slope(t, *state)` is the derivative."""
     for _ in range(steps):
         k1 = slope(t, *state)
         k2 = slope(t + h / 2, *(state + h / 2 * k1))
@@ -311,8 +311,8 @@ def _runge_kutta(slope, t, state, h, steps):
     return t, state
 
 
-def _paces(model: ArrayModel) -> tuple[float, float]:
-    """(fastest rate, decay rate) of the base on its bearings while the block rocks [1/s]."""
+def _base_rates(model: ArrayModel) -> tuple[float, float]:
+    """Rates of the base on its bearings while the block rocks: (fastest, of decay) [1/s]."""
     if not model.on_base:
         return 0.0, 0.0
     law, height = model.bearing, model.R * math.cos(model.gamma)
@@ -356,7 +356,9 @@ def _time_to_zero(p: np.ndarray, q: np.ndarray, a: np.ndarray, direction: np.nda
 FAR = 100.0
 
 
-def _branch(law: BearingLaw, x: np.ndarray, lasting: np.ndarray, v: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+def _law_force(
+    law: BearingLaw, x: np.ndarray, lasting: np.ndarray, v: np.ndarray
+) -> Callable[[np.ndarray], np.ndarray]:
     """Elastic and hysteretic force of all bearings [N] as a function of displacement, on the path through (x, force).
 
     The law is evaluated at two points in the direction of v. An exponential through them gives the force elsewhere: it

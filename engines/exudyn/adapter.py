@@ -49,7 +49,7 @@ def _speed(value: float) -> str:
 
 
 def compliant_corners(settings: CompliantCorners) -> dict[str, str]:
-    """Calls of compliant-corners."""
+    """exudyn's calls in compliant-corners, for `engines.contract.Variant.calls`."""
     softness = MASS * GRAVITY / RADIUS / settings.stiffness
     return {
         **BODIES,
@@ -89,7 +89,7 @@ def compliant_corners(settings: CompliantCorners) -> dict[str, str]:
 
 
 def native_contact(settings: NativeContact) -> dict[str, str]:
-    """Calls of native-contact."""
+    """exudyn's calls in native-contact, for `engines.contract.Variant.calls`."""
     return {
         **BODIES,
         f"ObjectContactSphereTriangle(sphereRadius={settings.sphere:g}, includeEdges=0, contactStiffness="
@@ -191,7 +191,7 @@ VARIANTS = {
 
 
 def versions() -> dict[str, str]:
-    """Versions that determine the result."""
+    """Versions of the packages that compute: {package: version}."""
     return {"exudyn": version("exudyn"), "python": platform.python_version()}
 
 

@@ -89,7 +89,7 @@ class Corner:
 
 
 def deflected(scene: Scene, corner: Corner) -> tuple[float, float, float]:
-    """Displacement [m] and rotation of a standing block whose corners carry it at the start, see `standing_until`.
+    """Displacement [m, m] and rotation of a standing block on its corners at the time `standing_until`.
 
     Where the ground's acceleration lifts the block at once, as a jump can, they carry it as it pivots. From rest under
     its weight the corner that lifts would push it while it comes out: an impulse, and an error, as stiffness^-1/2.
@@ -106,7 +106,7 @@ def deflected(scene: Scene, corner: Corner) -> tuple[float, float, float]:
 
 
 def assemble(scene: Scene, settings: CompliantCorners, couple: Couple | None = None) -> tuple[Model, float]:
-    """(model, contact tilt [rad]) of a scene with compliant corners."""
+    """Build a scene with compliant corners: (model, contact tilt [rad])."""
     corner = Corner.of(scene, settings)
     sink = scene.block.mass * scene.gravity / (2 * corner.stiffness)
     model = build(scene, deflected(scene, corner))

@@ -36,7 +36,7 @@ class NativeContact:
 
 
 def assemble(scene: Scene, settings: NativeContact) -> tuple[Model, float]:
-    """(model, static penetration [m]) of a scene with sphere-triangle contacts."""
+    """Build a scene with sphere-triangle contacts: (model, static penetration [m])."""
     block = scene.block
     sink = block.mass * scene.gravity / (2 * settings.stiffness)
     model = build(scene, (0.0, -sink, 0.0))

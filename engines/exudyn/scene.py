@@ -59,7 +59,7 @@ class Bearing:
         self.memory = law.unit.memory
 
     def commit(self, mbs: exu.MainSystem, x: float) -> float:
-        """Move the history to an accepted displacement, and the spring with it; the hysteretic force there."""
+        """Move history and spring to the displacement x after a step; return the hysteretic force there."""
         law, ahead = self.law, x - self.x
         self.x, self.z = x, law.hysteretic(self.z, ahead)
         ahead = ahead or LEAST
@@ -70,9 +70,10 @@ class Bearing:
 
 
 def _strengths(kept: float) -> tuple[float, float]:
-    """(c, d) of dy/dx = (c + d a/y) s (1 - s) - a/y, s = x/y: rate and tilt over those at the couple's begin.
+    """Strengths (c, d) of a couple that leaves the share `kept` of a rate at the ground.
 
-    a: pull toward the ground, in the same units, small. From y(1) = 1 the rate becomes `kept` times what it would be
+    dy/dx = (c + d a/y) s (1 - s) - a/y, s = x/y; y, x: rate and tilt over those at the couple's begin. a: pull toward
+    the ground, in the same units, small. From y(1) = 1 the rate becomes `kept` times what it would be
     without the couple, y(0)^2 = kept^2 (1 + 2 a).
     """
 
@@ -91,7 +92,9 @@ def _strengths(kept: float) -> tuple[float, float]:
 
 
 class Anchor:
-    """State of Coulomb friction: the position at which the block sticks to its base, committed once per accepted step.
+    """State of Coulomb friction: the position at which the block sticks to its base.
+
+    It is committed once per accepted step.
 
     connectors: of the two corners. friction: coefficient. sticking: tangential stiffness of a corner [N/m].
     """
@@ -100,8 +103,10 @@ class Anchor:
         self.at, self.connectors, self.friction, self.sticking = 0.0, connectors, friction, sticking
 
     def commit(self, mbs: exu.MainSystem) -> None:
-        """After a step: move the anchor by what every loaded corner has slid, and a block in flight's with its lower
-        corner."""
+        """Move the anchor after a step.
+
+        It moves by what every loaded corner has slid, and goes with the lower corner of a block in flight.
+        """
         limits = []  # of friction [N]
         for connector in self.connectors:
             across, up, _ = mbs.GetObjectOutput(connector, FORCE)
@@ -128,7 +133,7 @@ class Twist:
     """
 
     def __init__(self, couple: Couple, least: float) -> None:
-        """least: tilt [rad] of the block in contact, without couple."""
+        """least: tilt [rad] below which no couple acts, as the block is in contact."""
         self.couple, self.least, self.connector = couple, least, None
         self.begin: tuple[float, float] | None = None  # time and speed
 
@@ -142,7 +147,7 @@ class Twist:
         return exu.symbolic.IfThenElse(exu.symbolic.abs(rotation) > self.least, closing, Real(0.0))
 
     def commit(self, mbs: exu.MainSystem, t: float, rotation: float, rate: float) -> None:
-        """After a step to time t: the mean pull [rad/s2] since twice `acts` before the landing."""
+        """Set the mean pull [rad/s2] since twice `acts` before the landing, after a step to time t."""
         acts, speed = self.couple.acts, abs(rate)
         if rotation * rate >= 0 or abs(rotation) > 2 * acts * speed:
             self.begin = None
@@ -163,7 +168,7 @@ class Model:
     ground: exu.ObjectIndex
     block: exu.ObjectIndex
     base: exu.ObjectIndex
-    deflected: Sequence[float]  # see `engines.exudyn.scene.build`
+    deflected: Sequence[float]  # see `build`
     bearing: Bearing | None = None
     anchor: Anchor | None = None
     twist: Twist | None = None
@@ -261,7 +266,7 @@ def _add_bearing(model: Model) -> None:
 
 
 def _add_loads(model: Model) -> None:
-    """Weight of the block, and room for the inertia of the base in the ground's frame; see `Ground`."""
+    """Add the block's weight and, under a motion, the base's load, which `stepping.Ground` sets at each step."""
     scene, mbs = model.scene, model.mbs
     block = mbs.AddMarker(MarkerBodyMass(bodyNumber=model.block))
     model.weight = mbs.AddLoad(LoadMassProportional(markerNumber=block, loadVector=[0.0, -scene.gravity, 0.0]))
@@ -271,7 +276,7 @@ def _add_loads(model: Model) -> None:
 
 
 def read_back(model: Model) -> dict[str, tuple[Any, Any]]:
-    """{name: (value in exudyn, value in the scene)}."""
+    """Read values back from exudyn: {name: (value in exudyn, value in the scene)}."""
     scene, mbs = model.scene, model.mbs
     block = mbs.GetObject(model.block)
     values = {

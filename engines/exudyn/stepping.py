@@ -106,7 +106,10 @@ def step_limit(scene: Scene) -> int:
 
 
 def solver_settings(scene: Scene, **time_integration: Any) -> exu.SimulationSettings:
-    """exudyn settings for one scene, without output; fields of the time integration as given."""
+    """exudyn's settings for one scene, without output.
+
+    time_integration: fields of its time integration and their values.
+    """
     settings = exu.SimulationSettings()
     settings.solution.file.write = False
     settings.solution.solverInformationFileName = ""
@@ -225,7 +228,7 @@ def in_one_go(model: Model, settings: exu.SimulationSettings, steps: Steps) -> F
 
 
 def solve(solver: Any, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> Failure | None:
-    """Run a solver of exudyn; the failure with its message, or None."""
+    """Run a solver of exudyn; return the failure with its message, or None."""
     try:
         done = solver.SolveSystem(mbs, settings)
     except exu.ExudynError as error:
@@ -371,7 +374,7 @@ class Phases:
         return self.quiet == self.implicit
 
     def run(self) -> Failure | None:
-        """Step to the scene's end, to overturning or to the limit of steps; exudyn's failure, or None."""
+        """Step to the scene's end, to overturning or to the limit of steps; return exudyn's failure, or None."""
         steps, scene = self.steps, self.model.scene
         begin, duration = standing_until(scene), scene.duration
         for t in sorted({0.0, begin}):
@@ -381,7 +384,7 @@ class Phases:
             self.changed, self.quiet = steps.times[-1], False  # a jump may lift a standing block in one implicit step
             while steps.times[-1] < self.end - SUMS * duration:
                 count, self.implicit = len(steps.times), self.quiet
-                failure = self._piece(steps.times[-1])
+                failure = self._integrate_part(steps.times[-1])
                 if failure and not self.implicit:
                     return failure
                 if failure:
@@ -392,20 +395,22 @@ class Phases:
                     return Failure("the solver made no step", f"from {steps.times[-1]:.9g} s")
         return None
 
-    def _meets(self, t):
+    def _implicit_end(self, t):
         """End [s] of equal implicit steps from t: a record bends at its samples, which they must meet."""
         now, last = t / self.dt, math.floor(self.end / self.dt + WHOLE)
         if abs(now - round(now)) > WHOLE:
             return min(math.ceil(now) * self.dt, self.end)
         return last * self.dt if round(now) < last else self.end
 
-    def _piece(self, t):
-        """Integrate from the last step to the next change of integrator or jump of the ground's acceleration; the
-        failure."""
+    def _integrate_part(self, t):
+        """Integrate from the last step, at t, to the next change of integrator or jump; return the failure.
+
+        A jump is one of the ground's acceleration.
+        """
         mbs, (solver, settings), (q, v) = self.model.mbs, self.solvers[self.implicit], self.steps.last()
         mbs.systemData.SetODE2Coordinates(q, configuration=INITIAL)
         mbs.systemData.SetODE2Coordinates_t(v, configuration=INITIAL)
-        integration, end = settings.timeIntegration, self._meets(t) if self.implicit else self.end
+        integration, end = settings.timeIntegration, self._implicit_end(t) if self.implicit else self.end
         self.ground.part = END if self.implicit else ALL
         integration.startTime, integration.endTime = t, end
         integration.numberOfSteps = math.ceil((end - t) / (self.step if self.implicit else self.longest) - WHOLE)

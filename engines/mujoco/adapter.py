@@ -56,7 +56,7 @@ def coordinates(scene: Scene) -> tuple[list[float], list[float]]:
 
 
 def _ground(scene: Scene, geom: str = "") -> str:
-    """MJCF of the support of the block, with its top at z = 0: a plane, or a slab on a slide joint for a base."""
+    """The support of the block as MJCF, its top at z = 0: a plane or, for a base, a slab on a slide joint."""
     if scene.base is None:
         return f'<geom type="plane" size="0 0 1" {geom}/>'
     reach, depth = 100 * scene.block.radius, scene.block.radius  # a plane cannot move in MuJoCo
@@ -68,7 +68,7 @@ def _ground(scene: Scene, geom: str = "") -> str:
 
 
 def contact_reference(step: float, recovery: float) -> tuple[float, float]:
-    """solref for a step [s]: -stiffness and -damping per unit of mass that stop a corner within this step.
+    """MuJoCo's solref for a step [s]: -stiffness and -damping per unit of mass that stop a corner within it.
 
     A corner with penetration r then moves up at r min(MOST_RECOVERY/step, recovery), whatever its speed was.
     """
@@ -165,7 +165,7 @@ def check_readback(
 
 
 class MujocoBodies:
-    """Model and data; recovery: see `contact_reference`, None for MuJoCo's default contact."""
+    """MuJoCo's model and data of a scene; recovery: see `contact_reference`, None for the default contact."""
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, recovery: float | None) -> None:
         self.model, self.data, self.recovery, self.used = model, data, recovery, model.opt.timestep

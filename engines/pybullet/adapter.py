@@ -49,8 +49,10 @@ __all__ = ["pybullet"]
 
 
 def chain(client: int, links: list[tuple], fixed: int = -1, **options: int) -> int:
-    """A multibody of links (mass, shape, position, joint, axis, parent) on a fixed body of shape `fixed`, by default of
-    none, at the origin."""
+    """Create a multibody of links (mass, shape, position, joint, axis, parent); return its number.
+
+    The links stand on a fixed body at the origin, of shape `fixed`, by default of none.
+    """
     masses, shapes, positions, joints, axes, parents = (list(column) for column in zip(*links, strict=True))
     count = len(links)
     return pybullet.createMultiBody(
@@ -322,7 +324,7 @@ EACH_STEP = {
 
 
 def impact_aware(settings: ImpactAware) -> dict[str, str]:
-    """Calls of impact-aware."""
+    """Bullet's calls in impact-aware, for `engines.contract.Variant.calls`."""
     largest, smallest = settings.largest_step, SMALLEST_STEP * (settings.largest_step / settings.balanced_step) ** 2
     return {
         **CHAIN,
@@ -338,12 +340,12 @@ def impact_aware(settings: ImpactAware) -> dict[str, str]:
 
 
 def fixed_step(settings: FixedStep) -> dict[str, str]:
-    """Calls of fixed-step."""
+    """Bullet's calls in fixed-step."""
     return {**CHAIN, f"step = {settings.step:g} * scale": "s; the one before is 0 at the start", **EACH_STEP}
 
 
 def first_script(settings: FirstScript) -> dict[str, str]:
-    """Calls of first-script."""
+    """Bullet's calls in first-script."""
     return {
         f"step = {settings.step:g}": "s",
         "setTimeStep(step)": "",
@@ -442,15 +444,15 @@ def run(scene: Scene, variant: str, settings: Settings) -> Run:
     finally:
         pybullet.disconnect(client)
     if plain:
-        return _limited(ran)
+        return _fail_if_limited(ran)
     if friction is not None and friction > FRICTION:
         words = f"friction = {friction:.4g} is above {FRICTION:g}: Bullet takes it as {FRICTION:g}"
         ran = replace(ran, warnings=(Caution("engine", words, "friction", friction, FRICTION),))
     return ran
 
 
-def _limited(ran: Run) -> Run:
-    """A first script's run, failed where Bullet may have limited a velocity, as it does without a message."""
+def _fail_if_limited(ran: Run) -> Run:
+    """Make a first script's run a failure where Bullet may have limited a velocity, which it does silently."""
     if ran.trace is None or ran.failure:
         return ran
     fastest = max(np.abs(ran.trace.tilt_rate).max(), np.abs(ran.trace.base_velocity).max())

@@ -40,7 +40,7 @@ def iterations(scene: Scene) -> int:
 
 
 class ChipmunkBodies:
-    """Chipmunk's space with the block and, as the base, the slab.
+    """Chipmunk's space with the block and, for a base, the slab.
 
     A call of Chipmunk first moves all bodies at their velocities, then finds contacts, then applies impulses. The
     impulse thus lies between this step and the next one, whose length must be known before the call. The state that is
