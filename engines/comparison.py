@@ -55,7 +55,7 @@ CHANGE = 1e-4  # relative; errors of tuned engines are 1e-5 to 1e-4
 
 
 def near_copies(scene: Scene) -> Iterator[Scene]:
-    """Copies of the scene with slenderness, restitution (or a given friction), motion or start changed by +-`CHANGE`."""
+    """Copies of a scene with slenderness, restitution (or a given friction), motion or start changed by `CHANGE`."""
     for factor in (1 + CHANGE, 1 - CHANGE):
         yield from _changed(scene, block={"slenderness": scene.block.slenderness * factor})
     yield from changed_copies(scene, CHANGE).values()

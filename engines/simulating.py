@@ -145,6 +145,7 @@ def _values(scene: Scene, response: Response) -> dict[str, float]:
 # during the impact. With an engine that switches corners within a step, as MuJoCo does, the block is then on both
 # corners, and e would be read as 0.
 SETTLED, STEPS = 2.0, 4
+SLIPS = "with less the block slips under the couple before each landing"
 
 
 class Simulator(Engine):
@@ -207,8 +208,8 @@ class Simulator(Engine):
         if response.failure or not compare:
             return response
         if (held := self._as_run(scene, response.variant).friction) != scene.friction and scene.friction is not None:
-            words = f"the contact's friction is {held:.3g}, not the scene's {scene.friction:.3g}, as by a smaller one"
-            return replace(response, comparable=f"{words} a couple before the landing slips")
+            words = f"the contact's friction is {held:.3g}, not the scene's {scene.friction:.3g}"
+            return replace(response, comparable=f"{words}: {SLIPS}")
         return compared(scene, response, Reference.of(scene, model))
 
     def traced(
@@ -259,7 +260,7 @@ class Simulator(Engine):
             return ()
         words = f"restitution given, {e:.4g}: it is the scene's, and says nothing of the engine's own impact"
         if (friction := self._as_run(scene, response.variant).friction) != scene.friction:
-            words += f"; the contact's friction is {friction:.3g}, as with less a couple before the landing slips"
+            words += f"; the contact's friction is {friction:.3g}: {SLIPS}"
         return (Caution("engine", words, "restitution", e),)
 
     def _observed(self, scene: Scene, name: str, chosen: Any, history: bool) -> tuple[Response, Trace | None]:

@@ -37,8 +37,29 @@ if TYPE_CHECKING:
 
     from .scene import CompliantCorners, Model
 
-ALL, END = 1.0, 1e-4
+ALL, END = 1.0, 1e-4  # `Ground.part` of explicit and of implicit steps
 BEGIN, INITIAL = exu.ConfigurationType.StartOfStep, exu.ConfigurationType.Initial
+OVERTURNED = math.pi / 2
+# Limit of steps per rocking period of the scene, the first one counted double. The default level takes up to 3e4 per
+# period where impacts are frequent. Bearings that are stiff or viscous for the mass of their base take as many as
+# stability of explicit steps requires.
+STEPS_PER_PERIOD = 300_000
+# Number of steps to the impact at which implicit steps end; rate that a base may cause meanwhile, over that of the
+# block's free fall. With 2 and 1 peaks of swings of a thousandth of the slenderness are off by .05, not .01.
+AHEAD, PUSHED = 4.0, 3.0
+CARRIES = 0.1  # least share of the weight on a loaded corner; .2 gives the same errors
+# Implicit steps shorter than this share of `pivoting_step`, as stiff bearings need, are slower than explicit ones.
+WORTHWHILE = 0.1
+# Share of the step of leapfrog engines where bearings vibrate: the phase error is (h omega)^2/12 per radian.
+SMOOTH = 0.075
+LEAST_STEP = 1e-13  # s; exudyn stops where it would need a shorter one
+SUMS = 1e-12  # round-off of a sum of steps, over the duration
+WHOLE = 1e-6  # tolerated excess of a time over a whole number of steps, in steps
+FIRST = 2e-3  # of the longest explicit step: the first step of a part
+# Residual of Newton's method, over the block's weight; at least the corner force from some rounding errors of a
+# coordinate, below which Newton's method does not converge.
+RESIDUAL, ROUNDING = 1e-7, 30 * 2.0**-52
+DIFFERENCE = 0.02  # of a corner's penetration: exudyn's increment in numerical differentiation
 
 
 class Ground:
@@ -64,66 +85,6 @@ class Ground:
         if self.push is not None:
             mbs.SetLoadParameter(self.push, "loadVector", [-self.mass * across, 0.0, 0.0])
         return True
-
-
-OVERTURNED = math.pi / 2
-
-# Limit of steps per rocking period of the scene, the first one counted double. The default level takes up to 3e4 per
-# period where impacts are frequent. Bearings that are stiff or viscous for the mass of their base take as many as
-# stability of explicit steps requires.
-STEPS_PER_PERIOD = 300_000
-
-
-@contextmanager
-def interruptible() -> Iterator[list[Any]]:
-    """Context in which a run of exudyn ends at Ctrl-C, as Python code does.
-
-    exudyn takes a KeyboardInterrupt raised in a user function for a failure of its solver. The signal is therefore only
-    recorded, the user functions stop the run, and the signal is sent again afterwards.
-
-    Yields
-    ------
-    list
-        Not empty after the signal.
-    """
-    came: list[int]
-    came, handler = [], signal.getsignal(signal.SIGINT)
-    if threading.current_thread() is not threading.main_thread() or not callable(handler):
-        yield came  # not the main thread, or no such signal
-        return
-    signal.signal(signal.SIGINT, lambda number, frame: came.append(number))
-    try:
-        yield came
-    finally:
-        signal.signal(signal.SIGINT, handler)
-        if came:
-            signal.raise_signal(signal.SIGINT)
-
-
-def step_limit(scene: Scene) -> int:
-    """Largest number of steps of a run of a scene."""
-    return int(STEPS_PER_PERIOD * (2 + scene.duration * scene.rocking_frequency / (2 * math.pi)))
-
-
-def solver_settings(scene: Scene, **time_integration: Any) -> exu.SimulationSettings:
-    """exudyn's settings for one scene, without output.
-
-    time_integration: fields of its time integration and their values.
-    """
-    settings = exu.SimulationSettings()
-    settings.solution.file.write = False
-    settings.solution.solverInformationFileName = ""
-    settings.timeIntegration.verboseMode = 0
-    settings.timeIntegration.endTime = scene.duration
-    explicit = settings.timeIntegration.explicit  # for features that no scene has; a step takes 15 % less time
-    explicit.useLieGroupIntegration = explicit.eliminateConstraints = False
-    explicit.computeEndOfStepAccelerations = False
-    for name, value in time_integration.items():
-        setattr(settings.timeIntegration, name, value)
-        held = getattr(settings.timeIntegration, name)
-        if held != value:
-            raise Mismatch(f"timeIntegration.{name} is {held!r} in exudyn, {value!r} was set")
-    return settings
 
 
 class Steps:
@@ -215,35 +176,35 @@ def step_through(
     return Run(trace, len(steps.times) - 1, cpu, failure, ended)
 
 
-def in_one_go(model: Model, settings: exu.SimulationSettings, steps: Steps) -> Failure | None:
-    """Integrate by the implicit trapezoidal rule in equal steps; a `drive` of `step_through`."""
-    mbs, integration = model.mbs, settings.timeIntegration
-    integration.solverType = exu.DynamicSolverType.TrapezoidalIndex2
-    integration.generalizedAlpha.useNewmark = integration.generalizedAlpha.useIndex2Constraints = True
-    mbs.SetPostStepUserFunction(recorder(model, steps))
-    if model.scene.motion is not None:
-        mbs.SetPreStepUserFunction(Ground(model).prepare)
-    solver = exu.MainSolverImplicitSecondOrder()
-    return solve(solver, mbs, settings)
+@contextmanager
+def interruptible() -> Iterator[list[Any]]:
+    """Context in which a run of exudyn ends at Ctrl-C, as Python code does.
 
+    exudyn takes a KeyboardInterrupt raised in a user function for a failure of its solver. The signal is therefore only
+    recorded, the user functions stop the run, and the signal is sent again afterwards.
 
-def solve(solver: Any, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> Failure | None:
-    """Run a solver of exudyn; return the failure with its message, or None."""
-    try:
-        done = solver.SolveSystem(mbs, settings)
-    except exu.ExudynError as error:
-        return Failure("the solver stopped with an error", f"{error} {solver.GetErrorString()}".strip())
-    return None if done else Failure("the solver gave up", solver.GetErrorString())
-
-
-def release(mbs: exu.MainSystem) -> None:
-    """Remove the user functions from a system after its run.
-
-    They form a reference cycle through exudyn that the garbage collector cannot detect. Without this, each run leaks
-    400 bytes a step (40 MB for 100 000 steps) and the segments of the ground motion.
+    Yields
+    ------
+    list
+        Not empty after the signal.
     """
-    mbs.SetPreStepUserFunction(0)
-    mbs.SetPostStepUserFunction(0)
+    came: list[int]
+    came, handler = [], signal.getsignal(signal.SIGINT)
+    if threading.current_thread() is not threading.main_thread() or not callable(handler):
+        yield came  # not the main thread, or no such signal
+        return
+    signal.signal(signal.SIGINT, lambda number, frame: came.append(number))
+    try:
+        yield came
+    finally:
+        signal.signal(signal.SIGINT, handler)
+        if came:
+            signal.raise_signal(signal.SIGINT)
+
+
+def step_limit(scene: Scene) -> int:
+    """Largest number of steps of a run of a scene."""
+    return int(STEPS_PER_PERIOD * (2 + scene.duration * scene.rocking_frequency / (2 * math.pi)))
 
 
 def check(model: Model) -> None:
@@ -264,6 +225,16 @@ def check(model: Model) -> None:
         raise Mismatch("; ".join(wrong))
 
 
+def release(mbs: exu.MainSystem) -> None:
+    """Remove the user functions from a system after its run.
+
+    They form a reference cycle through exudyn that the garbage collector cannot detect. Without this, each run leaks
+    400 bytes a step (40 MB for 100 000 steps) and the segments of the ground motion.
+    """
+    mbs.SetPreStepUserFunction(0)
+    mbs.SetPostStepUserFunction(0)
+
+
 def _trace(model: Model, steps: Steps, contact_tilt: float, settle: float) -> Trace | None:
     """The `Trace` of the recorded steps, or None where there are fewer than two."""
     t, z, bearing = np.asarray(steps.times), steps.forces, model.bearing
@@ -278,22 +249,46 @@ def _trace(model: Model, steps: Steps, contact_tilt: float, settle: float) -> Tr
     return Trace(t, -q[:, 2], -v[:, 2], x, speed, force, contact_tilt, settle, centre)
 
 
-# Number of steps to the impact at which implicit steps end; rate that a base may cause meanwhile, over that of the
-# block's free fall. With 2 and 1 peaks of swings of a thousandth of the slenderness are off by .05, not .01.
-AHEAD, PUSHED = 4.0, 3.0
-CARRIES = 0.1  # least share of the weight on a loaded corner; .2 gives the same errors
-# Implicit steps shorter than this share of `pivoting_step`, as stiff bearings need, are slower than explicit ones.
-WORTHWHILE = 0.1
-# Share of the step of leapfrog engines where bearings vibrate: the phase error is (h omega)^2/12 per radian.
-SMOOTH = 0.075
-LEAST_STEP = 1e-13  # s; exudyn stops where it would need a shorter one
-SUMS = 1e-12  # round-off of a sum of steps, over the duration
-WHOLE = 1e-6  # tolerated excess of a time over a whole number of steps, in steps
-FIRST = 2e-3  # of the longest explicit step: the first step of a part
-# Residual of Newton's method, over the block's weight; at least the corner force from some rounding errors of a
-# coordinate, below which Newton's method does not converge.
-RESIDUAL, ROUNDING = 1e-7, 30 * 2.0**-52
-DIFFERENCE = 0.02  # of a corner's penetration: exudyn's increment in numerical differentiation
+def solver_settings(scene: Scene, **time_integration: Any) -> exu.SimulationSettings:
+    """exudyn's settings for one scene, without output.
+
+    time_integration: fields of its time integration and their values.
+    """
+    settings = exu.SimulationSettings()
+    settings.solution.file.write = False
+    settings.solution.solverInformationFileName = ""
+    settings.timeIntegration.verboseMode = 0
+    settings.timeIntegration.endTime = scene.duration
+    explicit = settings.timeIntegration.explicit  # for features that no scene has; a step takes 15 % less time
+    explicit.useLieGroupIntegration = explicit.eliminateConstraints = False
+    explicit.computeEndOfStepAccelerations = False
+    for name, value in time_integration.items():
+        setattr(settings.timeIntegration, name, value)
+        held = getattr(settings.timeIntegration, name)
+        if held != value:
+            raise Mismatch(f"timeIntegration.{name} is {held!r} in exudyn, {value!r} was set")
+    return settings
+
+
+def solve(solver: Any, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> Failure | None:
+    """Run a solver of exudyn; return the failure with its message, or None."""
+    try:
+        done = solver.SolveSystem(mbs, settings)
+    except exu.ExudynError as error:
+        return Failure("the solver stopped with an error", f"{error} {solver.GetErrorString()}".strip())
+    return None if done else Failure("the solver gave up", solver.GetErrorString())
+
+
+def in_one_go(model: Model, settings: exu.SimulationSettings, steps: Steps) -> Failure | None:
+    """Integrate by the implicit trapezoidal rule in equal steps; a `drive` of `step_through`."""
+    mbs, integration = model.mbs, settings.timeIntegration
+    integration.solverType = exu.DynamicSolverType.TrapezoidalIndex2
+    integration.generalizedAlpha.useNewmark = integration.generalizedAlpha.useIndex2Constraints = True
+    mbs.SetPostStepUserFunction(recorder(model, steps))
+    if model.scene.motion is not None:
+        mbs.SetPreStepUserFunction(Ground(model).prepare)
+    solver = exu.MainSolverImplicitSecondOrder()
+    return solve(solver, mbs, settings)
 
 
 class Phases:
