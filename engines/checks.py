@@ -241,8 +241,8 @@ def missing_impulse(scene: Scene, trace: Trace) -> tuple[np.ndarray, np.ndarray]
     """
     law = bearing_impulse(scene, trace)
     ground = ground_velocities(scene.motion, trace.time) if scene.motion else 0.0
-    left = momentum(scene, trace) + law + scene.total_mass * ground
-    return left - left[0], law
+    unexplained = momentum(scene, trace) + law + scene.total_mass * ground
+    return unexplained - unexplained[0], law
 
 
 def impulse_error(scene: Scene, trace: Trace) -> float:

@@ -191,7 +191,7 @@ def _straddling(scene: Scene, model: ArrayModel, trace: Trace, least: float) -> 
 def check_impacts(scene: Scene, trace: Trace, impacts: Sequence[Impact], missed: Sequence[float]) -> Failure | None:
     """A `Failure` where an impact added energy or was not resolved, else None; `missed` as in `find_events`."""
     slides = scene.friction is not None and trace.centre is not None
-    least = _least_speed(ArrayModel.of(scene), trace, max((abs(each.rate_before) for each in impacts), default=0.0))
+    least = _least_speed(ArrayModel.of(scene), trace, max((abs(impact.rate_before) for impact in impacts), default=0.0))
     for impact in impacts:
         before, after = abs(impact.rate_before), abs(impact.rate_after)
         if before >= least and not after <= MOST_RESTITUTION * before and not slides:  # not: NaN
@@ -318,15 +318,15 @@ def finite_part(trace: Trace, failure: Failure | None) -> tuple[Trace | None, Fa
         finite &= np.isfinite(getattr(trace, name))
     if trace.centre is not None:
         finite &= np.isfinite(trace.centre).all(axis=1)
-    whole = bool(finite.all())
-    count = len(finite) if whole else int(np.argmin(finite))
-    if not whole:
+    all_finite = bool(finite.all())
+    count = len(finite) if all_finite else int(np.argmin(finite))
+    if not all_finite:
         failure = failure or Failure("the state is no longer finite", f"at step {count}, t = {trace.time[count]:.9g} s")
     if failure is not None and failure.last_state is None and count:
         failure = replace(failure, last_state=last_state(trace, count - 1))
     if count < 2:
         return None, failure
-    return trace if whole else trace.upto(count), failure
+    return trace if all_finite else trace.upto(count), failure
 
 
 def upto_overturning(scene: Scene, trace: Trace, ended: str | None) -> tuple[Trace, float | None]:

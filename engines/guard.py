@@ -198,17 +198,17 @@ def without(greeting: bytes) -> Iterator[None]:
     """
     with contextlib.ExitStack() as closing:
         try:
-            kept = os.dup(2)
-            closing.callback(os.close, kept)
-            held = closing.enter_context(tempfile.TemporaryFile())
+            original = os.dup(2)
+            closing.callback(os.close, original)
+            captured = closing.enter_context(tempfile.TemporaryFile())
         except OSError:  # no standard error, or no disk space: the greeting is printed
             yield
             return
-        os.dup2(held.fileno(), 2)
+        os.dup2(captured.fileno(), 2)
         try:
             yield
         finally:
-            os.dup2(kept, 2)
-            held.seek(0)
+            os.dup2(original, 2)
+            captured.seek(0)
             with contextlib.suppress(OSError):  # standard error is closed
-                os.write(2, b"".join(line for line in held if not line.startswith(greeting)))
+                os.write(2, b"".join(line for line in captured if not line.startswith(greeting)))

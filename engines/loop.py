@@ -78,20 +78,20 @@ def gap_rule(largest: float, smallest: float, gravity: float) -> Rule:
     function
         From the (gap [m], closing speed [m/s]) of each contact point to the length of the next step [s].
     """
-    step, held = smallest, 0
+    step, hold = smallest, 0
 
     def length(points):
-        nonlocal step, held
+        nonlocal step, hold
         gained = gravity * step
         wanted, slow, near = largest, SLOW * gained, NEAR * gained * step
         for gap, closing in points:
             if closing > slow or (closing > 0 and gap > near):
                 if gap <= 0:
-                    held = HOLD
+                    hold = HOLD
                 elif SHARE * gap < wanted * closing:
                     wanted = SHARE * gap / closing
-        longest = step if held else (1 + GROWTH) * step
-        held = max(held - 1, 0)
+        longest = step if hold else (1 + GROWTH) * step
+        hold = max(hold - 1, 0)
         step = max(min(wanted, longest), smallest)
         return step
 
@@ -362,10 +362,10 @@ def mean_loads(scene: Scene, bodies: Bodies, largest: float) -> Loads:
     damping, mass, g = law.count * law.damping, driven_mass(model), model.g
     heavier = leapfrog_stiffness(law, largest, mass)
     ground, upright = ground_velocity(scene.motion), ground_velocity(scene.motion and scene.motion.vertical)
-    gained = risen = across = held = added = 0.0
+    gained = risen = across = weighed = added = 0.0
 
     def loads(t, step, h, v, force):
-        nonlocal gained, risen, across, held, added
+        nonlocal gained, risen, across, weighed, added
         interval = 0.5 * (step + h)
         up = -g * interval
         if ground:
@@ -376,8 +376,8 @@ def mean_loads(scene: Scene, bodies: Bodies, largest: float) -> Loads:
             up += before - risen
         if not (damping or heavier):
             return across, up, -force * interval
-        if interval != held:
-            held, added = interval, added_mass(damping, interval, mass) + heavier * interval * interval
+        if interval != weighed:
+            weighed, added = interval, added_mass(damping, interval, mass) + heavier * interval * interval
             bodies.weigh(added)
         return across, up, -(force + damping * v) * interval - added * across
 

@@ -87,14 +87,14 @@ def observe(
         return failed_response(scene, failure, warnings=warnings, **run)
     trace, overturning_time = upto_overturning(scene, finite, ended)
     end = last_state(trace)
-    seen, missed, lifted = _measured(scene, trace, beyond or trace, overturning_time)
+    measured, missed, lifted = _measured(scene, trace, beyond or trace, overturning_time)
     sliding = slip_of(scene, trace)
     slip = sliding.peak if sliding and overturning_time is None else 0.0
-    failure, warnings = _judged(scene, trace, {**seen, "peak_slip": slip}, missed, failure, warnings)
-    lifted = lifted and seen["peak_tilt"] >= STILL * scene.block.slenderness
+    failure, warnings = _judged(scene, trace, {**measured, "peak_slip": slip}, missed, failure, warnings)
+    lifted = lifted and measured["peak_tilt"] >= STILL * scene.block.slenderness
     upright = "rocks" if lifted else "slides" if sliding and sliding.peak else "stands"
     if sliding and sliding.peak and scene.friction:  # what no-slip formulas ask for is no demand
-        seen["friction_demand"] = min(seen["friction_demand"], scene.friction)
+        measured["friction_demand"] = min(measured["friction_demand"], scene.friction)
     response = Response(
         outcome="failed" if failure else upright if overturning_time is None else "overturns",
         end=end,
@@ -103,7 +103,7 @@ def observe(
         history=_history(scene, trace) if history else None,
         scene=scene.name,
         sliding=sliding,
-        **seen,
+        **measured,
         **run,
     )
     return replace(response, decided=is_decided(scene, response, contact_tilt=trace.contact_tilt))
@@ -120,7 +120,7 @@ def _measured(
     upright = upright_part(scene, trace, falls=overturning_time is not None)  # any falling block slides and jumps
     demand, normal, acceleration = contact_measures(scene, upright)
     peak = _peak(trace.time, trace.tilt, trace.tilt_rate)
-    seen = dict(
+    measured = dict(
         overturning_time=overturning_time,
         unstable_time=unstable_time(scene, trace),
         fall_time=None if overturning_time is None else float(upright.time[-1]),
@@ -134,13 +134,13 @@ def _measured(
         friction_demand=demand,
         min_normal_ratio=normal,
     )
-    return seen, missed, bool((beyond.time[swings.first] <= end).any())
+    return measured, missed, bool((beyond.time[swings.first] <= end).any())
 
 
 def _judged(
     scene: Scene,
     trace: Trace,
-    seen: Mapping[str, Any],
+    measured: Mapping[str, Any],
     missed: Any,
     failure: Failure | None,
     warnings: Iterable[Caution | str],
@@ -151,14 +151,14 @@ def _judged(
     gained (`check_energy`); impacts gain no energy, are resolved and are not skipped by the steps (`check_impacts`);
     all measures are finite; the motion matches the bearing force (`check_impulse`; for a first script a warning).
     """
-    falls = seen["overturning_time"] is not None
+    falls = measured["overturning_time"] is not None
     failure = (
         failure
         or (None if falls else ended_early(scene, trace))
         or check_place(scene, trace, falls)
         or check_energy(scene, trace)
-        or check_impacts(scene, trace, seen["impacts"], missed)
-        or _check_finite(seen)
+        or check_impacts(scene, trace, measured["impacts"], missed)
+        or _check_finite(measured)
     )
     if failure is not None:
         return failure, warnings  # without warnings on forces, which are meaningless in a failed run
@@ -167,8 +167,10 @@ def _judged(
         return failure, warnings
     if failure:
         warnings = (*warnings, Caution("engine", f"{failure.reason}: {failure.message}"))
-    beyond = limit_warnings(scene, seen["peak_base_displacement"], seen["peak_slip"])
-    outside = model_warnings(scene, seen["friction_demand"], seen["min_normal_ratio"], slides=trace.centre is not None)
+    beyond = limit_warnings(scene, measured["peak_base_displacement"], measured["peak_slip"])
+    outside = model_warnings(
+        scene, measured["friction_demand"], measured["min_normal_ratio"], slides=trace.centre is not None
+    )
     return None, (*warnings, *outside, *beyond)
 
 
@@ -191,15 +193,15 @@ def _warnings(scene: Scene, warnings: Iterable[Caution | str]) -> tuple[Caution,
     return tuple(dict.fromkeys((*about_record(scene.motion), *cautions)))
 
 
-def _check_finite(seen: Mapping[str, Any]) -> Failure | None:
+def _check_finite(measured: Mapping[str, Any]) -> Failure | None:
     """A `Failure` where a number of `_measured` is not finite, else None."""
-    peaks = [seen[name] for name in ("peak_tilt", "peak_base_displacement", "peak_base_acceleration")]
+    peaks = [measured[name] for name in ("peak_tilt", "peak_base_displacement", "peak_base_acceleration")]
     numbers = {
         "a peak": peaks,
-        "the normal force": [seen["min_normal_ratio"]],
-        "an uplift": seen["uplifts"],
-        "a rest": seen["rests"],
-        "an impact": np.array([astuple(impact) for impact in seen["impacts"]]).ravel(),
+        "the normal force": [measured["min_normal_ratio"]],
+        "an uplift": measured["uplifts"],
+        "a rest": measured["rests"],
+        "an impact": np.array([astuple(impact) for impact in measured["impacts"]]).ravel(),
     }
     wrong = [name for name, values in numbers.items() if not np.isfinite(values).all()]
     return Failure("measuring the run gave no number", f"not finite: {', '.join(wrong)}") if wrong else None

@@ -163,13 +163,13 @@ class Simulator(Engine):
         """
         adapter = self.load()
         try:
-            ran = adapter.run(self._as_run(scene, variant), variant, settings)
-            if not isinstance(ran, Run):
-                raise TypeError(f"{self.adapter}.run returned a {type(ran).__name__}, no engines.contract.Run")
+            result = adapter.run(self._as_run(scene, variant), variant, settings)
+            if not isinstance(result, Run):
+                raise TypeError(f"{self.adapter}.run returned a {type(result).__name__}, no engines.contract.Run")
         except Exception as error:
             error.add_note(f"in {_place(error, adapter)}")
             raise
-        return ran
+        return result
 
     def simulate(
         self, scene: Scene, *, variant: str | None = None, history: bool = True, compare: bool = True, **settings: float
@@ -270,7 +270,7 @@ class Simulator(Engine):
         run = self.run(scene, name, chosen)
         longer = self._longer_run(scene, name, chosen, run)
         beyond, warnings = _beyond(scene, longer) if longer else (None, ())
-        given: dict[str, Any] = dict(
+        labels: dict[str, Any] = dict(
             engine=self.name,
             variant=name,
             settings=asdict(chosen),
@@ -281,9 +281,11 @@ class Simulator(Engine):
         )
         if run.trace is None:
             failure = run.failure or Failure("the run ended before its first step")
-            return failed_response(scene, failure, **given), None
-        seen = observe(scene, run.trace, beyond=beyond, history=history, failure=run.failure, ended=run.ended, **given)
-        return seen, run.trace
+            return failed_response(scene, failure, **labels), None
+        response = observe(
+            scene, run.trace, beyond=beyond, history=history, failure=run.failure, ended=run.ended, **labels
+        )
+        return response, run.trace
 
     def _longer_run(self, scene: Scene, name: str, chosen: Any, run: Run) -> Run | None:
         """The same run of a longer scene, if the scene ends during a change of contact; else None."""

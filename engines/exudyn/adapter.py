@@ -203,11 +203,11 @@ def run(scene: Scene, variant: str, settings: CompliantCorners | NativeContact) 
     Mismatch
         exudyn holds other values than the scene asks for; nothing was run.
     """
-    ran = _MODULES[variant].run(scene, settings)
-    if ran.trace is None:
-        failure = replace(ran.failure or Failure("the run ended before its first step"), last_state=_start(scene))
-        return replace(ran, failure=failure, steps=max(ran.steps, 0))
-    return replace(ran, failure=ran.failure or _fault(scene, ran))
+    result = _MODULES[variant].run(scene, settings)
+    if result.trace is None:
+        failure = replace(result.failure or Failure("the run ended before its first step"), last_state=_start(scene))
+        return replace(result, failure=failure, steps=max(result.steps, 0))
+    return replace(result, failure=result.failure or _fault(scene, result))
 
 
 def _fault(scene: Scene, run: Run) -> Failure | None:

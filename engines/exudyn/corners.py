@@ -136,5 +136,5 @@ def run(scene: Scene, settings: CompliantCorners) -> Run:
     def drive(model, steps):
         return Phases(model, settings, steps, sink=sink, settle=settle, early=early).run()
 
-    ran = step_through(model, drive, 2 * contact_tilt, settle)
-    return replace(ran, trace=replace(ran.trace, early=early)) if couple and ran.trace else ran
+    result = step_through(model, drive, 2 * contact_tilt, settle)
+    return replace(result, trace=replace(result.trace, early=early)) if couple and result.trace else result

@@ -259,9 +259,11 @@ class Twist:
     def torque(self, rotation: Any, rate: Any, pull: Any) -> Any:
         """Symbolic torque against the block's rotation [N m]."""
         acts, (rate_part, pull_part) = self.couple.acts, _strengths(self.couple.kept)
-        left = -rotation / (acts * rate)
+        remaining = -rotation / (acts * rate)
         part = (rate_part / acts) * rate + pull_part * pull * exu.symbolic.sign(rate)
-        bump = exu.symbolic.IfThenElse(left < 1.0, self.couple.inertia * left * (1.0 - left) * part, Real(0.0))
+        bump = exu.symbolic.IfThenElse(
+            remaining < 1.0, self.couple.inertia * remaining * (1.0 - remaining) * part, Real(0.0)
+        )
         closing = exu.symbolic.IfThenElse(rotation * rate < 0.0, bump, Real(0.0))
         return exu.symbolic.IfThenElse(exu.symbolic.abs(rotation) > self.least, closing, Real(0.0))
 

@@ -188,17 +188,17 @@ def interruptible() -> Iterator[list[Any]]:
     list
         Not empty after the signal.
     """
-    came: list[int]
-    came, handler = [], signal.getsignal(signal.SIGINT)
+    interrupts: list[int]
+    interrupts, handler = [], signal.getsignal(signal.SIGINT)
     if threading.current_thread() is not threading.main_thread() or not callable(handler):
-        yield came  # not the main thread, or no such signal
+        yield interrupts  # not the main thread, or no such signal
         return
-    signal.signal(signal.SIGINT, lambda number, frame: came.append(number))
+    signal.signal(signal.SIGINT, lambda number, frame: interrupts.append(number))
     try:
-        yield came
+        yield interrupts
     finally:
         signal.signal(signal.SIGINT, handler)
-        if came:
+        if interrupts:
             signal.raise_signal(signal.SIGINT)
 
 
@@ -392,10 +392,10 @@ class Phases:
 
     def _implicit_end(self, t):
         """End [s] of equal implicit steps from t: a record bends at its samples, which they must meet."""
-        now, last = t / self.dt, math.floor(self.end / self.dt + WHOLE)
-        if abs(now - round(now)) > WHOLE:
-            return min(math.ceil(now) * self.dt, self.end)
-        return last * self.dt if round(now) < last else self.end
+        sample, last = t / self.dt, math.floor(self.end / self.dt + WHOLE)
+        if abs(sample - round(sample)) > WHOLE:
+            return min(math.ceil(sample) * self.dt, self.end)
+        return last * self.dt if round(sample) < last else self.end
 
     def _integrate_part(self, t):
         """Integrate from the last step, at t, to the next change of integrator or jump; return the failure.

@@ -253,7 +253,7 @@ def run(scene: Scene, variant: str, settings: Settings) -> Run:
     handler = mujoco.get_mju_user_warning()
     mujoco.set_mju_user_warning(messages.append)  # otherwise MuJoCo writes a log file into the working directory
     try:
-        ran = run_of(
+        result = run_of(
             scene,
             settings,
             lambda step: build(scene, step, isinstance(settings, FirstScript)),
@@ -264,7 +264,7 @@ def run(scene: Scene, variant: str, settings: Settings) -> Run:
     finally:
         mujoco.set_mju_user_warning(handler)
     if not messages:
-        return ran
+        return result
     words = "; ".join(line.strip() for line in messages)  # of a bad state, at which MuJoCo would reset to the start
-    message = f"{ran.failure.message}. {words}" if ran.failure else words
-    return replace(ran, failure=Failure(ran.failure.reason if ran.failure else "MuJoCo warned", message))
+    message = f"{result.failure.message}. {words}" if result.failure else words
+    return replace(result, failure=Failure(result.failure.reason if result.failure else "MuJoCo warned", message))

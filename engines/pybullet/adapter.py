@@ -432,7 +432,7 @@ def run(scene: Scene, variant: str, settings: Settings) -> Run:
     plain, edge, friction = isinstance(settings, FirstScript), FIRST_CONTACT * scene.block.slenderness, scene.friction
     client = pybullet.connect(pybullet.DIRECT)
     try:
-        ran = run_of(
+        result = run_of(
             scene,
             settings,
             lambda step: FreeBox(client, scene, step) if plain else BulletBodies(client, scene),
@@ -444,19 +444,19 @@ def run(scene: Scene, variant: str, settings: Settings) -> Run:
     finally:
         pybullet.disconnect(client)
     if plain:
-        return _fail_if_limited(ran)
+        return _fail_if_limited(result)
     if friction is not None and friction > FRICTION:
         words = f"friction = {friction:.4g} is above {FRICTION:g}: Bullet takes it as {FRICTION:g}"
-        ran = replace(ran, warnings=(Caution("engine", words, "friction", friction, FRICTION),))
-    return ran
+        result = replace(result, warnings=(Caution("engine", words, "friction", friction, FRICTION),))
+    return result
 
 
-def _fail_if_limited(ran: Run) -> Run:
+def _fail_if_limited(result: Run) -> Run:
     """Make a first script's run a failure where Bullet may have limited a velocity, which it does silently."""
-    if ran.trace is None or ran.failure:
-        return ran
-    fastest = max(np.abs(ran.trace.tilt_rate).max(), np.abs(ran.trace.base_velocity).max())
+    if result.trace is None or result.failure:
+        return result
+    fastest = max(np.abs(result.trace.tilt_rate).max(), np.abs(result.trace.base_velocity).max())
     if fastest <= 0.1 * DEFAULT_MOST_VELOCITY:
-        return ran
+        return result
     words = f"{fastest:.3g} m/s or rad/s; its limit: {DEFAULT_MOST_VELOCITY:g}"
-    return replace(ran, failure=Failure("Bullet limits velocities", words))
+    return replace(result, failure=Failure("Bullet limits velocities", words))

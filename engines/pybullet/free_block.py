@@ -38,7 +38,7 @@ def simulate(scene: Scene, *, step: float, history: bool = True) -> Response:
         )
     finally:
         pybullet.disconnect(client)
-    given: dict[str, Any] = dict(
+    labels: dict[str, Any] = dict(
         engine="pybullet",
         variant="3-D free block",
         cpu_seconds=run.cpu_seconds,
@@ -47,8 +47,8 @@ def simulate(scene: Scene, *, step: float, history: bool = True) -> Response:
         versions=versions(),
     )
     if run.trace is None:
-        return failed_response(scene, run.failure, **given)
-    return observe(scene, run.trace, history=history, failure=run.failure, ended=run.ended, **given)
+        return failed_response(scene, run.failure, **labels)
+    return observe(scene, run.trace, history=history, failure=run.failure, ended=run.ended, **labels)
 
 
 def _without_defaults(box, scene, step):
