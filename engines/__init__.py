@@ -32,7 +32,9 @@ from .simulating import Simulator
 
 # Engines are imported by name, not by statement, so that a result of one engine does not depend on the other engines.
 # The subject engines come first.
-_records: list[Engine] = [import_module(f"{__name__}.{one.name}").ENGINE for one in iter_modules(__path__) if one.ispkg]
+_records: list[Engine] = [
+    import_module(f"{__name__}.{package.name}").ENGINE for package in iter_modules(__path__) if package.ispkg
+]
 _declared = {engine.name: engine for engine in sorted(_records, key=lambda engine: (not engine.subject, engine.name))}
 BUILT_IN = tuple(_declared)
 _found, BROKEN = find_engines(_declared)  # BROKEN: the errors of entries that hold no engine, by name
@@ -60,7 +62,7 @@ def get_engine(name: str) -> Simulator:
 
 
 def available_engines(names: Iterable[str] | None = None) -> tuple[tuple[str, ...], dict[str, str]]:
-    """(engines of `names` that can be used, {name: why not} for the others); None: all that are declared.
+    """Sort engines: (those of `names` that can be used, {name: why not} for the others); None: all that are declared.
 
     Raises
     ------
@@ -79,7 +81,7 @@ def available_engines(names: Iterable[str] | None = None) -> tuple[tuple[str, ..
 
 
 def missing_words(missing: Mapping[str, str]) -> list[str]:
-    """Sentences on `missing` engines, {name: why} of `available_engines`; all extras of this project in one line."""
+    """Sentences on the `missing` engines of `available_engines`, with all extras of this project in one line."""
     extras = [name for name in missing if name in ENGINES and ENGINES[name].install == EXTRA.format(name)]
     words = [why for name, why in missing.items() if name not in extras]
     if extras:

@@ -1,12 +1,12 @@
-"""Checks that every engine run must pass at any step: bearing law, position of the block, no energy gain.
+"""Checks that every engine run must pass at any step size.
 
-Momentum of an engine's motion compared with the impulse of the bearing law on that motion.
+They concern the bearing law, the position of the block, its energy, and its momentum, which is compared with the
+impulse of the bearing law on the engine's motion.
 """
 
 from __future__ import annotations
 
 import math
-from array import array
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +16,7 @@ from analytic.motion import SampledMotion
 from analytic.response import Failure, Sliding
 from analytic.rocking import BearingLaw
 
-from .loads import ground_velocity
+from .loads import ground_velocities
 from .swings import ArrayModel
 
 if TYPE_CHECKING:
@@ -58,7 +58,9 @@ def replay_bearing(scene: Scene, trace: Trace) -> float:
 
 
 def energy_balance(scene: Scene, trace: Trace) -> tuple[np.ndarray, np.ndarray]:
-    """(balance, kinetic) [J], shape (n,): mechanical energy + loss in the bearings - input work, 0 at the start.
+    """Return (balance, kinetic energy) [J], shape (n,).
+
+    The balance is mechanical energy + loss in the bearings - input work, 0 at the start.
 
     Taken in the ground's frame, where the ground motion is the inertial load -a_g on both masses and -a_v on the block.
     For an exact solution it is constant while the block pivots or flies, and every impact lowers it. The work is
@@ -106,7 +108,7 @@ def slips(scene: Scene, trace: Trace) -> np.ndarray | None:
 
 
 def slip_of(scene: Scene, trace: Trace) -> Sliding | None:
-    """What `slips` comes to, all 0 where that is no slip; its work and modes are not known."""
+    """The `Sliding` of a run from its `slips`: all 0 where they are too small. Its work and modes are not known."""
     if (slip := slips(scene, trace)) is None:
         return None
     peak = float(np.abs(slip).max())
@@ -116,11 +118,11 @@ def slip_of(scene: Scene, trace: Trace) -> Sliding | None:
 
 
 def check_place(scene: Scene, trace: Trace, overturned: bool) -> Failure | None:
-    """A `Failure` if at the end the block has sunk into its base, left it or, without a friction in the scene, slid on
-    it, else None.
+    """A `Failure` if at the end the block has sunk into its base, left it or slid on it, else None.
 
-    During the run it may fly and land again, if it lands where it stood. A block that overturns may do so anywhere.
-    None, too, if the block's position was not read from the engine, and in a first script, whose contact is soft.
+    A block may slide where the scene gives a friction. During the run it may fly, if it lands where it stood. A block
+    that overturns may end anywhere. Nothing is checked where the block's position was not read from the engine, and in
+    a first script, whose contact is soft.
     """
     if trace.centre is None or overturned or trace.first_script:
         return None
@@ -195,14 +197,9 @@ def settled(trace: Trace) -> np.ndarray:
     """
     crossings = trace.time[1:][np.diff(np.sign(trace.tilt)) != 0]
     last = np.searchsorted(crossings, trace.time, side="right") - 1
-    found = trace.time - np.concatenate(([-math.inf], crossings))[last + 1] >= trace.settle
-    return found if found.sum() >= 2 else np.ones(len(trace.time), dtype=bool)
+    clean = trace.time - np.concatenate(([-math.inf], crossings))[last + 1] >= trace.settle
+    return clean if clean.sum() >= 2 else np.ones(len(trace.time), dtype=bool)
 
-
-if TYPE_CHECKING:
-    from analytic import Scene
-
-    from .swings import Trace
 
 # `impulse_error` above which a run counts as failed. A doubled or missing force gives 1. Exact motions sampled at
 # random steps of 1/60 s on average give up to .03, tuned variants at most 2e-3.
@@ -237,16 +234,15 @@ def momentum(scene: Scene, trace: Trace) -> np.ndarray:
 
 
 def missing_impulse(scene: Scene, trace: Trace) -> tuple[np.ndarray, np.ndarray]:
-    """(unexplained impulse up to each step [N s], the law's impulse [N s]), shapes (n,).
+    """Return (unexplained impulse up to each step, the law's impulse) [N s], shapes (n,).
 
     The first is momentum + impulse of the bearings + total mass times ground velocity, less its value at the start. It
     is constant for an exact solution, whatever the impacts.
     """
     law = bearing_impulse(scene, trace)
-    velocity = ground_velocity(scene.motion)
-    ground = np.fromiter(map(velocity, array("d", trace.time.tobytes())), float, len(trace.time)) if velocity else 0.0
-    left = momentum(scene, trace) + law + scene.total_mass * ground
-    return left - left[0], law
+    ground = ground_velocities(scene.motion, trace.time) if scene.motion else 0.0
+    unexplained = momentum(scene, trace) + law + scene.total_mass * ground
+    return unexplained - unexplained[0], law
 
 
 def impulse_error(scene: Scene, trace: Trace) -> float:

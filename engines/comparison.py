@@ -1,8 +1,8 @@
-"""Differences between an engine's run and the analytic model's run of the same scene.
+"""Comparison of an engine's run with the analytic model's run of the same scene.
 
 A `Difference` is reported where a limit is exceeded:
 
-- outcome: it differs as tables tell it, and both runs are decided.
+- outcome: it differs, and both runs are decided.
 - peak tilt, of a block that stays upright, and peak base displacement: by more than `PEAK` of the model's. A tilt below
   `LEAST_TILT` of the slenderness is compared as one of that size, and so is a displacement below `LEAST_DISPLACEMENT`
   of R gamma. If the block overturns, the displacement is the peak up to its last passage of the slenderness.
@@ -22,12 +22,11 @@ A `Difference` is reported where a limit is exceeded:
 
 A run cannot be compared where the model does not hold (without a friction in the scene: N <= 0, or a friction demand
 that no contact provides), or does not reach an end. The model is also run with start, motion, slenderness and
-restitution changed by `copies.CHANGE`. Where such a copy differs from the model in the outcome, a peak or a time, the
-scene is near an outcome boundary, for all engines alike; the stored value is "on an edge". There, an outcome that a
-copy has is not a difference. Neither is a number within the range of the copies with the run's outcome, widened by the
-limit. Impacts are compared up to the first one that the copies do not share.
-
-Near copies of a scene: runs of them show how sensitive a result is to small changes of the scene.
+restitution changed by `CHANGE`: these near copies of the scene show how sensitive a result is. Where a copy differs
+from the model in the outcome, a peak or a time, the scene is near an outcome boundary, for all engines alike; the
+stored value is "on an edge". There, an outcome that a copy has is not a difference. Neither is a number within the
+range of the copies with the run's outcome, widened by the limit. Impacts are compared up to the first one that the
+copies do not share.
 """
 
 from __future__ import annotations
@@ -50,20 +49,20 @@ from .loads import FRICTION
 from .swings import Trace
 
 if TYPE_CHECKING:
-    from analytic import Scene
+    from analytic import Response, Scene
 
 CHANGE = 1e-4  # relative; errors of tuned engines are 1e-5 to 1e-4
 
 
 def near_copies(scene: Scene) -> Iterator[Scene]:
-    """The scene with its slenderness, restitution (or friction, if given), motion or start changed by +-`CHANGE`."""
+    """Copies of a scene with slenderness, restitution (or a given friction), motion or start changed by `CHANGE`."""
     for factor in (1 + CHANGE, 1 - CHANGE):
         yield from _changed(scene, block={"slenderness": scene.block.slenderness * factor})
     yield from changed_copies(scene, CHANGE).values()
 
 
 def changed_copies(scene: Scene, change: float) -> dict[str, Scene]:
-    """{name: scene} with restitution (or friction, if given), motion and start changed by +-change, relative."""
+    """Copies {name: scene} with restitution (or a given friction), motion or start changed by +-change, relative."""
     copies = {}
     e, start = restitution(scene), scene.start
     for sign, word in ((1, "up"), (-1, "down")):
@@ -87,9 +86,6 @@ def _changed(scene: Scene, **change: dict[str, float]) -> Iterator[Scene]:
     except SceneError:
         return
 
-
-if TYPE_CHECKING:
-    from analytic import Response, Scene
 
 PEAK, RESTITUTION, LOSS, FALL = 0.02, 0.01, 0.1, 0.02
 LEAST_DISPLACEMENT = 1e-5
@@ -126,13 +122,15 @@ class Reference:
             model = model or simulate(scene, history=False)
         except SceneError as error:
             return cls(comparable=f"the analytic model refuses the scene: {error}")
-        if why := _outside(scene, model):
-            return cls(model, comparable=why)
+        if reason := _why_incomparable(scene, model):
+            return cls(model, comparable=reason)
         try:
             copies = tuple(simulate(copy, history=False) for copy in near_copies(scene))
         except SceneError as error:
             return cls(model, comparable=f"the analytic model refuses a scene within {CHANGE:g} of it: {error}")
-        near = frozenset(one.quantity for copy in copies for one in _numbers(scene, (model,), copy))
+        near = frozenset(
+            difference.quantity for copy in copies for difference in _number_differences(scene, (model,), copy)
+        )
         until = min((parting(scene, model, copy) for copy in copies), default=math.inf)
         return cls(model, copies, EDGE if near else COMPARED, near, until)
 
@@ -157,52 +155,56 @@ def differences(scene: Scene, reference: Reference, run: Response) -> tuple[Diff
     """Differences of a run from its reference; none where it cannot be compared."""
     if reference.model is None or reference.comparable not in JUDGED:
         return ()
-    known = (reference.model, *reference.copies)
-    return (*_numbers(scene, known, run), *_impact_differences(scene, reference.model, run, reference.until))
+    models = (reference.model, *reference.copies)
+    return (
+        *_number_differences(scene, models, run),
+        *_impact_differences(scene, reference.model, run, reference.until),
+    )
 
 
-def _numbers(scene: Scene, known: Sequence[Response], run: Response) -> list[Difference]:
-    """Differences of outcome, peaks and times from all `known` runs, the first of which is the model's."""
-    model, found = known[0], []
-    decided = [one for one in known if one.decided]
-    differs = run.outcome != model.outcome and not _may_be(scene, run) & {outcome_of(scene, one) for one in decided}
-    if run.decided and model.decided and differs:  # of those that are told alike the peak tilts tell
-        found.append(Difference("outcome", run.outcome, model.outcome, None))
-    alike = [one for one in known if (one.outcome == FALLS) == (run.outcome == FALLS)]
+def _number_differences(scene: Scene, models: Sequence[Response], run: Response) -> list[Difference]:
+    """Differences of outcome, peaks and times from the runs `models`: the model's own, then those of the copies."""
+    model, beyond = models[0], []
+    outcomes = {outcome_of(scene, response) for response in models if response.decided}
+    differs = run.outcome != model.outcome and not _possible_outcomes(scene, run) & outcomes
+    if run.decided and model.decided and differs:  # two outcomes of one word are compared by the peak tilt
+        beyond.append(Difference("outcome", run.outcome, model.outcome, None))
+    alike = [response for response in models if (response.outcome == FALLS) == (run.outcome == FALLS)]
     if not alike:
-        return found
+        return beyond
     falls = run.outcome == FALLS
-    slips = ["peak_slip"] if run.sliding and scene.friction is not None else []  # it is read
+    slips = ["peak_slip"] if run.sliding and scene.friction is not None else []  # where it was read
     upright = ("peak_tilt", "peak_base_displacement", *slips)
     for name in ("peak_base_displacement", "fall_time") if falls else upright:
-        values = [_value(one, name) for one in alike]
-        low, high, here = min(values), max(values), _value(run, name)
-        if not low - _room(scene, name, low) <= here <= high + _room(scene, name, high):  # not: NaN
-            limit = PEAK if name.startswith("peak") else _room(scene, name, values[0])
-            found.append(Difference(name, here, _own(known, alike, values), limit, _span(known, low, high)))
+        values = [_value(response, name) for response in alike]
+        low, high, value = min(values), max(values), _value(run, name)
+        if not low - _limit(scene, name, low) <= value <= high + _limit(scene, name, high):  # not: NaN
+            limit = PEAK if name.startswith("peak") else _limit(scene, name, values[0])
+            expected = _model_value(models, alike, values)
+            beyond.append(Difference(name, value, expected, limit, _range(models, low, high)))
     if falls:
-        found += [*_before_fall(scene, known, alike, run), *_overturning(scene, known, alike, run, found)]
-    return found
+        beyond += [*_before_fall(scene, models, alike, run), *_overturning(scene, models, alike, run, beyond)]
+    return beyond
 
 
 def _value(response: Response, name: str) -> float:
-    """A number by its name, see `response.DIFFERENCES`."""
+    """A number of a response by its name, one of `response.DIFFERENCES`."""
     if name == "peak_slip":
         return response.sliding.peak if response.sliding else 0.0
     return getattr(response, name)
 
 
-def _own(known: Sequence[Response], alike: Sequence[Response], values: Sequence[float]) -> float | None:
-    """The model's value among `values` of the runs that end `alike`; None if the model's end differs."""
-    return values[0] if alike[0] is known[0] else None
+def _model_value(models: Sequence[Response], alike: Sequence[Response], values: Sequence[float]) -> float | None:
+    """The model's value among the `values` of the runs `alike`; None where the model is not one of these."""
+    return values[0] if alike[0] is models[0] else None
 
 
-def _span(known: Sequence[Response], low: float, high: float) -> tuple[float, float] | None:
-    """(lowest, highest) value in the model near the scene; None where no copies were run."""
-    return (low, high) if len(known) > 1 else None
+def _range(models: Sequence[Response], low: float, high: float) -> tuple[float, float] | None:
+    """(lowest, highest) value of the model and its copies; None where no copies were run."""
+    return (low, high) if len(models) > 1 else None
 
 
-def _room(scene: Scene, name: str, value: float) -> float:
+def _limit(scene: Scene, name: str, value: float) -> float:
     """Limit of the difference of a number from the model's `value`, in its unit."""
     gamma = scene.block.slenderness
     if name == "peak_tilt":
@@ -215,21 +217,25 @@ def _room(scene: Scene, name: str, value: float) -> float:
 
 
 def _overturning(
-    scene: Scene, known: Sequence[Response], alike: Sequence[Response], run: Response, found: Sequence[Difference]
+    scene: Scene, models: Sequence[Response], alike: Sequence[Response], run: Response, beyond: Sequence[Difference]
 ) -> list[Difference]:
     """The difference in the time of overturning, for runs whose fall begins as the model's does."""
-    if any(one.quantity == "fall_time" for one in found) or known[0].outcome != FALLS:
+    if any(difference.quantity == "fall_time" for difference in beyond) or models[0].outcome != FALLS:
         return []
-    here, times, room = run.overturning_time, [one.overturning_time for one in alike], _room(scene, "fall_time", 0.0)
+    time, limit = run.overturning_time, _limit(scene, "fall_time", 0.0)
+    times = [response.overturning_time for response in alike]
     low, high = min(times), max(times)
-    for more in (lambda: 0.0, lambda: times[0] - _released(scene, known[0])):  # the second takes a run
-        if low - room - (late := more()) <= here <= high + room + late:
+    for delay_of in (lambda: 0.0, lambda: times[0] - _contact_lost(scene, models[0])):  # the second takes a run
+        if low - limit - (delay := delay_of()) <= time <= high + limit + delay:
             return []
-    return [Difference("overturning_time", here, times[0], room + late, _span(known, low, high))]
+    return [Difference("overturning_time", time, times[0], limit + delay, _range(models, low, high))]
 
 
-def _released(scene: Scene, model: Response) -> float:
-    """Time [s] at which the model loses contact in its last fall, at most that of overturning; that if it slides."""
+def _contact_lost(scene: Scene, model: Response) -> float:
+    """Time [s] at which the model loses contact in its last fall.
+
+    It is the time of overturning where contact holds until then, and in a scene with a friction.
+    """
     over = model.overturning_time
     if scene.friction is not None:
         return over
@@ -241,7 +247,9 @@ def _released(scene: Scene, model: Response) -> float:
     return float(trace.time[(trace.time >= model.fall_time) & ~holds].min(initial=over))
 
 
-def _before_fall(scene: Scene, known: Sequence[Response], alike: Sequence[Response], run: Response) -> list[Difference]:
+def _before_fall(
+    scene: Scene, models: Sequence[Response], alike: Sequence[Response], run: Response
+) -> list[Difference]:
     """The difference in the number of impacts before the last passage of the slenderness."""
 
     def numbers(response: Response) -> list[int]:
@@ -251,46 +259,45 @@ def _before_fall(scene: Scene, known: Sequence[Response], alike: Sequence[Respon
         before = ~(impacts[:, 0] > response.fall_time)
         return [int((counts(scene, impacts, share) & before).sum()) for share in shares]
 
-    least, own, most = numbers(run)
-    theirs = [numbers(one) for one in alike]
-    low, high = min(one[0] for one in theirs), max(one[2] for one in theirs)
-    if most >= low and least <= high:
+    fewest, number, most = numbers(run)
+    lowest, actual, highest = zip(*map(numbers, alike), strict=True)
+    low, high = min(lowest), max(highest)
+    if most >= low and fewest <= high:
         return []
-    model = _own(known, alike, [one[1] for one in theirs])
-    return [Difference("impacts_before_fall", own, model, 0.0, _span(known, low, high))]
+    model = _model_value(models, alike, actual)
+    return [Difference("impacts_before_fall", number, model, 0.0, _range(models, low, high))]
 
 
 def _impact_differences(scene: Scene, model: Response, run: Response, until: float) -> list[Difference]:
     """Differences of matched impacts, and impacts without a match, up to the time `until` [s]."""
-    ours, theirs = impacts_of(run), impacts_of(model)
+    run_impacts, model_impacts = impacts_of(run), impacts_of(model)
     until = min(until, model.end.time, run.end.time) - LAST * 2 * math.pi / scene.rocking_frequency
-    wanted, partner = matched(scene, theirs, ours, until)
-    pairs = partner >= 0
-    met, own = wanted[pairs], ours[partner[pairs]]
-    found = _restitution_differences(own[:, 2] / own[:, 1], met[:, 2] / met[:, 1])
-    late = np.abs(own[:, 0] - met[:, 0]) > OUT_OF_PHASE * np.diff(met[:, 0], prepend=0.0)
-    until = met[late, 0].min(initial=until)
-    for name, one, other in (("missing_impacts", theirs, ours), ("extra_impacts", ours, theirs)):
-        _, partner = matched(scene, one, other, until)
-        if (partner < 0).any():
-            counted, met_again = len(partner), int((partner >= 0).sum())
-            here, there = (met_again, counted) if name == "missing_impacts" else (counted, met_again)
-            found.append(Difference(name, here, there, 0.0))
-    return found
+    counted, partner = matched(scene, model_impacts, run_impacts, until)
+    expected, computed = counted[partner >= 0], run_impacts[partner[partner >= 0]]
+    beyond = _restitution_differences(computed[:, 2] / computed[:, 1], expected[:, 2] / expected[:, 1])
+    late = np.abs(computed[:, 0] - expected[:, 0]) > OUT_OF_PHASE * np.diff(expected[:, 0], prepend=0.0)
+    until = expected[late, 0].min(initial=until)
+    _, partner = matched(scene, model_impacts, run_impacts, until)
+    if (partner < 0).any():
+        beyond.append(Difference("missing_impacts", int((partner >= 0).sum()), len(partner), 0.0))
+    _, partner = matched(scene, run_impacts, model_impacts, until)
+    if (partner < 0).any():
+        beyond.append(Difference("extra_impacts", len(partner), int((partner >= 0).sum()), 0.0))
+    return beyond
 
 
-def _restitution_differences(here: np.ndarray, there: np.ndarray) -> list[Difference]:
+def _restitution_differences(run_e: np.ndarray, model_e: np.ndarray) -> list[Difference]:
     """Difference of the restitution e at the matched impact furthest beyond its limit, else of the loss 1 - e^2."""
-    if not len(here):
+    if not len(run_e):
         return []
-    lost, meant = 1 - here**2, 1 - there**2
-    for name, own, model, limit, room in (
-        ("restitution", here, there, RESTITUTION, np.full(len(there), RESTITUTION)),
-        ("impact_loss", lost, meant, LOSS, LOSS * np.maximum(np.abs(meant), LEAST_LOSS)),
+    run_loss, model_loss = 1 - run_e**2, 1 - model_e**2
+    for name, values, expected, limit, room in (
+        ("restitution", run_e, model_e, RESTITUTION, np.full(len(model_e), RESTITUTION)),
+        ("impact_loss", run_loss, model_loss, LOSS, LOSS * np.maximum(np.abs(model_loss), LEAST_LOSS)),
     ):
-        worst = int(np.argmax(np.abs(own - model) / room))
-        if not abs(own[worst] - model[worst]) <= room[worst]:
-            return [Difference(name, float(own[worst]), float(model[worst]), limit)]
+        worst = int(np.argmax(np.abs(values - expected) / room))
+        if not abs(values[worst] - expected[worst]) <= room[worst]:
+            return [Difference(name, float(values[worst]), float(expected[worst]), limit)]
     return []
 
 
@@ -308,14 +315,14 @@ def _with_friction(does: str) -> str:
     )
 
 
-def _may_be(scene: Scene, run: Response) -> set[str]:
-    """The outcomes that an engine's run may have: one whose slip is not read does not tell standing from sliding."""
-    found = outcome_of(scene, run)
+def _possible_outcomes(scene: Scene, run: Response) -> set[str]:
+    """The outcomes that an engine's run may have. Where the slip is not read, standing and sliding look alike."""
+    outcome = outcome_of(scene, run)
     unread = scene.friction is not None and run.sliding is None
-    return {*LEVEL} if unread and found in LEVEL else {found}
+    return {*LEVEL} if unread and outcome in LEVEL else {outcome}
 
 
-def _outside(scene: Scene, model: Response) -> str | None:
+def _why_incomparable(scene: Scene, model: Response) -> str | None:
     """Why no run of the scene can be compared with the model's, or None."""
     if model.failure:
         return f"the analytic model fails: {model.failure.reason}"

@@ -1,6 +1,8 @@
-"""What an engine is, as data: a record, found by its name, that loads its adapter when it is first asked.
+"""What an engine is, as data: its record, its variants, its tolerances and the mistakes in its script.
 
-A package that offers an engine holds one `Engine`. The adapter, a module of its own, holds
+A package that offers an engine holds one `Engine`, a record that is found by its name. Other packages declare theirs by
+the entry point group `rocking.engines`. The record loads the adapter when it is first needed. The adapter, a module of
+its own, holds
 
 - ``VARIANTS``: {name: `Variant`}; the first is the main variant, taken where none is named;
 - ``versions()``: {package: version} of what computes;
@@ -11,14 +13,9 @@ All else is the same for every engine and is done in `engines.simulating`: setti
 duration runs until its outcome is decided, events and peaks are located outside the engine, and the response is
 compared with the analytic model.
 
-Rows of the table of agreement tolerances; each engine defines its own beside its adapter.
-
-Engines that other packages declare, by the entry point group `rocking.engines`; each entry is an `Engine`.
-
-Mistakes that are easily made in a script of a rocking block: each a few replacements of text in an engine's script.
-
-An engine's record names the module of its ``MISTAKES`` (`engines.contract.Engine.mistakes`), which stands beside the
-template of its script. What they cost is measured by ``rocking study mistakes``.
+Beside its adapter an engine defines the rows of its agreement tolerances (`ToleranceRow`), and the mistakes that are
+easily made in a script of it (`Mistake`): each a few replacements of text. What they cost is measured by
+``rocking study mistakes``.
 """
 
 from __future__ import annotations
@@ -35,12 +32,12 @@ from analytic.errors import EngineBroken, EngineNotInstalled
 from analytic.motion import SampledMotion
 
 if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
+
+    from analytic import Scene
     from analytic.response import Caution, Failure
 
-    pass
     from .swings import Trace
-
-    pass
 
 # Kinds of a variant. "defaults": the engine as it comes, used as in a first script. "tuned": only the engine moves a
 # body or sets a velocity. "assisted": the adapter sets a velocity, a position or a constraint by the model's event.
@@ -124,8 +121,8 @@ class Variant:
             beyond = self.levels[self.levels.index(self.default) + 1 :]
             object.__setattr__(self, "finer", tuple({self.accuracy_parameter: value} for value in beyond))
         known = {setting.name for setting in dataclasses.fields(self.settings)}
-        own = [name for name in self.constants if ":" not in name]
-        if strange := sorted(set(self.varied).union(own, *self.finer) - known):
+        settings = [name for name in self.constants if ":" not in name]
+        if strange := sorted(set(self.varied).union(settings, *self.finer) - known):
             words = "no setting (named in varied, finer or constants)"
             raise ValueError(f"{strange[0]!r} is {words}: its settings are {', '.join(known)}")
 
@@ -153,7 +150,7 @@ class Variant:
 
 @dataclass(frozen=True)
 class Run:
-    """What an adapter returns of one run.
+    """The result of one run, as an adapter returns it.
 
     trace: the accepted steps, None if there are fewer than two. steps: their number. cpu_seconds: of the stepping
     alone. failure: what the engine or the adapter found wrong. ended: "overturned" if the run was stopped at
@@ -215,7 +212,7 @@ class Engine:
     origin: str = ""
 
     def load(self) -> ModuleType:
-        """The adapter's module.
+        """Import the adapter's module.
 
         Raises
         ------
@@ -250,15 +247,17 @@ class Engine:
         return module
 
     def tolerance_rows(self) -> dict[str, tuple[ToleranceRow, ...]]:
-        """The engine's rows of the tolerance table, by variant. The package need not be installed; a broken engine of
-        another package has no rows."""
+        """The engine's rows of the tolerance table, by variant.
+
+        The package need not be installed. A broken engine of another package has no rows.
+        """
         if not self.tolerances or (self.origin and not self.installed):
             return {}
         return import_module(self.tolerances).TOLERANCES
 
     def known_mistakes(self) -> dict[str, Mistake]:
-        """{key: mistake}; the package need not be installed."""
-        return {one.key: one for one in import_module(self.mistakes).MISTAKES} if self.mistakes else {}
+        """The engine's mistakes, {key: mistake}; its package need not be installed."""
+        return {mistake.key: mistake for mistake in import_module(self.mistakes).MISTAKES} if self.mistakes else {}
 
     @property
     def installed(self) -> bool:
@@ -271,12 +270,12 @@ class Engine:
 
     @property
     def variants(self) -> dict[str, Variant]:
-        """{name: variant}; the first is taken where none is named."""
+        """The engine's variants, {name: variant}; the first is the main one."""
         return self.load().VARIANTS
 
     @property
     def default_variant(self) -> str:
-        """Name of the main variant, the first, which is taken where none is named."""
+        """Name of the main variant, which is taken where none is named."""
         return next(iter(self.variants))
 
     def versions(self) -> dict[str, str]:
@@ -307,10 +306,10 @@ ROUNDING = "history committed once per accepted step; round-off"
 
 @dataclass(frozen=True)
 class ToleranceRow:
-    """The error of `quantity` over `scenes` is at most `bound`. `measured`: the worst value found when the bound was
-    set; `source`: the cause of the error.
+    """A row of the tolerance table: the error of `quantity` over `scenes` is at most `bound`.
 
-    Where the source is `ROUNDING`, the bound is a requirement, and the measured value is far below it.
+    `measured`: the worst value found when the bound was set. `source`: the cause of the error. Where the source is
+    `ROUNDING`, the bound is a requirement, and the measured value is far below it.
     """
 
     quantity: str
@@ -320,15 +319,12 @@ class ToleranceRow:
     source: str
 
 
-if TYPE_CHECKING:
-    from importlib.metadata import EntryPoint
-
 GROUP = "rocking.engines"
 RESERVED = ("analytic",)  # the model's name among the solvers
 
 
 def find_engines(taken: Collection[str]) -> tuple[dict[str, Engine], dict[str, EngineBroken]]:
-    """({name: `Engine`} of the engines declared here, {entry: `EngineBroken`} of those that cannot be used).
+    """Return the engines that other packages declare: ({name: `Engine`}, {entry: `EngineBroken`} of unusable ones).
 
     Parameters
     ----------
@@ -369,16 +365,13 @@ def _distribution(entry: EntryPoint) -> str:
     return f"{entry.dist.name} {entry.dist.version}" if entry.dist else "of no name"
 
 
-if TYPE_CHECKING:
-    from analytic import Scene
-
 NO_MATTER = "no matter"  # changes that look like mistakes
 GROUPS = ("body", "contact", "steps", "forces", "motion", NO_MATTER)
 
 
 @dataclass(frozen=True)
 class Mistake:
-    """A mistake, as data.
+    """A mistake that is easily made in a script, as data.
 
     Parameters
     ----------
@@ -411,12 +404,12 @@ class Mistake:
             raise ValueError(f"mistake {self.key}: group {self.group!r}; choose one of {', '.join(GROUPS)}")
 
     def fits(self, scene: Scene) -> bool:
-        """Whether it can be made in a script of the scene."""
+        """Whether the mistake can be made in a script of the scene."""
         sampled = isinstance(scene.motion, SampledMotion) or None
         return all((sampled if part == "record" else getattr(scene, part)) is not None for part in self.needs.split())
 
     def made(self, script: str) -> str:
-        """The script with the mistake.
+        """Return the script with the mistake.
 
         Raises
         ------

@@ -1,15 +1,14 @@
-"""Location of impacts, uplifts and rests in a trace, and its contact forces, by the model's equations.
+"""Events of a trace (impacts, uplifts, rests), its contact forces and its end; matching of two runs' impacts.
 
-The end of a trace: a state that is not finite, overturning, or an end before the scene's duration.
+Events and contact forces follow from the states by the model's equations. A trace ends at a state that is not finite,
+at overturning, or before the scene's duration.
 
-Matching of the impacts of two runs of one scene: which count, which match, which have no match.
+Impacts are those at tilt 0. The analytic model also has impacts in which a corner lands at another tilt after a flight.
+They are left out here, as the trace of an engine does not show them.
 
-Impacts are those at tilt 0. A corner that lands at another tilt, after a flight, is an impact of the analytic model,
-too, but the trace of an engine does not tell it. It is left out here.
-
-Two impacts on the same side match if they are closer to each other than to the next ones on that side. An impact counts
-if its rate is at least `COUNTED` of the largest of its run, and at least that of a swing of a tenth of `LEAST_TILT`: an
-engine cannot tell smaller ones from the compliance of its contact.
+Two impacts of two runs on the same side match if they are closer to each other than to the next ones on that side. An
+impact counts if its rate is at least `COUNTED` of the largest of its run, and at least that of a swing of a tenth of
+`LEAST_TILT`: an engine cannot tell smaller ones from the compliance of its contact.
 """
 
 from __future__ import annotations
@@ -31,9 +30,9 @@ from .checks import HEIGHT_TOLERANCE, pivoting_centre, settled
 from .swings import LEAST_SLIDING, ArrayModel, Trace, to_contact
 
 if TYPE_CHECKING:
-    from analytic import Scene
+    from analytic import Response, Scene
 
-    from .swings import Swings, Trace
+    from .swings import Swings
 
 # A landing after which the block stays in flat contact counts as an impact with rate 0 after it, if the rate before it
 # is at least this many times the rate that just reaches contact_tilt. A weaker one is the end of a chatter.
@@ -53,7 +52,7 @@ MOST_RESTITUTION = 1.2
 def find_events(
     scene: Scene, trace: Trace, swings: Swings
 ) -> tuple[tuple[Impact, ...], tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
-    """(impacts, uplifts, rests, missed) of the swings of a trace; see `observe`.
+    """Find the events of a trace: (impacts, uplifts, rests, missed); see `engines.observe`.
 
     missed: times [s] at which a swing ends and the next begins on the other side without a resolved impact or landing
     between them, although both count by `strong_swings`.
@@ -139,7 +138,7 @@ def _passes(trace: Trace, swings: Swings, i: int, apart: float, before: float, a
 
 
 def strong_swings(model: ArrayModel, trace: Trace, swings: Swings) -> np.ndarray:
-    """Whether the block, unforced, would reach the impact at a rate that counts; shape of `swings`."""
+    """Whether the unforced block would reach the impact of each swing at a rate that counts."""
     bounds = np.column_stack([swings.first, swings.last + 1]).ravel()[:-1]
     speed = np.maximum.reduceat(_speeds(model, trace), bounds)[::2]
     return speed >= _least_speed(model, trace, speed.max())
@@ -192,7 +191,7 @@ def _straddling(scene: Scene, model: ArrayModel, trace: Trace, least: float) -> 
 def check_impacts(scene: Scene, trace: Trace, impacts: Sequence[Impact], missed: Sequence[float]) -> Failure | None:
     """A `Failure` where an impact added energy or was not resolved, else None; `missed` as in `find_events`."""
     slides = scene.friction is not None and trace.centre is not None
-    least = _least_speed(ArrayModel.of(scene), trace, max((abs(each.rate_before) for each in impacts), default=0.0))
+    least = _least_speed(ArrayModel.of(scene), trace, max((abs(impact.rate_before) for impact in impacts), default=0.0))
     for impact in impacts:
         before, after = abs(impact.rate_before), abs(impact.rate_after)
         if before >= least and not after <= MOST_RESTITUTION * before and not slides:  # not: NaN
@@ -220,7 +219,7 @@ def check_impacts(scene: Scene, trace: Trace, impacts: Sequence[Impact], missed:
 def _limit_time(
     model: ArrayModel, scene: Scene, trace: Trace, last: int, side: float, landing: float, rate: float
 ) -> tuple[float, float]:
-    """(limit time of the model's impacts after a landing, |tilt''| toward contact there)."""
+    """Return (limit time of the model's impacts after a landing [s], |tilt''| toward contact there [rad/s2])."""
     ground = float(scene.motion.acceleration(landing)) if scene.motion else 0.0
     up = float(vertical_acceleration(scene.motion, landing))
     pull = -side * float(model.accelerations(side, 0.0, 0.0, ground, trace.bearing_force[last], up)[0])
@@ -252,7 +251,7 @@ def _contact_acceleration(model: ArrayModel, scene: Scene, trace: Trace, steps: 
 
 
 def contact_measures(scene: Scene, trace: Trace) -> tuple[float, float, float]:
-    """(max |H|/N, min N/(m g), max |absolute base acceleration| [m/s2]) over the steps of a trace."""
+    """Extremes over a trace: (max |H|/N, min N/(m g), max |absolute base acceleration| [m/s2])."""
     demands, normals, peaks = [], [], []
     for piece in trace.pieces():
         demand, normal, absolute = at_contact(scene, piece)
@@ -263,7 +262,7 @@ def contact_measures(scene: Scene, trace: Trace) -> tuple[float, float, float]:
 
 
 def at_contact(scene: Scene, trace: Trace) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(|H|/N, N/(m g), absolute base acceleration [m/s2]) at the steps."""
+    """Contact measures at the steps: (|H|/N, N/(m g), absolute base acceleration [m/s2])."""
     model = ArrayModel.of(scene)
     level = _contact_acceleration(model, scene, trace)
     vertical = vertical_acceleration(scene.motion, trace.time)
@@ -288,8 +287,11 @@ def at_contact(scene: Scene, trace: Trace) -> tuple[np.ndarray, np.ndarray, np.n
 
 
 def _where_it_moves(scene: Scene, trace: Trace, demand: np.ndarray, normal: np.ndarray, absolute: np.ndarray) -> None:
-    """Write over the measures of a block that sticks where its corner slides or is in the air: (S1) to (S4) of
-    `analytic.sliding.equations` at the scene's friction. While a compliant contact relaxes nothing is measured."""
+    """Replace the measures where a corner slides or the block is in the air; the given ones hold where it sticks.
+
+    They follow from (S1) to (S4) of `analytic.sliding.equations` at the scene's friction. Nothing is measured while a
+    compliant contact relaxes.
+    """
     model, mu = ArrayModel.of(scene), scene.friction
     apart = trace.centre - pivoting_centre(scene, trace)
     flies = apart[:, 1] > HEIGHT_TOLERANCE * model.R
@@ -309,30 +311,26 @@ def _where_it_moves(scene: Scene, trace: Trace, demand: np.ndarray, normal: np.n
         absolute[moves] = -(trace.bearing_force[moves] + friction * N) / scene.base.mass * clean
 
 
-if TYPE_CHECKING:
-    from analytic import Scene
-
-
 def finite_part(trace: Trace, failure: Failure | None) -> tuple[Trace | None, Failure | None]:
-    """(steps before the first non-finite one, or None; failure with the last finite state)."""
+    """Cut a trace before its first non-finite step: (the steps, or None; failure with the last finite state)."""
     finite = np.isfinite(trace.time)
     for name in Trace.COLUMNS[1:]:
         finite &= np.isfinite(getattr(trace, name))
     if trace.centre is not None:
         finite &= np.isfinite(trace.centre).all(axis=1)
-    whole = bool(finite.all())
-    count = len(finite) if whole else int(np.argmin(finite))
-    if not whole:
+    all_finite = bool(finite.all())
+    count = len(finite) if all_finite else int(np.argmin(finite))
+    if not all_finite:
         failure = failure or Failure("the state is no longer finite", f"at step {count}, t = {trace.time[count]:.9g} s")
     if failure is not None and failure.last_state is None and count:
         failure = replace(failure, last_state=last_state(trace, count - 1))
     if count < 2:
         return None, failure
-    return trace if whole else trace.upto(count), failure
+    return trace if all_finite else trace.upto(count), failure
 
 
 def upto_overturning(scene: Scene, trace: Trace, ended: str | None) -> tuple[Trace, float | None]:
-    """(trace up to |tilt| = pi/2, with that state as its last step; its time), or (the whole trace, None)."""
+    """Cut a trace at |tilt| = pi/2: (trace with that state as its last step, its time), or (whole trace, None)."""
     limit = math.pi / 2
     over = np.flatnonzero(np.abs(trace.tilt) >= limit)
     if len(over) and over[0] > 0:
@@ -363,7 +361,7 @@ def upright_part(scene: Scene, trace: Trace, falls: bool) -> Trace:
 
 
 def _upto_crossing(trace: Trace, last: int, level: float) -> Trace:
-    """The steps before step `last`, in whose interval |tilt| passes `level`, then the state at the passage."""
+    """Cut a trace where |tilt| passes `level`, between the steps last - 1 and last; the passage is its last step."""
     pair = slice(last - 1, last + 1)
     tilt = math.copysign(level, trace.tilt[last])
     t = _crossing(trace.time[pair], trace.tilt[pair], trace.tilt_rate[pair], tilt)
@@ -417,16 +415,13 @@ def ended_early(scene: Scene, trace: Trace) -> Failure | None:
     return None
 
 
-if TYPE_CHECKING:
-    from analytic import Response, Scene
-
 COUNTED = 0.1
 LEAST_TILT = 0.01  # of the slenderness: a smaller tilt is compared as one of that size
 STILL = 0.02 * LEAST_TILT  # of the slenderness: a block whose peak tilt is smaller has not lifted; a contact yields
 
 
 def impacts_of(response: Response) -> np.ndarray:
-    """Rows of time [s], rate before and rate after [rad/s] of the impacts that end no flight, shape (impacts, 3)."""
+    """Impacts that end no flight: rows of time [s], rate before and rate after [rad/s], shape (impacts, 3)."""
     rows = [(impact.time, impact.rate_before, impact.rate_after) for impact in response.impacts]
     impacts = np.array(rows, dtype=float).reshape(-1, 3)
     modes = response.sliding.modes if response.sliding else ()
@@ -436,7 +431,7 @@ def impacts_of(response: Response) -> np.ndarray:
 
 
 def matched(scene: Scene, impacts: np.ndarray, others: np.ndarray, until: float) -> tuple[np.ndarray, np.ndarray]:
-    """(`impacts` that count up to `until`, index in `others` of the match of each, -1 without one)."""
+    """Match impacts: (`impacts` that count up to the time `until`; index of the match of each in `others`, or -1)."""
     partner = np.full(len(impacts), -1)
     for side in (-1.0, 1.0):
         mine, theirs = (np.flatnonzero(np.sign(rows[:, 1]) == side) for rows in (impacts, others))
@@ -461,8 +456,8 @@ def counts(scene: Scene, impacts: np.ndarray, share: float = COUNTED) -> np.ndar
     return ~small
 
 
-def parting(scene: Scene, one: Response, other: Response) -> float:
+def parting(scene: Scene, first: Response, second: Response) -> float:
     """Time [s] of the first impact that counts of either run without a match in the other; inf where all match."""
-    pairs = (one, other), (other, one)
-    rows = (matched(scene, impacts_of(here), impacts_of(there), math.inf) for here, there in pairs)
-    return float(min(impacts[partner < 0, 0].min(initial=math.inf) for impacts, partner in rows))
+    pairs = (first, second), (second, first)
+    matches = (matched(scene, impacts_of(run), impacts_of(other), math.inf) for run, other in pairs)
+    return float(min(impacts[partner < 0, 0].min(initial=math.inf) for impacts, partner in matches))

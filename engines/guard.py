@@ -1,6 +1,6 @@
-"""A run in a process of its own, so that of a hang, a crash or Ctrl-C only that run is lost.
+"""A run in a process of its own, so that a hang, a crash or Ctrl-C loses only that run.
 
-Suppression of what a package prints when it is imported; other output passes.
+`without` suppresses what a package prints when it is imported; other output passes.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def run_apart(
     time_limit: float,
     meanwhile: AbstractContextManager[Any] | None = None,
 ) -> tuple[Any, Failure | None]:
-    """(result of ``function(*arguments)``, None), or (None, `Failure`) if its process did not return one.
+    """Call a function in a process of its own: (result, None), or (None, `Failure`) without a result.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def run_apart(
 
 
 def _answer(reader: Any, process: Any, time_limit: float) -> tuple[str, Any]:
-    """("value", result of the function), ("mistake", error) or ("failure", (reason, message))."""
+    """Await the process: ("value", result of the function), ("mistake", error) or ("failure", (reason, message))."""
     if not connection.wait([reader, process.sentinel], time_limit):
         if TRACE is not None:
             os.kill(process.pid, TRACE)
@@ -198,17 +198,17 @@ def without(greeting: bytes) -> Iterator[None]:
     """
     with contextlib.ExitStack() as closing:
         try:
-            kept = os.dup(2)
-            closing.callback(os.close, kept)
-            held = closing.enter_context(tempfile.TemporaryFile())
+            original = os.dup(2)
+            closing.callback(os.close, original)
+            captured = closing.enter_context(tempfile.TemporaryFile())
         except OSError:  # no standard error, or no disk space: the greeting is printed
             yield
             return
-        os.dup2(held.fileno(), 2)
+        os.dup2(captured.fileno(), 2)
         try:
             yield
         finally:
-            os.dup2(kept, 2)
-            held.seek(0)
+            os.dup2(original, 2)
+            captured.seek(0)
             with contextlib.suppress(OSError):  # standard error is closed
-                os.write(2, b"".join(line for line in held if not line.startswith(greeting)))
+                os.write(2, b"".join(line for line in captured if not line.startswith(greeting)))

@@ -1,8 +1,9 @@
-"""A given restitution in a contact engine: a couple on the block before each landing.
+"""Loads that an engine is given, and its start: couple, ground velocity, placement, time scale, vibration.
 
-A contact engine computes the restitution of eq. (7), and parameters of its contact do not change it: an impulse at the
-landing corner has no moment about that corner. A couple takes a share of the tilt rate before the landing instead. It
-acts from the time at which the block, at its rate w0 at tilt phi0, would need less than `acts` to reach the ground:
+A couple on the block before each landing gives a contact engine the restitution of a scene. The engine itself computes
+that of eq. (7), and parameters of its contact do not change it: an impulse at the landing corner has no moment about
+that corner. The couple takes a share of the tilt rate before the landing instead. It acts from the time at which the
+block, at its rate w0 at tilt phi0, would need less than `acts` to reach the ground:
 
     M = -J' k phi',   J' = J_O - (m h)^2/M on a base, J_O on the ground,   k = (1 - f) |w0/phi0|
 
@@ -11,17 +12,13 @@ that of (7). Gravity and base accelerate the block meanwhile, by a, of which it 
 a (T - f T0)/phi0, with T0 = |phi0/w0| the time to the ground without couple and T = T0 ln(1/f)/(1 - f) with it. The
 base keeps the momentum of block and base, so the jump of its velocity is that of (8) for the given restitution.
 
-Ground velocity over time, exact for records and pulses; its differences are the impulses of an engine's steps.
+The ground velocity is exact for records and pulses; its differences are the impulses of an engine's steps. The start of
+the block is the same for every engine. Times scale with the size of the block.
 
-Initial position and velocity of the block, the same for every engine.
-
-Scaling of times with the size of the block.
-
-A base on stiff or viscous bearings in a leapfrog engine: its longest stable step and its added mass.
-
-The viscous force is implicit: the known force c v acts on a base heavier by `added_mass`, which is exact if the other
-forces are constant in the step. Applied explicitly, it would be unstable where step times c/mass exceeds 2; a tenth of
-that makes PyBullet's block fall .25 s late.
+Stiff or viscous bearings limit the step of a leapfrog engine, and add mass to the base: the viscous force is implicit.
+The known force c v acts on a base heavier by `added_mass`, which is exact if the other forces are constant in the step.
+Applied explicitly, it would be unstable where step times c/mass exceeds 2; a tenth of that makes PyBullet's block fall
+.25 s late.
 """
 
 from __future__ import annotations
@@ -39,7 +36,8 @@ from analytic.motion import SampledMotion
 from analytic.rocking import BearingLaw, RockingModel, momentum_restitution
 
 if TYPE_CHECKING:
-    from analytic import Scene
+    from analytic import PulseMotion, Scene
+    from analytic.motion import Motion
 
 # Of the restitution of (7). A block that is slowed further hardly reaches the ground; one that is sped up is lifted
 # where (f - 1) b |phi'| exceeds g `acts`: at f = 1.02 e is off by up to .06, at 1.05 by up to .4.
@@ -49,47 +47,49 @@ ALONE = "or run the analytic model, which takes any up to 1: `rocking run SCENE`
 
 
 def reached(scene: Scene) -> bool:
-    """Whether a couple gives the restitution that a scene asks for, if it does."""
-    given, own = scene.block.restitution, momentum_restitution(scene)
-    return given is None or own > 0 and LEAST * own <= given <= MOST * own
+    """Whether a couple can give the restitution of a scene; true where the scene gives none."""
+    given, momentum = scene.block.restitution, momentum_restitution(scene)
+    return given is None or momentum > 0 and LEAST * momentum <= given <= MOST * momentum
 
 
 def share_of(scene: Scene) -> float | None:
-    """f of a scene that gives the restitution, else None.
+    """The share f of a scene that gives the restitution, else None.
 
     Raises
     ------
     SceneError
         It is not within `LEAST` and `MOST`.
     """
-    given, own = scene.block.restitution, momentum_restitution(scene)
+    given, momentum = scene.block.restitution, momentum_restitution(scene)
     if given is None:
         return None
     if not reached(scene):
         raise SceneError(
             "block.restitution",
             given,
-            f"{'above' if given > MOST * own else 'below'} what a couple before each landing reaches, {LEAST:g} to "
-            f"{MOST:g} times the {own:.6g} of eq. (7)",
+            f"{'above' if given > MOST * momentum else 'below'} what a couple before each landing reaches, "
+            f"{LEAST:g} to {MOST:g} times the {momentum:.6g} of eq. (7)",
             f"give one between, leave it out, {ALONE}",
         )
-    return given / own
+    return given / momentum
 
 
 def holding(scene: Scene) -> Scene:
-    """The scene; where it gives the restitution, with as much friction as the strongest couple asks of the pivot.
+    """The scene, with more friction where it gives the restitution and the pivot would slip under the couple.
 
-    That is (1 - mt) h/b, mt the block's share of the moving mass, 0 on the ground. With less the pivot slips: on the
-    ground with friction .6, e is up to .3 off.
+    The strongest couple needs a friction of (1 - mt) h/b, mt the block's share of the moving mass, 0 on the ground.
+    With less the pivot slips: on the ground with friction .6, e is up to .3 off.
     """
     if scene.block.restitution is None:
         return scene
-    asked = (1 - scene.mass_share) / math.tan(scene.block.slenderness)
-    return scene if asked <= (scene.friction or FRICTION) else scene.with_(friction=asked)
+    needed = (1 - scene.mass_share) / math.tan(scene.block.slenderness)
+    return scene if needed <= (scene.friction or FRICTION) else scene.with_(friction=needed)
 
 
 def unkept_friction(scene: Scene) -> str:
-    """That a script does not keep the friction of a scene, a sentence: a couple needs more; "" where it does.
+    """A sentence that says that a script does not keep the friction of a scene; "" where it does.
+
+    It does not where the couple of a given restitution needs more.
 
     Raises
     ------
@@ -107,9 +107,10 @@ def unkept_friction(scene: Scene) -> str:
 
 @dataclass
 class Couple:
-    """The couple of a scene. kept: f; inertia: J' [kg m2]; acts: time before a landing [s]; gain: k, 0 outside it.
+    """The couple of a scene.
 
-    Rates are half a step early, as in `stepping`; steps: the last two, rate: the last one.
+    kept: f. inertia: J' [kg m2]. acts: time before a landing [s]. gain: k [1/s], 0 while no couple acts. steps: the
+    last two. rate: the last one; rates are half a step early, as in `engines.loop`.
     """
 
     kept: float
@@ -121,7 +122,7 @@ class Couple:
 
     @classmethod
     def of(cls, scene: Scene, acts: float) -> Self | None:
-        """That of a scene which gives the restitution, else None. acts [s].
+        """The couple of a scene that gives the restitution, else None. acts [s].
 
         Raises
         ------
@@ -161,42 +162,70 @@ class Couple:
         return -self.inertia * self.gain * math.copysign(travel, rate) / step
 
 
-if TYPE_CHECKING:
-    from analytic import PulseMotion
-    from analytic.motion import Motion
-
-
 def ground_velocity(motion: Motion | None) -> Callable[[float], float] | None:
-    """A function of time [s] giving the integral of the ground acceleration from 0 [m/s].
+    """A function of time [s], not negative, giving the integral of the ground acceleration from 0 [m/s].
 
     The mean acceleration of a step is the difference of two values over the time between them. An engine that samples
     the acceleration instead loses part of a pulse that starts or ends within a step.
     """
-    if motion is None:
-        return None
+    return _integrals(motion)[0] if motion else None
+
+
+def ground_gain(motion: Motion | None) -> Callable[[float, float], float] | None:
+    """A function of two times [s], in order, giving the velocity that the ground gains between them [m/s].
+
+    It is the difference of two values of `ground_velocity`, in one call.
+    """
+    return _integrals(motion)[1] if motion else None
+
+
+def ground_velocities(motion: Motion, time: np.ndarray) -> np.ndarray:
+    """`ground_velocity` at many times."""
+    if isinstance(motion, SampledMotion):
+        sums, level, slope = _tables(motion)
+        i = np.minimum((time / motion.dt).astype(int), len(sums) - 1)
+        u = time - i * motion.dt
+        return sums[i] + u * (level[i] + 0.5 * slope[i] * u)
+    angle = motion.frequency * np.clip(time - motion.start, 0.0, motion.length)
+    return motion.amplitude / motion.frequency * motion.form.integral(np, angle, motion.phase)
+
+
+def _tables(motion: SampledMotion) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Velocity [m/s], acceleration [m/s2] and its slope [m/s3] from each sample on; both are 0 after the last one."""
+    dt, a = motion.dt, motion.samples
+    sums = np.concatenate(([0.0], np.cumsum(0.5 * dt * (a[1:] + a[:-1]))))
+    return sums, np.append(a[:-1], 0.0), np.append(np.diff(a) / dt, 0.0)
+
+
+def _integrals(motion: Motion) -> tuple[Callable[[float], float], Callable[[float, float], float]]:
+    """(`ground_velocity`, `ground_gain`) of a motion."""
     return _sampled(motion) if isinstance(motion, SampledMotion) else _pulse(motion)
 
 
-def _sampled(motion: SampledMotion) -> Callable[[float], float]:
-    dt, a = motion.dt, motion.samples
+def _sampled(motion: SampledMotion) -> tuple[Callable[[float], float], Callable[[float, float], float]]:
     # compact, and read as quickly as a list
-    sums = array("d", np.concatenate(([0.0], np.cumsum(0.5 * dt * (a[1:] + a[:-1])))).tobytes())
-    level, slope = array("d", a.tobytes()), array("d", (np.diff(a) / dt).tobytes())
-    last, end = len(slope), sums[-1]
+    dt, (sums, level, slope) = motion.dt, (array("d", table.tobytes()) for table in _tables(motion))
+    last = len(sums) - 1
 
     def velocity(t):
-        if t <= 0:
-            return 0.0
         i = int(t / dt)
         if i >= last:
-            return end
+            return sums[last]
         u = t - i * dt
         return sums[i] + u * (level[i] + 0.5 * slope[i] * u)
 
-    return velocity
+    def gain(begin, end):
+        i, j = int(begin / dt), int(end / dt)
+        if j >= last:
+            return sums[last] - velocity(begin)
+        u, w = begin - i * dt, end - j * dt
+        before = sums[i] + u * (level[i] + 0.5 * slope[i] * u)
+        return sums[j] + w * (level[j] + 0.5 * slope[j] * w) - before
+
+    return velocity, gain
 
 
-def _pulse(motion: PulseMotion) -> Callable[[float], float]:
+def _pulse(motion: PulseMotion) -> tuple[Callable[[float], float], Callable[[float, float], float]]:
     frequency, start, length = motion.frequency, motion.start, motion.length
     size, phase = motion.amplitude / frequency, motion.phase
     integral = motion.form.integral
@@ -204,11 +233,7 @@ def _pulse(motion: PulseMotion) -> Callable[[float], float]:
     def velocity(t):
         return size * integral(math, frequency * min(max(t - start, 0.0), length), phase)
 
-    return velocity
-
-
-if TYPE_CHECKING:
-    from analytic import Scene
+    return velocity, lambda begin, end: velocity(end) - velocity(begin)
 
 
 def placement(scene: Scene) -> tuple[float, float, float, float]:
@@ -228,9 +253,6 @@ def placement(scene: Scene) -> tuple[float, float, float, float]:
     )
 
 
-if TYPE_CHECKING:
-    from analytic import Scene
-
 UNIT_RADIUS = 1.0884  # m, of the Caryatid, for which the variants' times are given
 
 
@@ -238,9 +260,6 @@ def size_scale(scene: Scene) -> float:
     """Factor on times that are set for a block of `UNIT_RADIUS`: rocking scales with sqrt(R/g)."""
     return math.sqrt(scene.block.radius / UNIT_RADIUS)
 
-
-if TYPE_CHECKING:
-    from analytic import Scene
 
 # Largest step over the time in which the bearings' vibration advances by 1 rad; stable below 2.
 VIBRATION = 0.2

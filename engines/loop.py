@@ -1,12 +1,13 @@
-"""The stepping loop of a leapfrog engine: step lengths, loads, stored rows, and the end of a run.
+"""The stepping loop of a leapfrog engine: step lengths, loads, recorded rows, and the end of a run.
 
 Leapfrog: displacements are known at the steps' ends t_n, velocities half a step earlier. The time between the
 velocities at t_n - h/2 and t_n + h'/2 is (h + h')/2, but an engine multiplies the loads of a step by its own h'. Loads
 scaled by (h + h')/(2 h') make the scheme second order for any sequence of steps, the start included (h = 0).
 
-Only the engine moves a body or sets a velocity. The adapter gives it the loads and the length of the step.
+Only the engine moves a body or sets a velocity. The adapter gives it the loads and the length of the step, and checks
+once that it holds the values it was given (`require`).
 
-Length of the next step of a simulation with contacts, from gaps and closing speeds only.
+The length of a step in a simulation with contacts follows from gaps and closing speeds only:
 
     h = clamp(min((1 + growth) h, share * gap/closing over contact points on their way to a landing), h_min, h_max)
 
@@ -14,13 +15,9 @@ A point is on its way to a landing if it closes with a gap above near * g h^2, o
 grow for 4 steps after a point that has sunk closes as fast. The rule holds for any scene in which gravity g sets the
 time scale of free motion: it uses neither shapes nor the theory of rocking.
 
-Rows of a leapfrog engine: their largest number, failures at their end, and their conversion to a `Trace`.
-
 A row is (time [s], length of the step that led there [s], tilt [rad], its rate [rad/s], base displacement [m] and
 velocity [m/s], hysteretic force of one bearing [N], total force without viscous part [N]) and, where read, the block's
 centre x, z [m] and x', z' [m/s] as in `Trace.centre`. Rates are half a step early, except at the start.
-
-Check that an engine holds the values it was given; no run uses other values.
 """
 
 from __future__ import annotations
@@ -67,7 +64,7 @@ Rule = Callable[[Sequence[tuple[float, float]]], float]  # from (gap, closing sp
 
 
 def gap_rule(largest: float, smallest: float, gravity: float) -> Rule:
-    """The rule in the module's docstring; before the first step, h is the smallest one.
+    """The `Rule` in the module's docstring; before the first step, h is the smallest one.
 
     Parameters
     ----------
@@ -81,20 +78,20 @@ def gap_rule(largest: float, smallest: float, gravity: float) -> Rule:
     function
         From the (gap [m], closing speed [m/s]) of each contact point to the length of the next step [s].
     """
-    step, held = smallest, 0
+    step, hold = smallest, 0
 
     def length(points):
-        nonlocal step, held
+        nonlocal step, hold
         gained = gravity * step
         wanted, slow, near = largest, SLOW * gained, NEAR * gained * step
         for gap, closing in points:
             if closing > slow or (closing > 0 and gap > near):
                 if gap <= 0:
-                    held = HOLD
+                    hold = HOLD
                 elif SHARE * gap < wanted * closing:
                     wanted = SHARE * gap / closing
-        longest = step if held else (1 + GROWTH) * step
-        held = max(held - 1, 0)
+        longest = step if hold else (1 + GROWTH) * step
+        hold = max(hold - 1, 0)
         step = max(min(wanted, longest), smallest)
         return step
 
@@ -102,17 +99,17 @@ def gap_rule(largest: float, smallest: float, gravity: float) -> Rule:
 
 
 def fixed_rule(step: float) -> Rule:
-    """A constant step [s]."""
+    """The `Rule` of a constant step [s]."""
     return lambda points: step
 
 
 def limits(
     duration: float, largest: float, jumps: Iterable[float] = ()
 ) -> tuple[float, Callable[[float, float], tuple[float, float]]]:
-    """(first time that the steps must meet, a function (t, step) -> adjusted step and the next such time).
+    """Return the first time that the steps must meet, and a function that shortens a step to meet it.
 
-    These times are the `jumps` of the ground acceleration, in ascending order, and the end of the run. `largest` is the
-    longest step. All are in the same unit.
+    The times are the `jumps` of the ground acceleration, in ascending order, and the end of the run. The function maps
+    (t, step) to the adjusted step and the next such time. `largest` is the longest step. All are in the same unit.
     """
     ahead = iter(jumps)
     jump, gate = next(ahead, math.inf), duration - ROUNDING * largest + 2 * ROUNDING * largest
@@ -129,9 +126,10 @@ def limits(
 
 
 def aligned(step: float, ahead: float) -> float:
-    """The step [s] of a leapfrog, shortened if needed so that a jump of the ground acceleration `ahead` [s] from now
-    falls between two impulses, each of which covers half of the steps before and after it. An impulse that contains the
-    jump delays the uplift of a block.
+    """The step [s] of a leapfrog, shortened if a jump of the ground acceleration lies `ahead` [s] within it.
+
+    The jump must fall between two impulses, each of which covers half of the steps before and after it. An impulse that
+    contains the jump delays the uplift of a block.
     """
     if not LEAST_AHEAD * step < ahead <= step:
         return step
@@ -151,7 +149,7 @@ def row_limit(duration: float, largest: float) -> int:
 
 
 def failure_of(scene: Scene, rows: Sequence[Sequence[float]] | np.ndarray, ended: str | None) -> Failure | None:
-    """The `Failure` of a run that "not finite" or "too many steps" ended, or None."""
+    """The `Failure` of a run that ended as "not finite" or "too many steps", else None."""
     count, t = len(rows) - 1, rows[-1][0]
     if ended == "not finite":
         return Failure("the state is no longer finite", f"at step {count}, t = {t:.9g} s")
@@ -219,17 +217,12 @@ def raw_trace_of(rows: Sequence[Sequence[float]] | np.ndarray, scene: Scene, con
     return Trace(t, tilt, rate, x, v, total, contact_tilt, centre=place, first_script=True)
 
 
-if TYPE_CHECKING:
-    from analytic import Scene
-
-    from .swings import Trace
-
-# s, at `scale.UNIT_RADIUS` and the default level. On a light base the error of e is proportional to it.
+# s, at `loads.UNIT_RADIUS` and the default level. On a light base the error of e is proportional to it.
 SMALLEST_STEP = 1e-6
 # s, likewise: time before a landing in which the couple of a given restitution acts, a hundred of these. With 2e-4 and
 # 4e-4 e is up to 2 and 4 times as far off on a base.
 ACTS = 1e-4
-SMEARED = 3  # steps before and after an impact over which a contact solver may spread it; see `leapfrog.trace_of`
+SMEARED = 3  # steps before and after an impact over which a contact solver may spread it; see `trace_of`
 LANDING = 1.0  # largest landing speed of a corner, over the slenderness, the width 2 b and sqrt(g/R)
 # Numbers that were chosen in impact-aware steps, for `engines.contract.Variant.constants`.
 CONSTANTS = {
@@ -301,27 +294,20 @@ def march(
 ) -> tuple[np.ndarray, str]:
     """Step until the duration is over, the block has overturned, a state is not finite or there is no solution.
 
+    Return (rows, ended): rows as in the module's docstring, the start first; one of `ENDS`, or the message of a
+    `NoSolution`.
+
     Parameters
     ----------
-    bodies : Bodies
-        At the scene's start.
-    scene : Scene
-    duration : float
-        Duration of the run [s], in place of the scene's.
-    rule : function
-        A rule of `engines.loop`; its contact points are the bottom corners.
-    loads : function
-        (time, step, step before, base velocity, bearing force without viscous part) -> the arguments of `Bodies.step`.
-    largest : float
-        Longest step [s].
+    bodies, scene
+        The bodies of the scene at its start.
+    duration, largest : float
+        Duration of the run, in place of the scene's, and longest step [s].
+    rule, loads : function
+        A `Rule`, whose contact points are the bottom corners; and (time, step, step before, base velocity, bearing
+        force without viscous part) -> the arguments of `Bodies.step`.
     jumps : iterable of float
         Times [s] of jumps of the ground acceleration, with which the steps are aligned.
-
-    Returns
-    -------
-    rows, ended
-        Rows as in `engines.loop`, the start first; and "done", "overturned", "not finite", "too many steps", or the
-        message of a `NoSolution`.
     """
     law, start, loaded = BearingLaw.of(scene.bearings), scene.start, scene.bearings is not None
     half, high, fallen = scene.block.half_width, scene.block.half_height, 0.5 * math.pi
@@ -376,10 +362,10 @@ def mean_loads(scene: Scene, bodies: Bodies, largest: float) -> Loads:
     damping, mass, g = law.count * law.damping, driven_mass(model), model.g
     heavier = leapfrog_stiffness(law, largest, mass)
     ground, upright = ground_velocity(scene.motion), ground_velocity(scene.motion and scene.motion.vertical)
-    gained = risen = across = held = added = 0.0
+    gained = risen = across = weighed = added = 0.0
 
     def loads(t, step, h, v, force):
-        nonlocal gained, risen, across, held, added
+        nonlocal gained, risen, across, weighed, added
         interval = 0.5 * (step + h)
         up = -g * interval
         if ground:
@@ -390,8 +376,8 @@ def mean_loads(scene: Scene, bodies: Bodies, largest: float) -> Loads:
             up += before - risen
         if not (damping or heavier):
             return across, up, -force * interval
-        if interval != held:
-            held, added = interval, added_mass(damping, interval, mass) + heavier * interval * interval
+        if interval != weighed:
+            weighed, added = interval, added_mass(damping, interval, mass) + heavier * interval * interval
             bodies.weigh(added)
         return across, up, -(force + damping * v) * interval - added * across
 
@@ -495,7 +481,7 @@ def run_of(
 
 
 def step_limits(scene: Scene, settings: Settings) -> tuple[float, float]:
-    """(largest, smallest) step [s] of a scene; stiff bearings may need shorter steps than the settings ask for."""
+    """Limits of a scene's steps: (largest, smallest) [s]. Stiff bearings may shorten those of the settings."""
     if isinstance(settings, FirstScript):
         return settings.step, settings.step
     scale = size_scale(scene)
@@ -508,8 +494,9 @@ def step_limits(scene: Scene, settings: Settings) -> tuple[float, float]:
 
 
 def contact_tilt(scene: Scene, largest: float, smallest: float, depth: float) -> float:
-    """Tilt [rad] below which the block counts as in flat contact: twice the largest penetration of a corner, over 2 b.
+    """Tilt [rad] below which the block counts as in flat contact.
 
+    It is twice the largest penetration of a corner, over 2 b.
     A corner whose landing the rule anticipates sinks by its speed times the smallest step, any other by `depth` g h^2
     at most.
     """

@@ -2,6 +2,12 @@
 
 An engine returns its accepted steps as a `Trace`. Events, peaks and contact forces are determined here, outside the
 engine, so that all engines are measured alike. The time this takes is not part of ``cpu_seconds``.
+
+An impact is reported where the swings before and after it are both resolved, that is, exceed contact_tilt. Its tilt
+rates and base velocities are extrapolated to tilt = 0 by the model's equations of flight. In a scene with a friction
+the block may pass tilt = 0 in the air, which is no impact. If no resolved swing follows a landing, the block came to
+rest, at the limit time of the model's impacts after it. Friction demand and normal force follow from the states and the
+model's accelerations.
 """
 
 from __future__ import annotations
@@ -54,6 +60,9 @@ def observe(
 ) -> Response:
     """The response of an engine's run.
 
+    Its outcome is "stands" where |tilt| never exceeded ``trace.contact_tilt`` or `STILL` of the slenderness, and
+    "failed" where states are not finite or `_judged` finds a failure.
+
     Parameters
     ----------
     scene : Scene
@@ -69,36 +78,23 @@ def observe(
         "overturned" if the adapter stopped the run. If the last step lies before |tilt| = pi/2, the rest of the fall is
         taken at the model's acceleration.
     warnings : iterable of Caution or str
-        Warnings of the engine. Those of the motion's record, and of a run outside the model
-        (`analytic.kernel.decision.model_warnings`), are added.
+        Warnings of the engine. Those of the motion's record and of a run outside the model are added.
     **run
         engine, variant, cpu_seconds, steps, settings, versions: copied to the response.
-
-    Returns
-    -------
-    Response
-        The outcome is "stands" where |tilt| never exceeded ``trace.contact_tilt`` or `matching.STILL` of the
-        slenderness, and "failed" where states are not finite or `_judged` finds a failure.
-
-    An impact is reported where the swings before and after it are both resolved, that is, exceed contact_tilt. Its tilt
-    rates and base velocities are extrapolated to tilt = 0 by the model's equations of flight. In a scene with a
-    friction the block may pass tilt = 0 in the air, which is no impact. If no such swing follows, the block came to
-    rest, at the limit time of the model's impacts after the last landing. Friction demand and normal force follow from
-    the states and the model's accelerations.
     """
     finite, failure = finite_part(trace, failure)
     if finite is None:
         return failed_response(scene, failure, warnings=warnings, **run)
     trace, overturning_time = upto_overturning(scene, finite, ended)
     end = last_state(trace)
-    seen, missed, lifted = _measured(scene, trace, beyond or trace, overturning_time)
+    measured, missed, lifted = _measured(scene, trace, beyond or trace, overturning_time)
     sliding = slip_of(scene, trace)
     slip = sliding.peak if sliding and overturning_time is None else 0.0
-    failure, warnings = _judged(scene, trace, {**seen, "peak_slip": slip}, missed, failure, warnings)
-    lifted = lifted and seen["peak_tilt"] >= STILL * scene.block.slenderness
+    failure, warnings = _judged(scene, trace, {**measured, "peak_slip": slip}, missed, failure, warnings)
+    lifted = lifted and measured["peak_tilt"] >= STILL * scene.block.slenderness
     upright = "rocks" if lifted else "slides" if sliding and sliding.peak else "stands"
     if sliding and sliding.peak and scene.friction:  # what no-slip formulas ask for is no demand
-        seen["friction_demand"] = min(seen["friction_demand"], scene.friction)
+        measured["friction_demand"] = min(measured["friction_demand"], scene.friction)
     response = Response(
         outcome="failed" if failure else upright if overturning_time is None else "overturns",
         end=end,
@@ -107,7 +103,7 @@ def observe(
         history=_history(scene, trace) if history else None,
         scene=scene.name,
         sliding=sliding,
-        **seen,
+        **measured,
         **run,
     )
     return replace(response, decided=is_decided(scene, response, contact_tilt=trace.contact_tilt))
@@ -116,7 +112,7 @@ def observe(
 def _measured(
     scene: Scene, trace: Trace, beyond: Trace, overturning_time: float | None
 ) -> tuple[dict[str, Any], Any, bool]:
-    """({field of `Response`: number or events}, times of missed impacts, whether the block lifted)."""
+    """Measure a run: ({field of `Response`: number or events}, times of missed impacts, whether the block lifted)."""
     end = trace.time[-1]
     swings = find_swings(beyond)
     impacts, *times = find_events(scene, beyond, swings)
@@ -124,7 +120,7 @@ def _measured(
     upright = upright_part(scene, trace, falls=overturning_time is not None)  # any falling block slides and jumps
     demand, normal, acceleration = contact_measures(scene, upright)
     peak = _peak(trace.time, trace.tilt, trace.tilt_rate)
-    seen = dict(
+    measured = dict(
         overturning_time=overturning_time,
         unstable_time=unstable_time(scene, trace),
         fall_time=None if overturning_time is None else float(upright.time[-1]),
@@ -138,31 +134,31 @@ def _measured(
         friction_demand=demand,
         min_normal_ratio=normal,
     )
-    return seen, missed, bool((beyond.time[swings.first] <= end).any())
+    return measured, missed, bool((beyond.time[swings.first] <= end).any())
 
 
 def _judged(
     scene: Scene,
     trace: Trace,
-    seen: Mapping[str, Any],
+    measured: Mapping[str, Any],
     missed: Any,
     failure: Failure | None,
     warnings: Iterable[Caution | str],
 ) -> tuple[Failure | None, Iterable[Caution | str]]:
-    """(failure or None, warnings) of a run: the engine's own failure, or the first check that is not met.
+    """Judge a run: (the engine's own failure, or the first check that is not met, or None; warnings).
 
     The checks are: the scene's duration is reached; the block is where it should be (`check_place`); no energy is
     gained (`check_energy`); impacts gain no energy, are resolved and are not skipped by the steps (`check_impacts`);
     all measures are finite; the motion matches the bearing force (`check_impulse`; for a first script a warning).
     """
-    falls = seen["overturning_time"] is not None
+    falls = measured["overturning_time"] is not None
     failure = (
         failure
         or (None if falls else ended_early(scene, trace))
         or check_place(scene, trace, falls)
         or check_energy(scene, trace)
-        or check_impacts(scene, trace, seen["impacts"], missed)
-        or _check_finite(seen)
+        or check_impacts(scene, trace, measured["impacts"], missed)
+        or _check_finite(measured)
     )
     if failure is not None:
         return failure, warnings  # without warnings on forces, which are meaningless in a failed run
@@ -171,8 +167,10 @@ def _judged(
         return failure, warnings
     if failure:
         warnings = (*warnings, Caution("engine", f"{failure.reason}: {failure.message}"))
-    beyond = limit_warnings(scene, seen["peak_base_displacement"], seen["peak_slip"])
-    outside = model_warnings(scene, seen["friction_demand"], seen["min_normal_ratio"], slides=trace.centre is not None)
+    beyond = limit_warnings(scene, measured["peak_base_displacement"], measured["peak_slip"])
+    outside = model_warnings(
+        scene, measured["friction_demand"], measured["min_normal_ratio"], slides=trace.centre is not None
+    )
     return None, (*warnings, *outside, *beyond)
 
 
@@ -183,25 +181,27 @@ def failed_response(
 
     run: as in `observe`; cpu_seconds and steps may be left out.
     """
-    said = _warnings(scene, warnings)
-    return Response.unmeasured(outcome="failed", decided=False, scene=scene.name, failure=failure, warnings=said, **run)
+    cautions = _warnings(scene, warnings)
+    return Response.unmeasured(
+        outcome="failed", decided=False, scene=scene.name, failure=failure, warnings=cautions, **run
+    )
 
 
 def _warnings(scene: Scene, warnings: Iterable[Caution | str]) -> tuple[Caution, ...]:
     """The engine's warnings, sentences as `Caution`, and those about the motion's record, without repetition."""
-    own = (Caution("engine", one) if isinstance(one, str) else one for one in warnings)
-    return tuple(dict.fromkeys((*about_record(scene.motion), *own)))
+    cautions = (Caution("engine", warning) if isinstance(warning, str) else warning for warning in warnings)
+    return tuple(dict.fromkeys((*about_record(scene.motion), *cautions)))
 
 
-def _check_finite(seen: Mapping[str, Any]) -> Failure | None:
+def _check_finite(measured: Mapping[str, Any]) -> Failure | None:
     """A `Failure` where a number of `_measured` is not finite, else None."""
-    peaks = [seen[name] for name in ("peak_tilt", "peak_base_displacement", "peak_base_acceleration")]
+    peaks = [measured[name] for name in ("peak_tilt", "peak_base_displacement", "peak_base_acceleration")]
     numbers = {
         "a peak": peaks,
-        "the normal force": [seen["min_normal_ratio"]],
-        "an uplift": seen["uplifts"],
-        "a rest": seen["rests"],
-        "an impact": np.array([astuple(impact) for impact in seen["impacts"]]).ravel(),
+        "the normal force": [measured["min_normal_ratio"]],
+        "an uplift": measured["uplifts"],
+        "a rest": measured["rests"],
+        "an impact": np.array([astuple(impact) for impact in measured["impacts"]]).ravel(),
     }
     wrong = [name for name, values in numbers.items() if not np.isfinite(values).all()]
     return Failure("measuring the run gave no number", f"not finite: {', '.join(wrong)}") if wrong else None

@@ -37,7 +37,7 @@ PULSES = ("one-sine", "one-cosine", "half-sine", "rectangular", "ricker")  # and
 
 
 def write_script(engine: Engine, scene: Scene, name: str | None = None) -> dict[str, str]:
-    """{file name: text}: the script, and the record that it reads, if any, which belongs beside it.
+    """Write a scene as a script: {file name: text} of the script and of the record that it reads, if any.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def write_script(engine: Engine, scene: Scene, name: str | None = None) -> dict[
     SettingError
         The engine has no script.
     SceneError
-        The scene has what no script has.
+        The scene has a bearing law, a pulse or a restitution that scripts lack.
     """
     if engine.script is None:
         raise SettingError(f"{engine.name} has no script: its record names no template")
@@ -78,7 +78,7 @@ def write_script(engine: Engine, scene: Scene, name: str | None = None) -> dict[
 
 
 def _check(scene: Scene) -> None:
-    """Raise `SceneError` where a scene has what no script has."""
+    """Raise `SceneError` where a scene has a law, a pulse or a restitution that scripts lack."""
     bearings, motion = scene.bearings, scene.motion
     if bearings is not None and bearings.law not in LAWS:
         raise SceneError(
@@ -94,7 +94,7 @@ def _check(scene: Scene) -> None:
 
 
 def _context(engine: Engine, scene: Scene, name: str, record: str | None) -> dict[str, Any]:
-    """What a template is rendered with."""
+    """The variables with which a template is rendered."""
     block, start, given = scene.block, scene.start, (share_of(scene) or 1.0) < 1.0
     friction, unkept = holding(scene).friction if given else scene.friction, unkept_friction(scene)
     return {
@@ -138,7 +138,7 @@ def _tail(scene: Scene) -> float:
 
 
 def _columns(motion: SampledMotion) -> str:
-    """Time [s], acceleration [m/s2], and the vertical one, if any: one sample a line."""
+    """A record as text: time [s], acceleration [m/s2] and the vertical one, if any, one sample a line."""
     columns = [motion.samples, *([motion.vertical.samples] if motion.vertical else [])]
     head = "# time [s], ground acceleration [m/s2]" + (", upward acceleration [m/s2]" if motion.vertical else "")
     rows = zip(*(column.tolist() for column in columns), strict=True)

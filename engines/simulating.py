@@ -1,8 +1,7 @@
 """From a scene and an engine to a response: the code that all engines share.
 
-Choice of a variant and check of what is asked of it: its settings, and no given restitution.
-
-The statue range: scenes for which the tuned variants are tested. Nothing is promised outside it.
+The variant and its settings are checked first (`choose`), and a given restitution is refused where the engine computes
+the impact itself. Tuned variants are tested in the range of statues `RANGE`; a response outside it carries a warning.
 """
 
 from __future__ import annotations
@@ -30,13 +29,15 @@ from .loads import ALONE, holding, reached
 from .swings import find_swings
 
 if TYPE_CHECKING:
-    from analytic import Scene
+    from types import ModuleType
 
-    from .contract import Engine
+    from analytic import Response, Scene
+
+    from .swings import Trace
 
 
 def choose(engine: Engine, variant: str | None, changes: Mapping[str, Any]) -> tuple[str, Any]:
-    """(name, settings) of an engine's variant with fields replaced.
+    """Choose an engine's variant: (name, settings with fields replaced).
 
     Parameters
     ----------
@@ -80,9 +81,6 @@ def refuse_restitution(engine: Engine, scene: Scene) -> None:
         )
 
 
-if TYPE_CHECKING:
-    from analytic import Response, Scene
-
 ROUNDING = 1e-9  # tolerance of a computed value at a limit
 # {quantity: (lowest value, highest value, in words)}
 RANGE = {
@@ -98,61 +96,56 @@ NAMES = {"base_mass": "base mass over block mass", "tilt": "peak tilt over slend
 
 
 def in_words() -> str:
-    """The limits, in one line."""
-    return ", ".join(map(_words, RANGE))
+    """The range of statues in one line."""
+    return ", ".join(map(_limits_in_words, RANGE))
 
 
 def outside(scene: Scene, response: Response) -> tuple[Caution, ...]:
-    """A warning for each quantity of the scene, and for the run's peak tilt, that lies outside the range."""
-    found = []
+    """Warnings: one for each quantity of the scene, and for the run's peak tilt, that lies outside the range."""
+    cautions = []
     for name, value in _values(scene, response).items():
         low, high, _ = RANGE[name]
         if not low * (1 - ROUNDING) <= value <= high * (1 + ROUNDING):
             words = (
                 f"{NAMES.get(name, name)} {value:.3g} is outside the range in which engines are tested "
-                f"({_words(name)}): nothing is promised there"
+                f"({_limits_in_words(name)}): nothing is promised there"
             )
-            found.append(Caution("engine", words, name, value, low if value < low else high))
-    return tuple(found)
+            cautions.append(Caution("engine", words, name, value, low if value < low else high))
+    return tuple(cautions)
 
 
-def _words(name: str) -> str:
-    """The limits of a quantity."""
+def _limits_in_words(name: str) -> str:
+    """The limits of a quantity in words."""
     low, high, words = RANGE[name]
     return words.format(low=low, high=high)
 
 
 def _values(scene: Scene, response: Response) -> dict[str, float]:
-    """{quantity of `RANGE`: its value}, of those that the scene has; a block that never lifts has no tilt.
+    """Return {quantity of `RANGE`: its value} for the quantities that the scene has.
 
-    Period and viscous damping are those of block and base on the stiffness after yielding.
+    A block that never lifts has no tilt. Period and viscous damping are those of block and base on the stiffness after
+    yielding.
     """
     block, base = scene.block, scene.base
     inertia = block.inertia / (block.mass * block.radius**2)
-    found = {"slenderness": block.slenderness, "inertia": inertia, "radius": block.radius}
+    values = {"slenderness": block.slenderness, "inertia": inertia, "radius": block.radius}
     if base is not None:
-        found["base_mass"] = base.mass / block.mass
+        values["base_mass"] = base.mass / block.mass
     if scene.bearings is not None:
         law = BearingLaw.of(scene.bearings)
         omega = math.sqrt(law.count * law.kb / scene.total_mass)
-        found["period"] = 2 * math.pi / omega if omega else math.inf
-        found["damping"] = law.count * law.damping / (2 * omega * scene.total_mass) if omega else 0.0
+        values["period"] = 2 * math.pi / omega if omega else math.inf
+        values["damping"] = law.count * law.damping / (2 * omega * scene.total_mass) if omega else 0.0
     if response.outcome not in LEVEL:  # an engine that stands has a tilt of rounding
-        found["tilt"] = response.peak_tilt_ratio
-    return found
+        values["tilt"] = response.peak_tilt_ratio
+    return values
 
-
-if TYPE_CHECKING:
-    from types import ModuleType
-
-    from analytic import Response, Scene
-
-    from .swings import Trace
 
 # A run that ends within this many settling times of the contact, or this many steps, after a landing or an uplift ends
 # during the impact. With an engine that switches corners within a step, as MuJoCo does, the block is then on both
 # corners, and e would be read as 0.
 SETTLED, STEPS = 2.0, 4
+SLIPS = "with less the block slips under the couple before each landing"
 
 
 class Simulator(Engine):
@@ -170,13 +163,13 @@ class Simulator(Engine):
         """
         adapter = self.load()
         try:
-            ran = adapter.run(self._held(scene, variant), variant, settings)
-            if not isinstance(ran, Run):
-                raise TypeError(f"{self.adapter}.run returned a {type(ran).__name__}, no engines.contract.Run")
+            result = adapter.run(self._as_run(scene, variant), variant, settings)
+            if not isinstance(result, Run):
+                raise TypeError(f"{self.adapter}.run returned a {type(result).__name__}, no engines.contract.Run")
         except Exception as error:
             error.add_note(f"in {_place(error, adapter)}")
             raise
-        return ran
+        return result
 
     def simulate(
         self, scene: Scene, *, variant: str | None = None, history: bool = True, compare: bool = True, **settings: float
@@ -209,19 +202,20 @@ class Simulator(Engine):
         model = self._model(scene)
         response, _ = self._traced(scene, variant, history, settings, model)
         response = replace(
-            response, warnings=(*response.warnings, *outside(scene, response), *self._given(scene, response))
+            response,
+            warnings=(*response.warnings, *outside(scene, response), *self._restitution_warning(scene, response)),
         )
         if response.failure or not compare:
             return response
-        if (held := self._held(scene, response.variant).friction) != scene.friction and scene.friction is not None:
-            words = f"the contact's friction is {held:.3g}, not the scene's {scene.friction:.3g}, as by a smaller one"
-            return replace(response, comparable=f"{words} a couple before the landing slips")
+        if (held := self._as_run(scene, response.variant).friction) != scene.friction and scene.friction is not None:
+            words = f"the contact's friction is {held:.3g}, not the scene's {scene.friction:.3g}"
+            return replace(response, comparable=f"{words}: {SLIPS}")
         return compared(scene, response, Reference.of(scene, model))
 
     def traced(
         self, scene: Scene, *, variant: str | None = None, history: bool = True, **settings: float
     ) -> tuple[Response, Trace | None]:
-        """(response, trace or None) of `simulate`, without the comparison.
+        """Simulate without the comparison: (response, trace or None).
 
         A scene without a duration is first run to the end of the analytic model's run, where most engines end, too. If
         the engine's own end state is not decided there, it runs longer (`analytic.solver.until_decided`).
@@ -236,18 +230,18 @@ class Simulator(Engine):
     def _traced(
         self, scene: Scene, variant: str | None, history: bool, settings: Mapping[str, float], model: Response | None
     ) -> tuple[Response, Trace | None]:
-        """`traced`, given the analytic model's run."""
+        """Do `traced`, given the analytic model's run."""
         name, chosen = choose(self, variant, settings)
         if not self.variants[name].takes_restitution:
             refuse_restitution(self, scene)
-        if (friction := self._held(scene, name).friction) is not None and hasattr(chosen, "friction"):
+        if (friction := self._as_run(scene, name).friction) is not None and hasattr(chosen, "friction"):
             chosen = replace(chosen, friction=friction)
         if model is None:
-            return self._once(scene, name, chosen, history)
+            return self._observed(scene, name, chosen, history)
         traces: list[Trace | None] = []
 
         def attempt(cut):
-            response, trace = self._once(cut, name, chosen, history)
+            response, trace = self._observed(cut, name, chosen, history)
             traces[:] = [trace]  # of the last attempt
             return response
 
@@ -256,42 +250,45 @@ class Simulator(Engine):
         )
         return response, traces[0]
 
-    def _held(self, scene: Scene, variant: str) -> Scene:
-        """The scene as it is run: by a couple, with the friction that this asks for."""
+    def _as_run(self, scene: Scene, variant: str) -> Scene:
+        """The scene as it is run: with more friction where a couple needs it."""
         return scene if self.variants[variant].applies_impact else holding(scene)
 
-    def _given(self, scene: Scene, response: Response) -> tuple[Caution, ...]:
-        """That a scene gives the restitution: no run of it rates an engine."""
+    def _restitution_warning(self, scene: Scene, response: Response) -> tuple[Caution, ...]:
+        """The warning that a scene gives the restitution, so that its runs rate no engine; () where it does not."""
         if (e := scene.block.restitution) is None:
             return ()
         words = f"restitution given, {e:.4g}: it is the scene's, and says nothing of the engine's own impact"
-        if (friction := self._held(scene, response.variant).friction) != scene.friction:
-            words += f"; the contact's friction is {friction:.3g}, as with less a couple before the landing slips"
+        if (friction := self._as_run(scene, response.variant).friction) != scene.friction:
+            words += f"; the contact's friction is {friction:.3g}: {SLIPS}"
         return (Caution("engine", words, "restitution", e),)
 
-    def _once(self, scene: Scene, name: str, chosen: Any, history: bool) -> tuple[Response, Trace | None]:
+    def _observed(self, scene: Scene, name: str, chosen: Any, history: bool) -> tuple[Response, Trace | None]:
+        """Run a scene that has a duration: (response, trace or None)."""
         from .observe import failed_response, observe
 
         run = self.run(scene, name, chosen)
-        on = self._run_on(scene, name, chosen, run)
-        beyond, said = _beyond(scene, on) if on else (None, ())
-        given: dict[str, Any] = dict(
+        longer = self._longer_run(scene, name, chosen, run)
+        beyond, warnings = _beyond(scene, longer) if longer else (None, ())
+        labels: dict[str, Any] = dict(
             engine=self.name,
             variant=name,
             settings=asdict(chosen),
             versions=self.versions(),
-            cpu_seconds=run.cpu_seconds + (on.cpu_seconds if on else 0.0),
-            steps=run.steps + (on.steps if on else 0),
-            warnings=(*run.warnings, *said),
+            cpu_seconds=run.cpu_seconds + (longer.cpu_seconds if longer else 0.0),
+            steps=run.steps + (longer.steps if longer else 0),
+            warnings=(*run.warnings, *warnings),
         )
         if run.trace is None:
             failure = run.failure or Failure("the run ended before its first step")
-            return failed_response(scene, failure, **given), None
-        seen = observe(scene, run.trace, beyond=beyond, history=history, failure=run.failure, ended=run.ended, **given)
-        return seen, run.trace
+            return failed_response(scene, failure, **labels), None
+        response = observe(
+            scene, run.trace, beyond=beyond, history=history, failure=run.failure, ended=run.ended, **labels
+        )
+        return response, run.trace
 
-    def _run_on(self, scene: Scene, name: str, chosen: Any, run: Run) -> Run | None:
-        """The same run for longer, if the scene ends during a change of contact; else None."""
+    def _longer_run(self, scene: Scene, name: str, chosen: Any, run: Run) -> Run | None:
+        """The same run of a longer scene, if the scene ends during a change of contact; else None."""
         if run.trace is None or run.failure or run.ended:
             return None
         time, swings = run.trace.time, find_swings(run.trace)
@@ -305,16 +302,16 @@ class Simulator(Engine):
 
 
 def _place(error: Exception, adapter: ModuleType) -> str:
-    """The innermost line of the adapter's package in the error's traceback, else the first line of its `run`."""
+    """Where an adapter raised an error: the innermost line of its package, else the first line of its `run`."""
     package = adapter.__name__.partition(".")[0]
     passed = [(frame.f_globals.get("__name__", ""), line) for frame, line in traceback.walk_tb(error.__traceback__)]
-    found = [place for place in passed[1:] if place[0].partition(".")[0] == package]
+    frames = [place for place in passed[1:] if place[0].partition(".")[0] == package]
     begins = getattr(getattr(adapter.run, "__code__", None), "co_firstlineno", 1)
-    return "{}, line {}".format(*found[-1] if found else (adapter.__name__, begins))
+    return "{}, line {}".format(*frames[-1] if frames else (adapter.__name__, begins))
 
 
 def _beyond(scene: Scene, on: Run) -> tuple[Trace | None, tuple[Caution, ...]]:
-    """(finite part of the trace, warnings) of a run that went on beyond the scene's end."""
+    """Read a run that went on beyond the scene's end: (its trace, or None if it fails there; warnings)."""
     from .events import finite_part
 
     trace, failure = finite_part(on.trace, on.failure) if on.trace else (None, on.failure)

@@ -178,62 +178,97 @@ def to_contact(scene: Scene, trace: Trace, swings: Swings, direction: int) -> tu
     -------
     time, rate, velocity : arrays, shape (n,)
         Time [s], tilt rate [rad/s] and base velocity [m/s] at tilt = 0; NaN where the flight does not reach it.
-
-    Back to contact_tilt, the bearings' impulse is that of the trace. Beyond it, or beyond the last step, their force
-    follows the law; where the base is too fast for that (forward: `MOST_STEPS`, backward: `GROWTH`), it is extrapolated
-    from the two steps there. Damping before the step that reached contact_tilt is attributed to contact.
     """
-    model = ArrayModel.of(scene)
-    law, side = model.bearing, swings.side
     index, edge = (_before_landing(trace, swings), swings.last) if direction > 0 else (swings.clean, swings.first)
-    ground, slips = scene.motion.acceleration if scene.motion else np.zeros_like, _slips(scene, trace, index, side)
-    t, tilt, rate, x, v = (getattr(trace, name)[index].copy() for name in Trace.COLUMNS[:5])
+    t, state = trace.time[index], np.stack([getattr(trace, name)[index] for name in Trace.COLUMNS[1:5]])
     if len(t) == 0:
-        return t, rate, v
-    viscous = law.count * law.damping
-    lasting = trace.bearing_force - viscous * trace.base_velocity
-    beyond = _branch(law, trace.base_displacement[edge], lasting[edge], trace.base_velocity[edge])
-    along = _tangent(trace, swings, direction)
-    pace, decay = _paces(model)
-
-    def slope(t, tilt, rate, x, v, force=None):
-        if force is None:
-            unseen = ~carried | ((trace.time[np.maximum(edge - 1, 0)] <= t) & (t <= trace.time[edge]))
-            force = beyond(x) + np.where(unseen, viscous * v, 0.0)
-            if fast.any():
-                force = np.where(fast & unseen, along(t), force)
-        up = vertical_acceleration(scene.motion, t)
-        tilting, sliding = model.accelerations(side, tilt, rate, ground(t), force, up)
-        if slips.any():
-            slid = _slid(scene, model, side, slips, (tilt, rate), (ground(t), force, up))
-            tilting, sliding = (np.where(slips, *pair) for pair in zip(slid, (tilting, sliding), strict=True))
-        return np.stack([rate, tilting, v, np.broadcast_to(sliding, rate.shape)])
-
-    state, fast, carried = np.stack([tilt, rate, x, v]), np.zeros(len(t), dtype=bool), index != edge
-    if carried.any():
-        impulse, end = _impulse(trace, lasting, viscous), trace.time[edge]
-        for until in end + np.multiply.outer(CARRY, t - end):
-            h = until - t
-            mean = (impulse(until) - impulse(t)) / np.where(h == 0, 1.0, h)
-            t, state = _runge_kutta(partial(slope, force=mean), t, state, h, 1)
-    way = np.where(carried, 0, direction)
+        return t, state[1], state[3]
+    flight, side = _Flight(scene, trace, swings, direction, index, edge), swings.side
+    if flight.carried.any():
+        t, state = flight.to_edge(t, state)
+    pace, decay = _base_rates(flight.model)
+    toward = np.where(flight.carried, 0, direction)  # the root to take first; 0: the nearer one
     for correction in range(1 + CORRECTIONS):
-        pull = side * slope(t, *state)[1]
-        wanted = _time_to_zero(side * state[0], side * state[1], pull, way * (correction == 0))
-        longest = np.nan_to_num(np.abs(wanted), nan=0.0, posinf=0.0)
+        pull = side * flight.slope(t, *state)[1]
+        ahead = _time_to_zero(side * state[0], side * state[1], pull, toward * (correction == 0))
+        longest = np.nan_to_num(np.abs(ahead), nan=0.0, posinf=0.0)
         if correction == 0:
-            fast = (pace * longest > PACE * MOST_STEPS) if direction > 0 else (decay * longest > GROWTH)
+            flight.fast = (pace * longest > PACE * MOST_STEPS) if direction > 0 else (decay * longest > GROWTH)
         least = RK_STEPS if correction == 0 else 1
         steps = int(np.clip(math.ceil(min(pace * longest.max() / PACE, MOST_STEPS)), least, MOST_STEPS))
-        t, state = _runge_kutta(slope, t, state, wanted / steps, steps)
+        t, state = _runge_kutta(flight.slope, t, state, ahead / steps, steps)
     # The block moves out of contact where it should move in, or does not reach contact.
     missed = (side * state[1] * direction > 0) | ~(np.abs(state[0]) <= trace.contact_tilt)
-    at, rate, velocity = np.where(missed, np.nan, (t, state[1], state[3]))
-    return at, rate, velocity
+    time, rate, velocity = np.where(missed, np.nan, (t, state[1], state[3]))
+    return time, rate, velocity
+
+
+class _Flight:
+    """The model's equations of flight of n swings, with the bearing force where a trace does not tell it.
+
+    Between the step `index` and the step `edge`, the first or last one above contact_tilt, the bearings' impulse is
+    that of the trace (`to_edge`). Beyond the edge their force follows the law; where the base is too `fast` for that
+    (forward: `MOST_STEPS`, backward: `GROWTH`), it is extrapolated from the two steps there. Damping before the step
+    that reached contact_tilt is attributed to contact.
+    """
+
+    def __init__(
+        self, scene: Scene, trace: Trace, swings: Swings, direction: int, index: np.ndarray, edge: np.ndarray
+    ) -> None:
+        self.scene, self.model, self.side, self.time, self.edge = (
+            scene,
+            ArrayModel.of(scene),
+            swings.side,
+            trace.time,
+            edge,
+        )
+        self.ground = scene.motion.acceleration if scene.motion else np.zeros_like
+        self.slips = _sliding_directions(scene, trace, index, swings.side)
+        self.carried, self.fast = index != edge, np.zeros(len(index), dtype=bool)
+        law = self.model.bearing
+        self.viscous = law.count * law.damping
+        lasting = trace.bearing_force - self.viscous * trace.base_velocity
+        self.beyond = _law_force(law, trace.base_displacement[edge], lasting[edge], trace.base_velocity[edge])
+        self.along, self.impulse = _tangent(trace, swings, direction), _impulse(trace, lasting, self.viscous)
+
+    def to_edge(self, t: np.ndarray, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Integrate to the edge: (t, state). In each part of the way the bearings act by their mean force there."""
+        end = self.time[self.edge]
+        for until in end + np.multiply.outer(CARRY, t - end):
+            h = until - t
+            mean = (self.impulse(until) - self.impulse(t)) / np.where(h == 0, 1.0, h)
+            t, state = _runge_kutta(partial(self.slope, force=mean), t, state, h, 1)
+        return t, state
+
+    def slope(
+        self,
+        t: np.ndarray,
+        tilt: np.ndarray,
+        rate: np.ndarray,
+        x: np.ndarray,
+        v: np.ndarray,
+        force: np.ndarray | None = None,
+    ) -> np.ndarray:
+        """Derivative of (tilt, rate, x, v); force: of the bearings [N], None: beyond the edge."""
+        side, ground, up = self.side, self.ground(t), vertical_acceleration(self.scene.motion, t)
+        if force is None:
+            force = self._force(t, x, v)
+        tilting, sliding = self.model.accelerations(side, tilt, rate, ground, force, up)
+        if self.slips.any():
+            slid = _sliding_accelerations(self.scene, self.model, side, self.slips, (tilt, rate), (ground, force, up))
+            tilting, sliding = (np.where(self.slips, *pair) for pair in zip(slid, (tilting, sliding), strict=True))
+        return np.stack([rate, tilting, v, np.broadcast_to(sliding, rate.shape)])
+
+    def _force(self, t: np.ndarray, x: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Force of all bearings beyond the edge [N]."""
+        before = self.time[np.maximum(self.edge - 1, 0)]
+        unseen = ~self.carried | ((before <= t) & (t <= self.time[self.edge]))
+        force = self.beyond(x) + np.where(unseen, self.viscous * v, 0.0)
+        return np.where(self.fast & unseen, self.along(t), force) if self.fast.any() else force
 
 
 def _before_landing(trace: Trace, swings: Swings) -> np.ndarray:
-    """Index of the last clean step of each swing: where a couple acts before the landing, one without it."""
+    """Index of the last clean step of each swing: before the couple, where one acts before the landing."""
     if not trace.early:
         return swings.last
     # A step before the one at which the couple begins: a leapfrog's rate there is half that of the next step.
@@ -241,7 +276,7 @@ def _before_landing(trace: Trace, swings: Swings) -> np.ndarray:
     return np.clip(before, swings.clean, swings.last)
 
 
-def _slips(scene: Scene, trace: Trace, index: np.ndarray, side: np.ndarray) -> np.ndarray:
+def _sliding_directions(scene: Scene, trace: Trace, index: np.ndarray, side: np.ndarray) -> np.ndarray:
     """Direction in which the block's corner slides at these steps, +1 or -1; 0 where it sticks."""
     if scene.friction is None or trace.centre is None:
         return np.zeros(len(index))
@@ -251,8 +286,8 @@ def _slips(scene: Scene, trace: Trace, index: np.ndarray, side: np.ndarray) -> n
     return np.where(np.abs(speed) > least, np.sign(speed), 0.0)
 
 
-def _slid(scene, model, side, slips, block, acting):
-    """(phi'', x'') of a block whose corner slides; block: tilt and rate; acting: a_g, bearing force, a_v.
+def _sliding_accelerations(scene, model, side, slips, block, acting):
+    """Accelerations (phi'', x'') of a block whose corner slides; block: tilt and rate; acting: a_g, bearing force, a_v.
 
     Equations (S1) to (S4) of `analytic.sliding.equations` with eta'' = 0 and H = -sigma mu N.
     """
@@ -265,7 +300,7 @@ def _slid(scene, model, side, slips, block, acting):
 
 
 def _runge_kutta(slope, t, state, h, steps):
-    """(t, state) after so many steps of length h of the classical method; `slope(t, *state)` is its derivative."""
+    """Take steps of length h of the classical method: (t, state) at the end; `slope(t, *state)` is the derivative."""
     for _ in range(steps):
         k1 = slope(t, *state)
         k2 = slope(t + h / 2, *(state + h / 2 * k1))
@@ -276,8 +311,8 @@ def _runge_kutta(slope, t, state, h, steps):
     return t, state
 
 
-def _paces(model: ArrayModel) -> tuple[float, float]:
-    """(fastest rate, decay rate) of the base on its bearings while the block rocks [1/s]."""
+def _base_rates(model: ArrayModel) -> tuple[float, float]:
+    """Rates of the base on its bearings while the block rocks: (fastest, of decay) [1/s]."""
     if not model.on_base:
         return 0.0, 0.0
     law, height = model.bearing, model.R * math.cos(model.gamma)
@@ -321,7 +356,9 @@ def _time_to_zero(p: np.ndarray, q: np.ndarray, a: np.ndarray, direction: np.nda
 FAR = 100.0
 
 
-def _branch(law: BearingLaw, x: np.ndarray, lasting: np.ndarray, v: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+def _law_force(
+    law: BearingLaw, x: np.ndarray, lasting: np.ndarray, v: np.ndarray
+) -> Callable[[np.ndarray], np.ndarray]:
     """Elastic and hysteretic force of all bearings [N] as a function of displacement, on the path through (x, force).
 
     The law is evaluated at two points in the direction of v. An exponential through them gives the force elsewhere: it

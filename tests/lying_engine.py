@@ -75,7 +75,9 @@ def _later(name, periods):
 
 def _rates(factor):
     def lie(scene, run):
-        return replace(run, impacts=tuple(replace(one, rate_after=factor * one.rate_after) for one in run.impacts))
+        return replace(
+            run, impacts=tuple(replace(impact, rate_after=factor * impact.rate_after) for impact in run.impacts)
+        )
 
     return lie
 
@@ -150,8 +152,8 @@ class Liar(Simulator):
     def simulate(self, scene, *, variant=None, history=True, compare=True, **settings):
         model = simulate(scene, history=history)
         lie = (LIES | FAULTS)[self.name]
-        versions, own = {"lying-engine": "0.1"}, {"step": 1e-3, **settings}
-        known = replace(model, engine=self.name, variant="lies", settings=own, versions=versions, warnings=())
+        versions, settings_used = {"lying-engine": "0.1"}, {"step": 1e-3, **settings}
+        known = replace(model, engine=self.name, variant="lies", settings=settings_used, versions=versions, warnings=())
         response = lie(scene, replace(known, cpu_seconds=0.01, energy=None))
         return compared(scene, response, Reference.of(scene, model)) if compare else response
 

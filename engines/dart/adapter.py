@@ -1,7 +1,6 @@
 """DART's variants: its boxed LCP solver computes contact and impact, in double precision. Tested with dartpy 6.20.0.
 
-The scene as a user of DART would write it: a free 3-D box on the ground, or on a slab on a prismatic joint.
-
+The scene is built as a user of DART would write it: a free 3-D box on the ground, or on a slab on a prismatic joint.
 Collision detection is DART's default, FCL. A first script keeps all other defaults, too. The tuned variant corrects
 penetrations by split impulses, which add no velocity (ConstraintSolver.setSplitImpulseEnabled), and sets a friction
 that prevents sliding where the scene gives none.
@@ -125,10 +124,6 @@ def _touch(body: dartpy.dynamics.BodyNode, size: list[float], place: list[float]
     node.createDynamicsAspect()
     node.setRelativeTranslation(place)
     node.getDynamicsAspect().setFrictionCoeff(friction)
-
-
-if TYPE_CHECKING:
-    from analytic import Scene
 
 
 VARIANTS = {

@@ -1,11 +1,8 @@
 """Drake's variant: its contact solver computes contact and impact, in double precision. Tested with drake 1.51.1.
 
-A plant has one fixed time step, so that steps cannot be shortened at impacts: there is only a first script.
-
-The scene of a first script in Drake: a free box on the ground, or on a slab on a prismatic joint.
-
-All defaults are Drake's: two boxes have one contact point, the deepest; a body penetrates by 1 mm under its weight;
-dissipation is lagged. A plant has one fixed time step.
+A plant has one fixed time step, so that steps cannot be shortened at impacts: there is only a first script. Its scene
+is a free box on the ground, or on a slab on a prismatic joint. All defaults are Drake's: two boxes have one contact
+point, the deepest; a body penetrates by 1 mm under its weight; dissipation is lagged.
 """
 
 from __future__ import annotations
@@ -95,9 +92,6 @@ def _solid(mass: float, inertia: float) -> SpatialInertia:
     """Inertia of a body with the same moment of inertia [kg m2] about every axis through its centre."""
     return SpatialInertia(mass, [0.0, 0.0, 0.0], UnitInertia(*[inertia / mass] * 3))
 
-
-if TYPE_CHECKING:
-    from analytic import Scene
 
 VARIANTS = {
     "first-script": Variant(

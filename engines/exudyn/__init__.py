@@ -1,8 +1,6 @@
-"""exudyn: ``get_engine("exudyn").simulate(scene, variant=...)``.
+"""exudyn: ``get_engine("exudyn").simulate(scene, variant=...)``: record, tolerances, and mistakes in a script.
 
-Tolerances of the variants of exudyn; the scenes are those of the tolerance table.
-
-Mistakes in a script for exudyn, by what they concern.
+The tolerances of a variant are those of the tolerance table's scenes. The mistakes are sorted by what they concern.
 """
 
 from ..contract import HELD, NO_MATTER, READING, ROUNDING, Engine, Mistake, ToleranceRow

@@ -1,9 +1,4 @@
-"""exudyn's variants, and checks of a run that exudyn's solver does not make.
-
-exudyn's calls in each variant, for `engines.contract.Variant.calls`.
-
-Chosen numbers of compliant-corners and their meaning, for `engines.contract.Variant.constants`.
-"""
+"""exudyn's variants: their calls, their chosen numbers, and the run with checks that exudyn's solver does not make."""
 
 from __future__ import annotations
 
@@ -20,11 +15,13 @@ from analytic.rocking import BearingLaw
 
 from ..checks import replay_bearing
 from ..contract import Variant
-from . import corners, native
-from . import stepping as phases
+from . import corners, native, stepping
 from .scene import MEASURED
 
 if TYPE_CHECKING:
+    from analytic import Scene
+
+    from ..contract import Run
     from .native import NativeContact
     from .scene import CompliantCorners
 
@@ -52,7 +49,7 @@ def _speed(value: float) -> str:
 
 
 def compliant_corners(settings: CompliantCorners) -> dict[str, str]:
-    """Calls of compliant-corners."""
+    """exudyn's calls in compliant-corners, for `engines.contract.Variant.calls`."""
     softness = MASS * GRAVITY / RADIUS / settings.stiffness
     return {
         **BODIES,
@@ -75,16 +72,16 @@ def compliant_corners(settings: CompliantCorners) -> dict[str, str]:
         "MainSolverExplicit; settings: of every solver",
         f"explicit.timeIntegration.absoluteTolerance = {settings.tolerance:g} * min(scale, 1 / scale)": "",
         "explicit.timeIntegration.relativeTolerance = 1e-14": "round-off",
-        f"explicit.timeIntegration.minimumStepSize = {phases.LEAST_STEP:g}": "s",
-        f"settings.timeIntegration.initialStepSize = {phases.FIRST * settings.longest_step:g} * scale": "s",
+        f"explicit.timeIntegration.minimumStepSize = {stepping.LEAST_STEP:g}": "s",
+        f"settings.timeIntegration.initialStepSize = {stepping.FIRST * settings.longest_step:g} * scale": "s",
         **QUICKER,
         "implicit.timeIntegration.solverType = DynamicSolverType.GeneralizedAlpha": "of a "
         "MainSolverImplicitSecondOrder, while the block pivots or stands",
-        f"rounding = {phases.ROUNDING:.6g} * k * R": "N",
-        f"implicit.timeIntegration.newton.absoluteTolerance = max({phases.RESIDUAL:g} * m * g, rounding)": "N",
+        f"rounding = {stepping.ROUNDING:.6g} * k * R": "N",
+        f"implicit.timeIntegration.newton.absoluteTolerance = max({stepping.RESIDUAL:g} * m * g, rounding)": "N",
         "implicit.timeIntegration.newton.numericalDifferentiation.minimumCoordinateSize = 1": "",
         "implicit.timeIntegration.newton.numericalDifferentiation.relativeEpsilon = "
-        f"{phases.DIFFERENCE / 2:g} * m * g / (k * R)": "a corner must not leave its contact",
+        f"{stepping.DIFFERENCE / 2:g} * m * g / (k * R)": "a corner must not leave its contact",
         "implicit.timeIntegration.adaptiveStep = False": "",
         "implicit.timeIntegration.automaticStepSize = False": f"steps of {settings.pivoting_step:g} * scale s, "
         "shorter on stiff bearings",
@@ -92,7 +89,7 @@ def compliant_corners(settings: CompliantCorners) -> dict[str, str]:
 
 
 def native_contact(settings: NativeContact) -> dict[str, str]:
-    """Calls of native-contact."""
+    """exudyn's calls in native-contact, for `engines.contract.Variant.calls`."""
     return {
         **BODIES,
         f"ObjectContactSphereTriangle(sphereRadius={settings.sphere:g}, includeEdges=0, contactStiffness="
@@ -140,13 +137,6 @@ CONSTANTS = {
     "engines.loads:VIBRATION": "step over the time in which the bearings' vibration advances by 1 rad",
 }
 
-
-if TYPE_CHECKING:
-    from analytic import Scene
-
-    from ..contract import Run
-    from .native import NativeContact
-    from .scene import CompliantCorners
 
 # Replayed bearing force, over f0: round-off stays below 1e-12.
 REPLAY_LIMIT = 1e-9
@@ -201,7 +191,7 @@ VARIANTS = {
 
 
 def versions() -> dict[str, str]:
-    """Versions that determine the result."""
+    """Versions of the packages that compute: {package: version}."""
     return {"exudyn": version("exudyn"), "python": platform.python_version()}
 
 
@@ -213,11 +203,11 @@ def run(scene: Scene, variant: str, settings: CompliantCorners | NativeContact) 
     Mismatch
         exudyn holds other values than the scene asks for; nothing was run.
     """
-    ran = _MODULES[variant].run(scene, settings)
-    if ran.trace is None:
-        failure = replace(ran.failure or Failure("the run ended before its first step"), last_state=_start(scene))
-        return replace(ran, failure=failure, steps=max(ran.steps, 0))
-    return replace(ran, failure=ran.failure or _fault(scene, ran))
+    result = _MODULES[variant].run(scene, settings)
+    if result.trace is None:
+        failure = replace(result.failure or Failure("the run ended before its first step"), last_state=_start(scene))
+        return replace(result, failure=failure, steps=max(result.steps, 0))
+    return replace(result, failure=result.failure or _fault(scene, result))
 
 
 def _fault(scene: Scene, run: Run) -> Failure | None:

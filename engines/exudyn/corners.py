@@ -1,6 +1,6 @@
 """exudyn, variant compliant-corners: a stiff contact at each bottom corner.
 
-The contact law is the adapter's own, of the Hunt-Crossley type; exudyn integrates it by the two methods of `phases`.
+The contact law is the adapter's own, of the Hunt-Crossley type; exudyn integrates it by the two methods of `Phases`.
 The contact is plastic (`rebound`), without slip (`friction`) and planar, as Housner assumes. Agreement with his formula
 verifies the law and the integration; it is not independent evidence.
 """
@@ -89,7 +89,7 @@ class Corner:
 
 
 def deflected(scene: Scene, corner: Corner) -> tuple[float, float, float]:
-    """Displacement [m] and rotation of a standing block whose corners carry it at the start, see `standing_until`.
+    """Displacement [m, m] and rotation of a standing block on its corners at the time `standing_until`.
 
     Where the ground's acceleration lifts the block at once, as a jump can, they carry it as it pivots. From rest under
     its weight the corner that lifts would push it while it comes out: an impulse, and an error, as stiffness^-1/2.
@@ -106,7 +106,7 @@ def deflected(scene: Scene, corner: Corner) -> tuple[float, float, float]:
 
 
 def assemble(scene: Scene, settings: CompliantCorners, couple: Couple | None = None) -> tuple[Model, float]:
-    """(model, contact tilt [rad]) of a scene with compliant corners."""
+    """Build a scene with compliant corners: (model, contact tilt [rad])."""
     corner = Corner.of(scene, settings)
     sink = scene.block.mass * scene.gravity / (2 * corner.stiffness)
     model = build(scene, deflected(scene, corner))
@@ -133,8 +133,8 @@ def run(scene: Scene, settings: CompliantCorners) -> Run:
     model, contact_tilt = assemble(scene, settings, couple)
     sink = contact_tilt * scene.block.half_width
 
-    def drive(model, steps, record):
-        return Phases(model, settings, steps, record, sink=sink, settle=settle, early=early).run()
+    def drive(model, steps):
+        return Phases(model, settings, steps, sink=sink, settle=settle, early=early).run()
 
-    ran = step_through(model, drive, 2 * contact_tilt, settle)
-    return replace(ran, trace=replace(ran.trace, early=early)) if couple and ran.trace else ran
+    result = step_through(model, drive, 2 * contact_tilt, settle)
+    return replace(result, trace=replace(result.trace, early=early)) if couple and result.trace else result

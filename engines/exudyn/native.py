@@ -36,7 +36,7 @@ class NativeContact:
 
 
 def assemble(scene: Scene, settings: NativeContact) -> tuple[Model, float]:
-    """(model, static penetration [m]) of a scene with sphere-triangle contacts."""
+    """Build a scene with sphere-triangle contacts: (model, static penetration [m])."""
     block = scene.block
     sink = block.mass * scene.gravity / (2 * settings.stiffness)
     model = build(scene, (0.0, -sink, 0.0))
@@ -72,6 +72,4 @@ def run(scene: Scene, settings: NativeContact) -> Run:
         scene, numberOfSteps=math.ceil(scene.duration / settings.step - 1e-9), automaticStepSize=False
     )
     solver.timeIntegration.newton.useModifiedNewton = False
-    return step_through(
-        model, lambda model, steps, record: in_one_go(model, solver, steps, record), 4 * sink / scene.block.half_width
-    )
+    return step_through(model, lambda model, steps: in_one_go(model, solver, steps), 4 * sink / scene.block.half_width)

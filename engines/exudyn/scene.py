@@ -1,11 +1,7 @@
-"""A scene as exudyn bodies, loads and bearing; the variants add the contact between block and base.
+"""A scene in exudyn: bodies, loads, bearings with their history; settings of compliant-corners and their scaling.
 
-Coordinates: ground frame, x horizontal, y up; exudyn's rotation is counter-clockwise, so theta = -tilt. The ground
-motion enters as inertial load, x is relative to the ground.
-
-An exudyn system of one scene: bodies, bearings with their history, and the anchor of the friction.
-
-Settings of compliant-corners, and their scaling with a scene's weight, size and gravity.
+The variants add the contact between block and base. Coordinates: ground frame, x horizontal, y up; exudyn's rotation is
+counter-clockwise, so theta = -tilt. The ground motion enters as an inertial load, and x is relative to the ground.
 """
 
 from __future__ import annotations
@@ -40,7 +36,6 @@ from ..loads import placement
 
 if TYPE_CHECKING:
     from analytic import Scene
-    from analytic.rocking import BearingLaw
 
     from ..loads import Couple
 
@@ -50,116 +45,85 @@ LEAST = 1e-9  # travel [m] of a chord where the base was at rest
 DISPLACEMENT, FORCE = exu.OutputVariableType.Displacement, exu.OutputVariableType.Force
 
 
-class Bearing:
-    """All bearings as one spring and damper between ground and base. Within a step the spring follows the law along its
-    chord over the travel of the step before, by which the errors are those of the law as a formula; the history is
-    committed after each step.
-
-    x, z : base displacement [m] and hysteretic force of one bearing [N] at the last accepted step.
-    """
-
-    def __init__(self, law: BearingLaw, displacement: float) -> None:
-        self.law, self.x, self.z, self.connector = law, displacement, law.start(displacement), None
-
-    def spring(self, ahead: float) -> dict[str, list[float]]:
-        """Its parameters for the next step, in which the base is expected to move by `ahead` [m]."""
-        law = self.law
-        chord = law.kb + (law.hysteretic(self.z, ahead) - self.z) / ahead
-        place = self.x - (law.kb * self.x + self.z) / chord
-        return {"stiffness": [law.count * chord, 0.0, 0.0], "offset": [place, 0.0, 0.0]}
-
-    def commit(self, mbs: exu.MainSystem, x: float) -> float:
-        """Move the history to an accepted displacement; the hysteretic force there."""
-        if self.law.unit.memory:
-            ahead = x - self.x
-            self.x, self.z = x, self.law.hysteretic(self.z, ahead)
-            for name, value in self.spring(ahead or LEAST).items():
-                mbs.SetObjectParameter(self.connector, name, value)
-        return self.z
+def standing_until(scene: Scene) -> float:
+    """Time [s] at which a run begins: the beginning of the motion, if everything is at rest until then."""
+    return min(scene.motion.start, scene.duration) if scene.motion and scene.start == Start() else 0.0
 
 
-def _strengths(kept: float) -> tuple[float, float]:
-    """(c, d) of dy/dx = (c + d a/y) s (1 - s) - a/y, s = x/y: rate and tilt over those at the couple's begin.
-
-    a: pull toward the ground, in the same units, small. From y(1) = 1 the rate becomes `kept` times what it would be
-    without the couple, y(0)^2 = kept^2 (1 + 2 a).
-    """
-
-    from scipy.integrate import solve_ivp
-    from scipy.optimize import brentq
-
-    def at_ground(c, d=0.0, a=0.0):
-        def slope(x, y):
-            return (c + d * a / y) * x / y * (1 - x / y) - a / y
-
-        y = solve_ivp(slope, (1.0, 0.0), [1.0], rtol=1e-10, atol=1e-13).y[0, -1]
-        return y - kept * math.sqrt(1 + 2 * a)
-
-    c = brentq(at_ground, -20.0, 20.0)
-    return c, brentq(lambda d: at_ground(c, d, 1e-3), -100.0, 100.0)
-
-
-class Anchor:
-    """State of Coulomb friction: the position at which the block sticks to its base, committed once per accepted step.
-
-    connectors: of the two corners. friction: coefficient. sticking: tangential stiffness of a corner [N/m].
-    """
-
-    def __init__(self, connectors: tuple[Any, ...], friction: float, sticking: float) -> None:
-        self.at, self.connectors, self.friction, self.sticking = 0.0, connectors, friction, sticking
-
-    def commit(self, mbs: exu.MainSystem) -> None:
-        """After a step: move the anchor by what every loaded corner has slid, and a block in flight's with its lower
-        corner."""
-        limits = []  # of friction [N]
-        for connector in self.connectors:
-            across, up, _ = mbs.GetObjectOutput(connector, FORCE)
-            limits.append(-self.friction * up)
-            if abs(across) < SLIDES * limits[-1]:
-                return
-        gaps = [mbs.GetObjectOutput(connector, DISPLACEMENT) for connector in self.connectors]
-        loaded = [(self.at + gap[0], limit / self.sticking) for gap, limit in zip(gaps, limits, strict=True) if limit]
-        if not loaded:
-            loaded = [(self.at + min(gaps, key=lambda gap: gap[1])[0], 0.0)]
-        low, high = min(place - most for place, most in loaded), max(place + most for place, most in loaded)
-        at = min(max(self.at, low), high)
-        if at != self.at:
-            self.at = at
-            for connector in self.connectors:
-                mbs.SetObjectParameter(connector, "offset", [at, 0.0, 0.0])
+def build(scene: Scene, deflected: Sequence[float]) -> Model:
+    """The `Model` of a scene without contact. A standing block is `deflected` by what carries it [m, m, rad]."""
+    start, (x, z, across, up) = scene.start, placement(scene)
+    dx, dz, turn = deflected = (0.0, 0.0, 0.0) if start.tilt or start.tilt_rate else deflected
+    container = exu.SystemContainer()
+    mbs = container.AddSystem()
+    ground = mbs.AddObject(ObjectGround())
+    node = mbs.AddNode(
+        NodeRigidBody2D(
+            referenceCoordinates=[0.0, scene.block.half_height, 0.0],
+            initialCoordinates=[x + dx, z + dz, turn - start.tilt],
+            initialVelocities=[across, up, -start.tilt_rate],
+        )
+    )
+    block = mbs.AddObject(ObjectRigidBody2D(mass=scene.block.mass, inertia=scene.block.centre_inertia, nodeNumber=node))
+    base = ground
+    if scene.base:
+        node = mbs.AddNode(
+            Node1D(
+                referenceCoordinates=[0.0],
+                initialCoordinates=[start.base_displacement],
+                initialVelocities=[start.base_velocity],
+            )
+        )
+        base = mbs.AddObject(ObjectMass1D(mass=scene.base.mass, nodeNumber=node))
+    model = Model(scene, container, mbs, ground, block, base, deflected)
+    if scene.bearings:
+        _add_bearing(model)
+    _add_loads(model)
+    return model
 
 
-class Twist:
-    """The couple of a given restitution, as a torsional connector; see `engines.loads`.
+def _add_bearing(model: Model) -> None:
+    mbs, law = model.mbs, BearingLaw.of(model.scene.bearings)
+    model.bearing = Bearing(law, model.scene.start.base_displacement)
+    markers = [mbs.AddMarker(MarkerBodyPosition(bodyNumber=body)) for body in (model.ground, model.base)]
+    damping = [law.count * law.damping, 0.0, 0.0]
+    spring = ObjectConnectorCartesianSpringDamper(markerNumbers=markers, damping=damping)
+    model.bearing.connector = mbs.AddObject(spring)
+    model.bearing.commit(mbs, model.scene.start.base_displacement)
 
-    It rises and falls as s (1 - s), s = |tilt/rate|/acts, since a step would set the corners swinging. Its part against
-    the pull toward the ground takes that of the time acts before, committed after each step.
-    """
 
-    def __init__(self, couple: Couple, least: float) -> None:
-        """least: tilt [rad] of the block in contact, without couple."""
-        self.couple, self.least, self.connector = couple, least, None
-        self.begin: tuple[float, float] | None = None  # time and speed
+def _add_loads(model: Model) -> None:
+    """Add the block's weight and, under a motion, the base's load, which `stepping.Ground` sets at each step."""
+    scene, mbs = model.scene, model.mbs
+    block = mbs.AddMarker(MarkerBodyMass(bodyNumber=model.block))
+    model.weight = mbs.AddLoad(LoadMassProportional(markerNumber=block, loadVector=[0.0, -scene.gravity, 0.0]))
+    if scene.base and scene.motion:
+        base = mbs.AddMarker(MarkerBodyPosition(bodyNumber=model.base))
+        model.push = mbs.AddLoad(LoadForceVector(markerNumber=base, loadVector=[0.0, 0.0, 0.0]))
 
-    def torque(self, rotation: Any, rate: Any, pull: Any) -> Any:
-        """Symbolic torque against the block's rotation [N m]."""
-        acts, (rate_part, pull_part) = self.couple.acts, _strengths(self.couple.kept)
-        left = -rotation / (acts * rate)
-        part = (rate_part / acts) * rate + pull_part * pull * exu.symbolic.sign(rate)
-        bump = exu.symbolic.IfThenElse(left < 1.0, self.couple.inertia * left * (1.0 - left) * part, Real(0.0))
-        closing = exu.symbolic.IfThenElse(rotation * rate < 0.0, bump, Real(0.0))
-        return exu.symbolic.IfThenElse(exu.symbolic.abs(rotation) > self.least, closing, Real(0.0))
 
-    def commit(self, mbs: exu.MainSystem, t: float, rotation: float, rate: float) -> None:
-        """After a step to time t: the mean pull [rad/s2] since twice `acts` before the landing."""
-        acts, speed = self.couple.acts, abs(rate)
-        if rotation * rate >= 0 or abs(rotation) > 2 * acts * speed:
-            self.begin = None
-        elif abs(rotation) > acts * speed:
-            if self.begin is None:
-                self.begin = t, speed
-            elif t > self.begin[0]:
-                mbs.SetObjectParameter(self.connector, "damping", (speed - self.begin[1]) / (t - self.begin[0]))
+def read_back(model: Model) -> dict[str, tuple[Any, Any]]:
+    """Read values back from exudyn: {name: (value in exudyn, value in the scene)}."""
+    scene, mbs = model.scene, model.mbs
+    block = mbs.GetObject(model.block)
+    values = {
+        "block.mass": (block["mass"], scene.block.mass),
+        "block.centre_inertia": (block["inertia"], scene.block.centre_inertia),
+    }
+    if scene.base:
+        values["base.mass"] = (mbs.GetObject(model.base)["mass"], scene.base.mass)
+    q = np.asarray(mbs.systemData.GetODE2Coordinates())
+    v = np.asarray(mbs.systemData.GetODE2Coordinates_t())
+    values["start.tilt"] = (-q[2], scene.start.tilt - model.deflected[2])
+    values["start.tilt_rate"] = (-v[2], scene.start.tilt_rate)
+    if scene.base:
+        values["start.base_displacement"] = (q[3], scene.start.base_displacement)
+        values["start.base_velocity"] = (v[3], scene.start.base_velocity)
+    values["coordinates"] = (len(q), 4 if scene.base else 3)
+    for (number, name), wanted in model.expected.items():
+        item = mbs.GetObject(number)
+        values[f"{item['objectType']} {number} {name}"] = (item[name], wanted)
+    return values
 
 
 @dataclass
@@ -172,7 +136,7 @@ class Model:
     ground: exu.ObjectIndex
     block: exu.ObjectIndex
     base: exu.ObjectIndex
-    deflected: Sequence[float]  # see `engines.exudyn.scene.build`
+    deflected: Sequence[float]  # see `build`
     bearing: Bearing | None = None
     anchor: Anchor | None = None
     twist: Twist | None = None
@@ -222,94 +186,120 @@ class Model:
         ]
 
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
+class Bearing:
+    """All bearings as one spring and damper between ground and base.
 
-    from analytic import Scene
+    Within a step the spring follows the law along its chord over the travel of the step before; its errors are then
+    those of the law as a formula. The history is committed after each step.
+
+    x, z : base displacement [m] and hysteretic force of one bearing [N] at the last accepted step.
+    """
+
+    def __init__(self, law: BearingLaw, displacement: float) -> None:
+        self.law, self.x, self.z, self.connector = law, displacement, law.start(displacement), None
+        self.memory = law.unit.memory
+
+    def commit(self, mbs: exu.MainSystem, x: float) -> float:
+        """Move history and spring to the displacement x after a step; return the hysteretic force there."""
+        law, ahead = self.law, x - self.x
+        self.x, self.z = x, law.hysteretic(self.z, ahead)
+        ahead = ahead or LEAST
+        chord = law.kb + (law.hysteretic(self.z, ahead) - self.z) / ahead
+        mbs.SetObjectParameter(self.connector, "stiffness", [law.count * chord, 0.0, 0.0])
+        mbs.SetObjectParameter(self.connector, "offset", [x - (law.kb * x + self.z) / chord, 0.0, 0.0])
+        return self.z
 
 
-def standing_until(scene: Scene) -> float:
-    """Time [s] at which a run begins: the beginning of the motion, if everything is at rest until then."""
-    return min(scene.motion.start, scene.duration) if scene.motion and scene.start == Start() else 0.0
+class Anchor:
+    """State of Coulomb friction: the position at which the block sticks to its base.
+
+    It is committed once per accepted step.
+
+    connectors: of the two corners. friction: coefficient. sticking: tangential stiffness of a corner [N/m].
+    """
+
+    def __init__(self, connectors: tuple[Any, ...], friction: float, sticking: float) -> None:
+        self.at, self.connectors, self.friction, self.sticking = 0.0, connectors, friction, sticking
+
+    def commit(self, mbs: exu.MainSystem) -> None:
+        """Move the anchor after a step.
+
+        It moves by what every loaded corner has slid, and goes with the lower corner of a block in flight.
+        """
+        limits = []  # of friction [N]
+        for connector in self.connectors:
+            across, up, _ = mbs.GetObjectOutput(connector, FORCE)
+            limits.append(-self.friction * up)
+            if abs(across) < SLIDES * limits[-1]:
+                return
+        gaps = [mbs.GetObjectOutput(connector, DISPLACEMENT) for connector in self.connectors]
+        loaded = [(self.at + gap[0], limit / self.sticking) for gap, limit in zip(gaps, limits, strict=True) if limit]
+        if not loaded:
+            loaded = [(self.at + min(gaps, key=lambda gap: gap[1])[0], 0.0)]
+        low, high = min(place - most for place, most in loaded), max(place + most for place, most in loaded)
+        at = min(max(self.at, low), high)
+        if at != self.at:
+            self.at = at
+            for connector in self.connectors:
+                mbs.SetObjectParameter(connector, "offset", [at, 0.0, 0.0])
 
 
-def build(scene: Scene, deflected: Sequence[float]) -> Model:
-    """The `Model` of a scene without contact. A standing block is `deflected` by what carries it [m, m, rad]."""
-    start, (x, z, across, up) = scene.start, placement(scene)
-    dx, dz, turn = deflected = (0.0, 0.0, 0.0) if start.tilt or start.tilt_rate else deflected
-    container = exu.SystemContainer()
-    mbs = container.AddSystem()
-    ground = mbs.AddObject(ObjectGround())
-    node = mbs.AddNode(
-        NodeRigidBody2D(
-            referenceCoordinates=[0.0, scene.block.half_height, 0.0],
-            initialCoordinates=[x + dx, z + dz, turn - start.tilt],
-            initialVelocities=[across, up, -start.tilt_rate],
+class Twist:
+    """The couple of a given restitution, as a torsional connector; see `engines.loads`.
+
+    It rises and falls as s (1 - s), s = |tilt/rate|/acts, since a step would set the corners swinging. Its part against
+    the pull toward the ground takes that of the time acts before, committed after each step.
+    """
+
+    def __init__(self, couple: Couple, least: float) -> None:
+        """least: tilt [rad] below which no couple acts, as the block is in contact."""
+        self.couple, self.least, self.connector = couple, least, None
+        self.begin: tuple[float, float] | None = None  # time and speed
+
+    def torque(self, rotation: Any, rate: Any, pull: Any) -> Any:
+        """Symbolic torque against the block's rotation [N m]."""
+        acts, (rate_part, pull_part) = self.couple.acts, _strengths(self.couple.kept)
+        remaining = -rotation / (acts * rate)
+        part = (rate_part / acts) * rate + pull_part * pull * exu.symbolic.sign(rate)
+        bump = exu.symbolic.IfThenElse(
+            remaining < 1.0, self.couple.inertia * remaining * (1.0 - remaining) * part, Real(0.0)
         )
-    )
-    block = mbs.AddObject(ObjectRigidBody2D(mass=scene.block.mass, inertia=scene.block.centre_inertia, nodeNumber=node))
-    base = ground
-    if scene.base:
-        node = mbs.AddNode(
-            Node1D(
-                referenceCoordinates=[0.0],
-                initialCoordinates=[start.base_displacement],
-                initialVelocities=[start.base_velocity],
-            )
-        )
-        base = mbs.AddObject(ObjectMass1D(mass=scene.base.mass, nodeNumber=node))
-    model = Model(scene, container, mbs, ground, block, base, deflected)
-    if scene.bearings:
-        _add_bearing(model)
-    _add_loads(model)
-    return model
+        closing = exu.symbolic.IfThenElse(rotation * rate < 0.0, bump, Real(0.0))
+        return exu.symbolic.IfThenElse(exu.symbolic.abs(rotation) > self.least, closing, Real(0.0))
+
+    def commit(self, mbs: exu.MainSystem, t: float, rotation: float, rate: float) -> None:
+        """Set the mean pull [rad/s2] since twice `acts` before the landing, after a step to time t."""
+        acts, speed = self.couple.acts, abs(rate)
+        if rotation * rate >= 0 or abs(rotation) > 2 * acts * speed:
+            self.begin = None
+        elif abs(rotation) > acts * speed:
+            if self.begin is None:
+                self.begin = t, speed
+            elif t > self.begin[0]:
+                mbs.SetObjectParameter(self.connector, "damping", (speed - self.begin[1]) / (t - self.begin[0]))
 
 
-def _add_bearing(model: Model) -> None:
-    mbs, law = model.mbs, BearingLaw.of(model.scene.bearings)
-    model.bearing = Bearing(law, model.scene.start.base_displacement)
-    markers = [mbs.AddMarker(MarkerBodyPosition(bodyNumber=body)) for body in (model.ground, model.base)]
-    damping = [law.count * law.damping, 0.0, 0.0]
-    spring = ObjectConnectorCartesianSpringDamper(markerNumbers=markers, damping=damping, **model.bearing.spring(LEAST))
-    model.bearing.connector = mbs.AddObject(spring)
+def _strengths(kept: float) -> tuple[float, float]:
+    """Strengths (c, d) of a couple that leaves the share `kept` of a rate at the ground.
 
+    dy/dx = (c + d a/y) s (1 - s) - a/y, s = x/y; y, x: rate and tilt over those at the couple's begin. a: pull toward
+    the ground, in the same units, small. From y(1) = 1 the rate becomes `kept` times what it would be
+    without the couple, y(0)^2 = kept^2 (1 + 2 a).
+    """
 
-def _add_loads(model: Model) -> None:
-    """Weight of the block, and room for the inertia of the base in the ground's frame; see `Ground`."""
-    scene, mbs = model.scene, model.mbs
-    block = mbs.AddMarker(MarkerBodyMass(bodyNumber=model.block))
-    model.weight = mbs.AddLoad(LoadMassProportional(markerNumber=block, loadVector=[0.0, -scene.gravity, 0.0]))
-    if scene.base and scene.motion:
-        base = mbs.AddMarker(MarkerBodyPosition(bodyNumber=model.base))
-        model.push = mbs.AddLoad(LoadForceVector(markerNumber=base, loadVector=[0.0, 0.0, 0.0]))
+    from scipy.integrate import solve_ivp
+    from scipy.optimize import brentq
 
+    def at_ground(c, d=0.0, a=0.0):
+        def slope(x, y):
+            return (c + d * a / y) * x / y * (1 - x / y) - a / y
 
-def read_back(model: Model) -> dict[str, tuple[Any, Any]]:
-    """{name: (value in exudyn, value in the scene)}."""
-    scene, mbs = model.scene, model.mbs
-    block = mbs.GetObject(model.block)
-    values = {
-        "block.mass": (block["mass"], scene.block.mass),
-        "block.centre_inertia": (block["inertia"], scene.block.centre_inertia),
-    }
-    if scene.base:
-        values["base.mass"] = (mbs.GetObject(model.base)["mass"], scene.base.mass)
-    q = np.asarray(mbs.systemData.GetODE2Coordinates())
-    v = np.asarray(mbs.systemData.GetODE2Coordinates_t())
-    values["start.tilt"] = (-q[2], scene.start.tilt - model.deflected[2])
-    values["start.tilt_rate"] = (-v[2], scene.start.tilt_rate)
-    if scene.base:
-        values["start.base_displacement"] = (q[3], scene.start.base_displacement)
-        values["start.base_velocity"] = (v[3], scene.start.base_velocity)
-    values["coordinates"] = (len(q), 4 if scene.base else 3)
-    for (number, name), wanted in model.expected.items():
-        item = mbs.GetObject(number)
-        values[f"{item['objectType']} {number} {name}"] = (item[name], wanted)
-    return values
+        y = solve_ivp(slope, (1.0, 0.0), [1.0], rtol=1e-10, atol=1e-13).y[0, -1]
+        return y - kept * math.sqrt(1 + 2 * a)
 
+    c = brentq(at_ground, -20.0, 20.0)
+    return c, brentq(lambda d: at_ground(c, d, 1e-3), -100.0, 100.0)
 
-if TYPE_CHECKING:
-    from analytic import Scene
 
 # The block for which the default values were determined: the Caryatid, mass [kg], radius [m], gravity [m/s2].
 MEASURED = 3172.05, 1.0884, 9.81

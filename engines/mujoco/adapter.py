@@ -6,9 +6,7 @@ a0. There is no coefficient of restitution. With b = 1/step a corner stops in th
 its velocity. The impact is then that of eq. (7), as the other corner may lift in the same solve. k only has to remove
 the penetration slowly.
 
-Tested with mujoco 4.0.0; diagexact needs 3.9.
-
-The scene as a MuJoCo model.
+The scene is an MJCF model. Tested with mujoco 4.0.0; diagexact needs 3.9.
 """
 
 from __future__ import annotations
@@ -58,7 +56,7 @@ def coordinates(scene: Scene) -> tuple[list[float], list[float]]:
 
 
 def _ground(scene: Scene, geom: str = "") -> str:
-    """MJCF of the support of the block, with its top at z = 0: a plane, or a slab on a slide joint for a base."""
+    """The support of the block as MJCF, its top at z = 0: a plane or, for a base, a slab on a slide joint."""
     if scene.base is None:
         return f'<geom type="plane" size="0 0 1" {geom}/>'
     reach, depth = 100 * scene.block.radius, scene.block.radius  # a plane cannot move in MuJoCo
@@ -70,7 +68,7 @@ def _ground(scene: Scene, geom: str = "") -> str:
 
 
 def contact_reference(step: float, recovery: float) -> tuple[float, float]:
-    """solref for a step [s]: -stiffness and -damping per unit of mass that stop a corner within this step.
+    """MuJoCo's solref for a step [s]: -stiffness and -damping per unit of mass that stop a corner within it.
 
     A corner with penetration r then moves up at r min(MOST_RECOVERY/step, recovery), whatever its speed was.
     """
@@ -167,7 +165,7 @@ def check_readback(
 
 
 class MujocoBodies:
-    """Model and data; recovery: see `contact_reference`, None for MuJoCo's default contact."""
+    """MuJoCo's model and data of a scene; recovery: see `contact_reference`, None for the default contact."""
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, recovery: float | None) -> None:
         self.model, self.data, self.recovery, self.used = model, data, recovery, model.opt.timestep
@@ -201,10 +199,6 @@ class MujocoBodies:
     def weigh(self, added: float) -> None:
         """See `engines.loop.Bodies`."""
         self.model.dof_M0[0] = self.model.body_mass[1] = self.base.mass + added
-
-
-if TYPE_CHECKING:
-    from analytic import Scene
 
 
 # tests/engines/test_physics.py shows it: friction and contact are one convex problem, in which a sliding contact opens.
@@ -255,11 +249,11 @@ def versions() -> dict[str, str]:
 def run(scene: Scene, variant: str, settings: Settings) -> Run:
     """The `Run` of a scene."""
     edge = FIRST_CONTACT * scene.block.slenderness
-    said: list[str] = []
+    messages: list[str] = []
     handler = mujoco.get_mju_user_warning()
-    mujoco.set_mju_user_warning(said.append)  # otherwise MuJoCo writes a log file into the working directory
+    mujoco.set_mju_user_warning(messages.append)  # otherwise MuJoCo writes a log file into the working directory
     try:
-        ran = run_of(
+        result = run_of(
             scene,
             settings,
             lambda step: build(scene, step, isinstance(settings, FirstScript)),
@@ -269,8 +263,8 @@ def run(scene: Scene, variant: str, settings: Settings) -> Run:
         return Run(None, 0, 0.0, Failure("MuJoCo does not run the scene", str(error)))
     finally:
         mujoco.set_mju_user_warning(handler)
-    if not said:
-        return ran
-    words = "; ".join(line.strip() for line in said)  # of a bad state, at which MuJoCo would reset to the start
-    message = f"{ran.failure.message}. {words}" if ran.failure else words
-    return replace(ran, failure=Failure(ran.failure.reason if ran.failure else "MuJoCo warned", message))
+    if not messages:
+        return result
+    words = "; ".join(line.strip() for line in messages)  # of a bad state, at which MuJoCo would reset to the start
+    message = f"{result.failure.message}. {words}" if result.failure else words
+    return replace(result, failure=Failure(result.failure.reason if result.failure else "MuJoCo warned", message))

@@ -1,8 +1,7 @@
 """PyBullet (Bullet's multibody solver): ``get_engine("pybullet").simulate(scene, variant=...)``.
 
-Tolerances of the variants of PyBullet; the scenes are those of the tolerance table.
-
-Mistakes in a script for PyBullet, by what they concern.
+The record, the tolerances of its variants in the scenes of the tolerance table, and mistakes in a script for PyBullet
+by what they concern.
 """
 
 from ..contract import HELD, LARGE_STEP, NO_MATTER, READING, ROUNDING, STEP, Engine, Mistake, ToleranceRow

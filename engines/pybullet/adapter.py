@@ -1,21 +1,10 @@
 """PyBullet's variants: Bullet computes contact and impact. Tested with PyBullet 3.2.7.
 
-Import of PyBullet without the line that it prints.
-
-Links and joints in Bullet without its default damping and motors.
-
-A scene built in Bullet, and read back to check the values that Bullet uses.
+In order: joints without Bullet's default damping and motors; the scene of the tuned variants (`BulletBodies`), which is
+read back to check the values that Bullet uses; the scene of a first script with the API's defaults (`FreeBox`);
+Bullet's calls and the chosen numbers of each variant; the variants; the run.
 
 The pitfalls named in the comments were observed with PyBullet 3.2.7.
-
-The scene as in a first script for PyBullet, with the API's defaults.
-
-They include damping of .04 on every body, a motor of 1 N s per step in the base's joint, friction of .5 times .5, and
-contact parameters for games.
-
-Bullet's calls in each variant, for `engines.contract.Variant.calls`.
-
-Chosen numbers of impact-aware and their meaning, for `engines.contract.Variant.constants`.
 """
 
 from __future__ import annotations
@@ -25,8 +14,7 @@ from dataclasses import replace
 from importlib.metadata import version
 from typing import TYPE_CHECKING
 
-import numpy  # noqa: F401 imported before PyBullet, which would load it slowly
-import numpy as np
+import numpy as np  # before PyBullet, which would load it slowly
 
 from analytic.response import Caution, Failure
 
@@ -61,8 +49,10 @@ __all__ = ["pybullet"]
 
 
 def chain(client: int, links: list[tuple], fixed: int = -1, **options: int) -> int:
-    """A multibody of links (mass, shape, position, joint, axis, parent) on a fixed body of shape `fixed`, by default of
-    none, at the origin."""
+    """Create a multibody of links (mass, shape, position, joint, axis, parent); return its number.
+
+    The links stand on a fixed body at the origin, of shape `fixed`, by default of none.
+    """
     masses, shapes, positions, joints, axes, parents = (list(column) for column in zip(*links, strict=True))
     count = len(links)
     return pybullet.createMultiBody(
@@ -197,18 +187,18 @@ class BulletBodies:
 
     def _check(self, scene: Scene, rough: float, links: list[tuple], states: list[tuple[float, float]]) -> None:
         """Compare what Bullet reports with what the scene needs; raises `Mismatch` naming what differs."""
-        told = [pybullet.getDynamicsInfo(self.body, link, self.client) for link in (-1, *self.joints)]
+        dynamics = [pybullet.getDynamicsInfo(self.body, link, self.client) for link in (-1, *self.joints)]
         joints = [pybullet.getJointInfo(self.body, joint, self.client) for joint in self.joints]
-        now = pybullet.getJointStates(self.body, self.joints, self.client)
+        moved = pybullet.getJointStates(self.body, self.joints, self.client)
         require(
             [
-                ("masses", [one[0] for one in told], [0.0, *(link[0] for link in links)]),
-                ("friction", [one[1] for one in told], rough),
-                ("restitution", [one[5] for one in told], 0.0),
-                ("block: inertia", told[TILT + 1][2], scene.block.centre_inertia),
-                ("joints: types", [one[2] for one in joints], [link[3] for link in links]),
-                ("joints: damping and friction", [one[6:8] for one in joints], 0.0),
-                ("start", [one[:2] for one in now], states[: len(links)]),
+                ("masses", [row[0] for row in dynamics], [0.0, *(link[0] for link in links)]),
+                ("friction", [row[1] for row in dynamics], rough),
+                ("restitution", [row[5] for row in dynamics], 0.0),
+                ("block: inertia", dynamics[TILT + 1][2], scene.block.centre_inertia),
+                ("joints: types", [row[2] for row in joints], [link[3] for link in links]),
+                ("joints: damping and friction", [row[6:8] for row in joints], 0.0),
+                ("start", [row[:2] for row in moved], states[: len(links)]),
             ]
         )
 
@@ -246,9 +236,6 @@ class BulletBodies:
         """See `engines.loop.Bodies`."""
         pybullet.changeDynamics(self.body, BASE, mass=self.mass + added, physicsClientId=self.client)
 
-
-if TYPE_CHECKING:
-    from analytic import Scene
 
 THICKNESS = 1.0  # m, of the slab
 # Gap [m] below which Bullet keeps contact points: its own default. It is global to the process and not returned by the
@@ -337,7 +324,7 @@ EACH_STEP = {
 
 
 def impact_aware(settings: ImpactAware) -> dict[str, str]:
-    """Calls of impact-aware."""
+    """Bullet's calls in impact-aware, for `engines.contract.Variant.calls`."""
     largest, smallest = settings.largest_step, SMALLEST_STEP * (settings.largest_step / settings.balanced_step) ** 2
     return {
         **CHAIN,
@@ -353,12 +340,12 @@ def impact_aware(settings: ImpactAware) -> dict[str, str]:
 
 
 def fixed_step(settings: FixedStep) -> dict[str, str]:
-    """Calls of fixed-step."""
+    """Bullet's calls in fixed-step."""
     return {**CHAIN, f"step = {settings.step:g} * scale": "s; the one before is 0 at the start", **EACH_STEP}
 
 
 def first_script(settings: FirstScript) -> dict[str, str]:
-    """Calls of first-script."""
+    """Bullet's calls in first-script."""
     return {
         f"step = {settings.step:g}": "s",
         "setTimeStep(step)": "",
@@ -385,10 +372,6 @@ CONSTANTS = {
     f"{HERE}:STANDING_REST": "the same on two corners",
     f"{HERE}:MOST_ITERATIONS": "iterations of the contact solver, at most",
 }
-
-
-if TYPE_CHECKING:
-    from analytic import Scene
 
 
 TUNED, FIXED = ImpactAware(1e-3, 1e-3), FixedStep(1e-4)
@@ -449,7 +432,7 @@ def run(scene: Scene, variant: str, settings: Settings) -> Run:
     plain, edge, friction = isinstance(settings, FirstScript), FIRST_CONTACT * scene.block.slenderness, scene.friction
     client = pybullet.connect(pybullet.DIRECT)
     try:
-        ran = run_of(
+        result = run_of(
             scene,
             settings,
             lambda step: FreeBox(client, scene, step) if plain else BulletBodies(client, scene),
@@ -461,19 +444,19 @@ def run(scene: Scene, variant: str, settings: Settings) -> Run:
     finally:
         pybullet.disconnect(client)
     if plain:
-        return _limited(ran)
+        return _fail_if_limited(result)
     if friction is not None and friction > FRICTION:
         words = f"friction = {friction:.4g} is above {FRICTION:g}: Bullet takes it as {FRICTION:g}"
-        ran = replace(ran, warnings=(Caution("engine", words, "friction", friction, FRICTION),))
-    return ran
+        result = replace(result, warnings=(Caution("engine", words, "friction", friction, FRICTION),))
+    return result
 
 
-def _limited(ran: Run) -> Run:
-    """A first script's run, failed where Bullet may have limited a velocity, as it does without a message."""
-    if ran.trace is None or ran.failure:
-        return ran
-    fastest = max(np.abs(ran.trace.tilt_rate).max(), np.abs(ran.trace.base_velocity).max())
+def _fail_if_limited(result: Run) -> Run:
+    """Make a first script's run a failure where Bullet may have limited a velocity, which it does silently."""
+    if result.trace is None or result.failure:
+        return result
+    fastest = max(np.abs(result.trace.tilt_rate).max(), np.abs(result.trace.base_velocity).max())
     if fastest <= 0.1 * DEFAULT_MOST_VELOCITY:
-        return ran
+        return result
     words = f"{fastest:.3g} m/s or rad/s; its limit: {DEFAULT_MOST_VELOCITY:g}"
-    return replace(ran, failure=Failure("Bullet limits velocities", words))
+    return replace(result, failure=Failure("Bullet limits velocities", words))

@@ -22,7 +22,10 @@ CONTACT = 1e-6  # tilt below which the block counts as in flat contact, over the
 
 
 def simulate(scene: Scene, *, step: float, history: bool = True) -> Response:
-    """The response; step [s]; history: keep it. A scene without a duration runs until its outcome is decided."""
+    """The response of a scene with a free block.
+
+    step: [s]. history: whether to keep it. A scene without a duration runs until its outcome is decided.
+    """
     if scene.duration is None:
         return until_decided(lambda cut: simulate(cut, step=step, history=history), scene)
     client = pybullet.connect(pybullet.DIRECT)
@@ -30,12 +33,12 @@ def simulate(scene: Scene, *, step: float, history: bool = True) -> Response:
         run = run_of(
             scene,
             FirstScript(step),
-            lambda step: _undone(FreeBox(client, scene, step), scene, step),
+            lambda step: _without_defaults(FreeBox(client, scene, step), scene, step),
             lambda rows: trace_of(rows, scene, CONTACT * scene.block.slenderness),
         )
     finally:
         pybullet.disconnect(client)
-    given: dict[str, Any] = dict(
+    labels: dict[str, Any] = dict(
         engine="pybullet",
         variant="3-D free block",
         cpu_seconds=run.cpu_seconds,
@@ -44,11 +47,11 @@ def simulate(scene: Scene, *, step: float, history: bool = True) -> Response:
         versions=versions(),
     )
     if run.trace is None:
-        return failed_response(scene, run.failure, **given)
-    return observe(scene, run.trace, history=history, failure=run.failure, ended=run.ended, **given)
+        return failed_response(scene, run.failure, **labels)
+    return observe(scene, run.trace, history=history, failure=run.failure, ended=run.ended, **labels)
 
 
-def _undone(box, scene, step):
+def _without_defaults(box, scene, step):
     """Set contact, damping and friction of the box as in the planar variants."""
     client, slab = box.client, box.slab
     pybullet.setPhysicsEngineParameter(

@@ -1,14 +1,12 @@
 """pymunk's variants: Chipmunk's iterative contact solver computes contact and impact, in 2-D and double precision.
 
-Tested with pymunk 7.3.1.
+The scene is built as a user of pymunk would write it: a free box on the ground, or on a slab that a groove joint
+guides. In Chipmunk's plane x points to the right, y up, and angles are counter-clockwise: angle = -tilt.
 
-The scene as a user of pymunk would write it: a free box on the ground, or on a slab that a groove joint guides.
-
-In Chipmunk's plane x points to the right, y up, and angles are counter-clockwise: angle = -tilt. A first script keeps
-pymunk's defaults, except that a friction is given, as the default of 0 lets every block slide. The tuned variant sets
-three parameters of Chipmunk's manual: `iterations` ("increase for accuracy"), `collision_slop` ("the amount of overlap
-between shapes that is allowed", .1 m by default, for pixels), and `collision_bias`, the rate at which overlap is
-removed.
+A first script keeps pymunk's defaults, except that a friction is given, as the default of 0 lets every block slide. The
+tuned variant sets three parameters of Chipmunk's manual: `iterations` ("increase for accuracy"), `collision_slop` ("the
+amount of overlap between shapes that is allowed", .1 m by default, for pixels), and `collision_bias`, the rate at which
+overlap is removed. Tested with pymunk 7.3.1.
 """
 
 from __future__ import annotations
@@ -42,7 +40,7 @@ def iterations(scene: Scene) -> int:
 
 
 class ChipmunkBodies:
-    """Chipmunk's space with the block and, as the base, the slab.
+    """Chipmunk's space with the block and, for a base, the slab.
 
     A call of Chipmunk first moves all bodies at their velocities, then finds contacts, then applies impulses. The
     impulse thus lies between this step and the next one, whose length must be known before the call. The state that is
@@ -136,10 +134,6 @@ class ChipmunkBodies:
                 ("base: velocity", tuple(self.slab.velocity), (start.base_velocity, 0.0)),
             ]
         require(expected)
-
-
-if TYPE_CHECKING:
-    from analytic import Scene
 
 
 VARIANTS = {

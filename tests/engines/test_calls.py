@@ -29,28 +29,28 @@ class Call:
     values: list
     named: dict = field(default_factory=dict)
 
-    def is_told(self, told):
+    def matches(self, call):
         """Whether it is the call that is told, of which the last arguments in order may be left out."""
         return (
-            self.name == told.name
-            and same(told.values, self.values[: len(told.values)])
-            and all(name in self.named and same(value, self.named[name]) for name, value in told.named.items())
+            self.name == call.name
+            and same(call.values, self.values[: len(call.values)])
+            and all(name in self.named and same(value, self.named[name]) for name, value in call.named.items())
         )
 
 
-def same(told, made):
+def same(wanted, made):
     """Whether values are equal, but for the digits that are told."""
-    if told is ANY or isinstance(told, str):
-        return told == made
-    if hasattr(told, "__iter__"):
-        told, made = list(told), list(made)
-        return len(told) == len(made) and all(map(same, told, made))
-    return math.isclose(told, made, rel_tol=1e-5, abs_tol=1e-12)
+    if wanted is ANY or isinstance(wanted, str):
+        return wanted == made
+    if hasattr(wanted, "__iter__"):
+        wanted, made = list(wanted), list(made)
+        return len(wanted) == len(made) and all(map(same, wanted, made))
+    return math.isclose(wanted, made, rel_tol=1e-5, abs_tol=1e-12)
 
 
-def told(calls, names):
+def described(calls, names):
     """(calls, {attribute: value}) that a record names, in order; what it assigns to a name is a name from there on."""
-    found, attributes = [], {}
+    records, attributes = [], {}
     for text in calls:
         (node,) = ast.parse(text).body
         if isinstance(node, ast.Assign):
@@ -58,10 +58,10 @@ def told(calls, names):
             (attributes if "." in target else names)[target] = eval(ast.unparse(node.value), names)
         else:
             call = node.value
-            values = [eval(ast.unparse(one), names) for one in call.args]
-            named = {one.arg: eval(ast.unparse(one.value), names) for one in call.keywords}
-            found.append(Call(call.func.id, values, named))
-    return found, attributes
+            values = [eval(ast.unparse(argument), names) for argument in call.args]
+            named = {keyword.arg: eval(ast.unparse(keyword.value), names) for keyword in call.keywords}
+            records.append(Call(call.func.id, values, named))
+    return records, attributes
 
 
 def numbers(given):
@@ -89,11 +89,11 @@ def made(monkeypatch):
     """Calls that change something in Bullet, and at each step the joints' states before it."""
     from engines.pybullet.adapter import pybullet
 
-    found = []
+    calls = []
 
     def watch(name, function):
         def watching(*values, **named):
-            found.append(Call(name, list(values), named))
+            calls.append(Call(name, list(values), named))
             return function(*values, **named)
 
         monkeypatch.setattr(pybullet, name, watching)
@@ -101,17 +101,17 @@ def made(monkeypatch):
     for name, function in list(vars(pybullet).items()):
         if callable(function) and name[0].islower() and not name.startswith(("get", "connect", "disconnect")):
             watch(name, function)
-    return found
+    return calls
 
 
 def each_step(made, rows):
     """(calls that build the scene and those of a step, its begin, length, the one before, row before it) of each."""
-    ends = [i + 1 for i, one in enumerate(made) if one.name == "stepSimulation"]
-    build = [one for one in made[: ends[0]] if one.name not in ("setGravity", "applyExternalForce", KEPT)]
+    ends = [i + 1 for i, call in enumerate(made) if call.name == "stepSimulation"]
+    build = [call for call in made[: ends[0]] if call.name not in ("setGravity", "applyExternalForce", KEPT)]
     kept = []
     for number, (a, b) in enumerate(zip([0, *ends], ends, strict=False)):
         t, step = rows[number + 1][0] - rows[number + 1][1], rows[number + 1][1]
-        kept = [one for one in made[a:b] if one.name == KEPT] or kept
+        kept = [call for call in made[a:b] if call.name == KEPT] or kept
         yield build + kept + made[a:b], t, step, rows[number][1], rows[number]
 
 
@@ -140,14 +140,14 @@ def test_bullet_is_called_as_its_record_says(made, monkeypatch, variant):
         mean = (velocity(t + step / 2) - velocity(t - before / 2)) / ((step + before) / 2)
         names = {**numbers(ISOLATED), **constants, **dict.fromkeys(ANYTHING, ANY), "before": before, "corners": gaps}
         names |= {"a": MOTION.acceleration(t) if plain else mean, "force": law.force(row[4], row[6])}
-        found, _ = told(calls, names)
+        described_calls, _ = described(calls, names)
         lengths.append((names["step"], step))
         if not same(*lengths[-1]):
             break
-        assert not [one for one in found if not any(call.is_told(one) for call in group)], (t, before)
+        assert not [each for each in described_calls if not any(call.matches(each) for call in group)], (t, before)
         for call in group:
-            of = [one for one in found if call.is_told(Call(one.name, one.values))]
-            assert of and call.named.keys() - LEFT_OUT <= set().union(*(one.named for one in of)), call
+            alike = [each for each in described_calls if call.matches(Call(each.name, each.values))]
+            assert alike and call.named.keys() - LEFT_OUT <= set().union(*(each.named for each in alike)), call
     assert len(rows) - 2 <= len(lengths) > 10  # the last step ends with the run
     if variant == "impact-aware":
         assert len({step for _, step in lengths}) > 20 and min(lengths)[1] < 1e-6
@@ -167,36 +167,35 @@ OF_THE_SYSTEM = {"name", "markerNumbers", "nodeNumber", "trianglePoints", "offse
 
 def flat(settings, above=""):
     """{dotted name: value} of exudyn's settings."""
-    found = {}
+    values = {}
     for name, value in settings.items():
-        found |= flat(value, f"{above}{name}.") if isinstance(value, dict) else {f"{above}{name}": value}
-    return found
+        values |= flat(value, f"{above}{name}.") if isinstance(value, dict) else {f"{above}{name}": value}
+    return values
 
 
 def contacts(mbs, kinds):
     """(displacement, velocity, force) of the connectors of the corners, where a variant has them: the last two."""
-    of = range(mbs.systemData.NumberOfObjects())
-    springs = [one for one in of if mbs.GetObject(one)["objectType"] == "ConnectorCartesianSpringDamper"][1:]
+    objects = range(mbs.systemData.NumberOfObjects())
+    springs = [i for i in objects if mbs.GetObject(i)["objectType"] == "ConnectorCartesianSpringDamper"][1:]
     return [
-        [mbs.GetObjectOutput(one, kind) for kind in (kinds.Displacement, kinds.Velocity, kinds.Force)]
-        for one in springs
+        [mbs.GetObjectOutput(i, kind) for kind in (kinds.Displacement, kinds.Velocity, kinds.Force)] for i in springs
     ]
 
 
 def items(mbs):
     """(call that makes it, names of what is not as usual) of the objects, nodes and loads of a system."""
-    of, found = mbs.systemData, []
+    system, objects = mbs.systemData, []
     for kind, count, get, usual in (
-        ("Object", of.NumberOfObjects(), mbs.GetObject, mbs.GetObjectDefaults),
-        ("Node", of.NumberOfNodes(), mbs.GetNode, mbs.GetNodeDefaults),
-        ("Load", of.NumberOfLoads(), mbs.GetLoad, mbs.GetLoadDefaults),
+        ("Object", system.NumberOfObjects(), mbs.GetObject, mbs.GetObjectDefaults),
+        ("Node", system.NumberOfNodes(), mbs.GetNode, mbs.GetNodeDefaults),
+        ("Load", system.NumberOfLoads(), mbs.GetLoad, mbs.GetLoadDefaults),
     ):
         for item in map(get, range(count)):
             name = item[f"{kind.lower()}Type"]
-            own = {key for key, value in item.items() if str(value) != str(usual(name).get(key)) and key[0] != "V"}
+            changed = {key for key, value in item.items() if str(value) != str(usual(name).get(key)) and key[0] != "V"}
             name = "ContactSphereTriangle" if "trianglePoints" in item else name  # exudyn 1.13 tells another
-            found.append((Call(kind + name, [], item), own - OF_THE_SYSTEM - {f"{kind.lower()}Type"}))
-    return found
+            objects.append((Call(kind + name, [], item), changed - OF_THE_SYSTEM - {f"{kind.lower()}Type"}))
+    return objects
 
 
 @pytest.mark.parametrize("variant", ["compliant-corners", "native-contact"])
@@ -209,9 +208,9 @@ def test_exudyn_is_called_as_its_record_says(monkeypatch, variant):
         solve = solver.SolveSystem
 
         def watching(self, mbs, settings):
-            way = ("explicit", "implicit")["Implicit" in solver.__name__]
+            integrator = ("explicit", "implicit")["Implicit" in solver.__name__]
             done = solve(self, mbs, settings)
-            solved[way] = flat(settings.GetDictionary()), items(mbs), contacts(mbs, exu.OutputVariableType)
+            solved[integrator] = flat(settings.GetDictionary()), items(mbs), contacts(mbs, exu.OutputVariableType)
             return done
 
         monkeypatch.setattr(solver, "SolveSystem", watching)
@@ -222,23 +221,28 @@ def test_exudyn_is_called_as_its_record_says(monkeypatch, variant):
     assert engine.run(given, variant, engine.variants[variant].settings).failure is None
     assert solved.keys() == {"implicit"} | ({"explicit"} if variant == "compliant-corners" else set())
     usual, calls = flat(exu.SimulationSettings().GetDictionary()), engine.variants[variant].calls
-    for way, (settings, made, forces) in solved.items():
+    for integrator, (settings, made, forces) in solved.items():
         start, end = settings["timeIntegration.startTime"], settings["timeIntegration.endTime"]
         names = {**numbers(given), "DynamicSolverType": exu.DynamicSolverType, "start": start, "end": end}
         names |= dict.fromkeys(("f", "mbs", "name", "item", "chord", "dampers"), ANY)
         for where, rate, force in forces:  # of the corners
             names |= {"depth": -where[1], "rise": rate[1], "across": where[0], "slide": rate[0]}
-            assert same(told(calls, dict(names))[0][-1].named["springForceUserFunction"], force)
+            assert same(described(calls, dict(names))[0][-1].named["springForceUserFunction"], force)
         assert bool(forces) == (variant == "compliant-corners")
-        found, attributes = told(calls, names)
-        found = [one for one in found if one.name != "CreateSymbolicUserFunction"]
+        described_calls, attributes = described(calls, names)
+        described_calls = [each for each in described_calls if each.name != "CreateSymbolicUserFunction"]
         wanted = {
-            name.partition(".")[2]: value for name, value in attributes.items() if name.startswith((way, "settings"))
+            name.partition(".")[2]: value
+            for name, value in attributes.items()
+            if name.startswith((integrator, "settings"))
         }
-        assert all(same(value, settings[name]) for name, value in wanted.items()), (way, wanted)
+        assert all(same(value, settings[name]) for name, value in wanted.items()), (integrator, wanted)
         others = {name for name, value in settings.items() if str(value) != str(usual[name])}
-        assert {one for one in others if not one.startswith(WITHOUT_OUTPUT)} <= {*wanted, *OF_THE_RUN}
-        for one in found[: -1 if forces else None]:  # the last was compared at each corner
-            assert any(call.is_told(one) for call, _ in made), one
-        for call, own in made:
-            assert own <= set().union(*(one.named for one in found if one.name == call.name)), (call.name, own)
+        assert {each for each in others if not each.startswith(WITHOUT_OUTPUT)} <= {*wanted, *OF_THE_RUN}
+        for each in described_calls[: -1 if forces else None]:  # the last was compared at each corner
+            assert any(call.matches(each) for call, _ in made), each
+        for call, changed in made:
+            assert changed <= set().union(*(each.named for each in described_calls if each.name == call.name)), (
+                call.name,
+                changed,
+            )

@@ -42,15 +42,15 @@ def beside(change):
     return Scene(block=BLOCK, start=Start(tilt=BLOCK.slenderness * (1 - change)))
 
 
-def found(scene, **changed):
+def differences_with(scene, **changed):
     """The differences of the model's own response, changed."""
     response = compare(scene, replace(run_of(scene), **changed))
     assert response.comparable == COMPARED
     return response.differences
 
 
-def told(scene, **changed):
-    return [one.quantity for one in found(scene, **changed)]
+def quantities_with(scene, **changed):
+    return [difference.quantity for difference in differences_with(scene, **changed)]
 
 
 @pytest.mark.parametrize(
@@ -66,18 +66,19 @@ def test_peaks_differ_by_more_than_the_limit(scene, name, least):
     value = getattr(run_of(scene), name)
     assert 0 < value and (least == 0 or value < least)
     for share, differs in ((0.0, False), (0.018, False), (0.022, True), (-0.022, True), (math.nan, True)):
-        assert told(scene, **{name: value + share * max(value, least)}) == [name] * differs
+        assert quantities_with(scene, **{name: value + share * max(value, least)}) == [name] * differs
 
 
 def test_outcomes_differ_where_they_are_decided_and_told_otherwise():
     """Of two blocks that rock, one by less than counts, the peak tilts tell."""
-    assert told(FREE, outcome="overturns") == ["outcome"]
-    assert told(FREE, outcome="overturns", decided=False) == []
+    assert quantities_with(FREE, outcome="overturns") == ["outcome"]
+    assert quantities_with(FREE, outcome="overturns", decided=False) == []
     limit = STILL * BLOCK.slenderness
     scene = FREE.with_(start=Start(tilt=0.9 * limit))
     assert (run_of(scene).outcome, outcome_of(scene, run_of(scene))) == ("rocks", "stands")
     for tilt, differs in ((1.5, []), (2.5, ["peak_tilt"])):
-        assert told(scene, peak_tilt=tilt * limit) == told(scene, peak_tilt=tilt * limit, outcome="stands") == differs
+        for change in ({}, {"outcome": "stands"}):
+            assert quantities_with(scene, peak_tilt=tilt * limit, **change) == differs
 
 
 @pytest.mark.parametrize(
@@ -91,48 +92,49 @@ def test_outcomes_differ_where_they_are_decided_and_told_otherwise():
     ],
 )
 def test_a_fall_at_another_time_and_the_base_up_to_it(changed, quantities):
-    own = run_of(FALLING)
-    assert told(FALLING, **{name: getattr(own, name) + by for name, by in changed.items()}) == quantities
+    model = run_of(FALLING)
+    assert quantities_with(FALLING, **{name: getattr(model, name) + by for name, by in changed.items()}) == quantities
 
 
 def test_impacts_before_the_fall_are_counted_where_none_is_missed_for_its_time():
-    own = run_of(FALLING)
-    first, *rest = own.impacts
-    fastest = max(abs(impact.rate_before) for impact in own.impacts)
+    falling = run_of(FALLING)
+    first, *rest = falling.impacts
+    fastest = max(abs(impact.rate_before) for impact in falling.impacts)
 
     def small(share, late=0.0):
-        return Impact(own.fall_time - 0.01 + late, share * fastest, -0.9 * share * fastest, 0.0)
+        return Impact(falling.fall_time - 0.01 + late, share * fastest, -0.9 * share * fastest, 0.0)
 
     twice = replace(first, time=first.time + 0.2 * PERIOD)
     # (impacts of the model, of the run, whether they differ); within 2 % of a tenth of the fastest one may count
     for model, run, differs in (
-        (own.impacts, rest, True),
-        (own.impacts, (first, twice, *rest), True),
-        (own.impacts, (*own.impacts, small(0.0999)), False),
-        (own.impacts, (*own.impacts, small(0.103)), True),
-        ((*own.impacts, small(0.0999)), (*own.impacts, small(0.103)), False),
-        ((*own.impacts, small(0.101)), own.impacts, False),
-        ((*own.impacts, small(0.0999)), (*own.impacts, small(0.2), small(0.2, 1e-3)), True),
+        (falling.impacts, rest, True),
+        (falling.impacts, (first, twice, *rest), True),
+        (falling.impacts, (*falling.impacts, small(0.0999)), False),
+        (falling.impacts, (*falling.impacts, small(0.103)), True),
+        ((*falling.impacts, small(0.0999)), (*falling.impacts, small(0.103)), False),
+        ((*falling.impacts, small(0.101)), falling.impacts, False),
+        ((*falling.impacts, small(0.0999)), (*falling.impacts, small(0.2), small(0.2, 1e-3)), True),
     ):
-        reference = replace(Reference.of(FALLING), model=replace(own, impacts=tuple(model)), copies=())
-        differences = compare(FALLING, replace(own, impacts=tuple(run)), reference).differences
-        assert ("impacts_before_fall" in [one.quantity for one in differences]) == differs
+        reference = replace(Reference.of(FALLING), model=replace(falling, impacts=tuple(model)), copies=())
+        differences = compare(FALLING, replace(falling, impacts=tuple(run)), reference).differences
+        assert ("impacts_before_fall" in [difference.quantity for difference in differences]) == differs
 
 
 def test_in_the_last_fall_an_engine_slides_from_where_the_contact_of_the_model_does_not_hold():
     """There the horizontal force passes `FRICTION` times the normal one, by the model's own history."""
-    own, history = run_of(FALLING), simulate(FALLING, output_step=1e-4).history
+    falling, history = run_of(FALLING), simulate(FALLING, output_step=1e-4).history
     tilt, rate = history.tilt, history.tilt_rate
-    block, late = FALLING.block, history.time > own.fall_time
+    block, late = FALLING.block, history.time > falling.fall_time
     c, n = (block.radius * f(np.sign(tilt) * block.slenderness - tilt) for f in (np.cos, np.sin))
     spin, base = np.gradient(rate, history.time), np.gradient(history.base_velocity, history.time)
     normal = 9.81 + n * spin - c * rate**2
     push = base + history.ground_acceleration + c * spin + n * rate**2
     released = history.time[late & ((normal <= 0) | (np.abs(push) > FRICTION * normal))][0]
-    rest = own.overturning_time - released
-    assert 0.05 < rest < own.overturning_time - own.fall_time
+    rest = falling.overturning_time - released
+    assert 0.05 < rest < falling.overturning_time - falling.fall_time
     for share, quantities in ((0.97, []), (1.03, ["overturning_time"])):
-        assert told(FALLING, overturning_time=own.overturning_time + share * (0.02 * PERIOD + rest)) == quantities
+        time = falling.overturning_time + share * (0.02 * PERIOD + rest)
+        assert quantities_with(FALLING, overturning_time=time) == quantities
 
 
 def slower(impact, energy):
@@ -142,19 +144,20 @@ def slower(impact, energy):
 
 @SCENES
 def test_impacts_that_differ_are_missing_or_too_many_are_told_with_their_numbers(scene):
-    own = run_of(scene).impacts
+    known = run_of(scene).impacts
     for factor, quantities in ((1.009, []), (0.98, ["restitution"]), (math.nan, ["restitution"])):
-        one = replace(own[1], rate_after=own[1].rate_after * factor)
-        assert told(scene, impacts=(own[0], one, *own[2:])) == quantities
-    fastest = max(abs(impact.rate_before) for impact in own)
-    count = sum(abs(impact.rate_before) > 0.1 * fastest for impact in own)
-    between = Impact(0.5 * (own[0].time + own[1].time), own[1].rate_before, own[1].rate_after, 0.0)
+        changed = replace(known[1], rate_after=known[1].rate_after * factor)
+        assert quantities_with(scene, impacts=(known[0], changed, *known[2:])) == quantities
+    fastest = max(abs(impact.rate_before) for impact in known)
+    count = sum(abs(impact.rate_before) > 0.1 * fastest for impact in known)
+    between = Impact(0.5 * (known[0].time + known[1].time), known[1].rate_before, known[1].rate_after, 0.0)
     for impacts, wanted in (
-        (own[:1] + own[2:], ("missing_impacts", count - 1, count)),
-        ((own[0], between, *own[1:]), ("extra_impacts", count + 1, count)),
+        (known[:1] + known[2:], ("missing_impacts", count - 1, count)),
+        ((known[0], between, *known[1:]), ("extra_impacts", count + 1, count)),
         ((), ("missing_impacts", 0, count)),
     ):
-        assert [(one.quantity, one.here, one.model) for one in found(scene, impacts=impacts)] == [wanted]
+        (difference,) = differences_with(scene, impacts=impacts)
+        assert (difference.quantity, difference.here, difference.model) == wanted
 
 
 @pytest.mark.parametrize("slenderness, loss", [(0.01, 3e-4), (0.1, 0.0297)])
@@ -166,23 +169,25 @@ def test_a_loss_is_told_where_restitution_is_near_one(slenderness, loss):
     assert taken == pytest.approx(loss, rel=2e-3)
     room = 0.1 * max(taken, 0.02)
     for more, quantity in ((0.95 * room, []), (1.05 * room, ["impact_loss"]), (0.1, ["restitution"])):
-        assert told(scene, impacts=(slower(first, taken + more), *rest)) == quantity
+        assert quantities_with(scene, impacts=(slower(first, taken + more), *rest)) == quantity
 
 
 def test_small_impacts_ones_out_of_phase_and_ones_beside_the_end_have_no_match_to_miss():
-    own = run_of(FREE).impacts
-    fastest = max(abs(impact.rate_before) for impact in own)
-    assert told(FREE, impacts=tuple(impact for impact in own if abs(impact.rate_before) > 0.1 * fastest)) == []
+    known = run_of(FREE).impacts
+    fastest = max(abs(impact.rate_before) for impact in known)
+    counted = tuple(impact for impact in known if abs(impact.rate_before) > 0.1 * fastest)
+    assert quantities_with(FREE, impacts=counted) == []
     # each swing takes longer: after some impacts there is no match to speak of
-    assert told(FREE, impacts=tuple(replace(impact, time=1.04 * impact.time) for impact in own)) == []
-    swing, period = own[2].time - own[1].time, 2 * math.pi / FREE.rocking_frequency
+    late = tuple(replace(impact, time=1.04 * impact.time) for impact in known)
+    assert quantities_with(FREE, impacts=late) == []
+    swing, period = known[2].time - known[1].time, 2 * math.pi / FREE.rocking_frequency
     for late, quantities in ((0.05, ["missing_impacts"]), (0.2, [])):
-        moved = [replace(impact, time=impact.time + late * swing * (k > 0)) for k, impact in enumerate(own)]
-        assert told(FREE, impacts=(*moved[:2], *moved[3:])) == quantities
+        moved = [replace(impact, time=impact.time + late * swing * (k > 0)) for k, impact in enumerate(known)]
+        assert quantities_with(FREE, impacts=(*moved[:2], *moved[3:])) == quantities
     for before, quantities in ((0.005, []), (0.05, ["missing_impacts"])):
-        cut = FREE.with_(duration=own[2].time + before * period)
-        differences = compare(cut, replace(run_of(cut), impacts=own[:2])).differences
-        assert [one.quantity for one in differences] == quantities
+        cut = FREE.with_(duration=known[2].time + before * period)
+        differences = compare(cut, replace(run_of(cut), impacts=known[:2])).differences
+        assert [difference.quantity for difference in differences] == quantities
 
 
 def test_what_cannot_be_compared_and_the_friction_with_which_it_can():
@@ -194,7 +199,7 @@ def test_what_cannot_be_compared_and_the_friction_with_which_it_can():
         run = compare(scene, replace(run_of(scene), peak_tilt=1.0))
         assert words in run.comparable and "friction = 0.6" in run.comparable and does in run.comparable
         assert run.differences == ()
-    assert told(slides.with_(friction=0.6)) == []
+    assert quantities_with(slides.with_(friction=0.6)) == []
     failed = replace(run_of(FREE), outcome="failed", failure=Failure("it broke"))
     assert compare(FREE, failed) is failed
 
@@ -202,13 +207,13 @@ def test_what_cannot_be_compared_and_the_friction_with_which_it_can():
 def test_near_an_outcome_boundary_either_outcome_is_right_and_a_third_is_not():
     """What overturns there is no fault of an engine; impacts are compared up to where the copies part."""
     scene = beside(1e-5)
-    own, over = run_of(scene), run_of(beside(-1e-5))
-    assert (own.outcome, over.outcome) == ("rocks", "overturns")
-    assert Reference.of(scene).until == own.impacts[0].time
-    for run in (own, over, replace(own, impacts=own.impacts[:1])):
+    upright, over = run_of(scene), run_of(beside(-1e-5))
+    assert (upright.outcome, over.outcome) == ("rocks", "overturns")
+    assert Reference.of(scene).until == upright.impacts[0].time
+    for run in (upright, over, replace(upright, impacts=upright.impacts[:1])):
         assert (compare(scene, run).comparable, compare(scene, run).differences) == (EDGE, ())
-    run = compare(scene, replace(own, outcome="stands", peak_tilt=0.0, impacts=()))
-    assert run.comparable == EDGE and "outcome" in [one.quantity for one in run.differences]
+    run = compare(scene, replace(upright, outcome="stands", peak_tilt=0.0, impacts=()))
+    assert run.comparable == EDGE and "outcome" in [difference.quantity for difference in run.differences]
 
 
 def test_what_lies_outside_what_near_copies_do_is_a_difference_with_their_span():
@@ -223,9 +228,13 @@ def test_what_lies_outside_what_near_copies_do_is_a_difference_with_their_span()
     for peak in (0.985 * low, low, model.peak_tilt, high, 1.015 * high):
         assert compare(SHARP, replace(model, peak_tilt=peak), reference).differences == ()
     for peak in (0.975 * low, 1.025 * high, 0.01891):
-        (one,) = compare(SHARP, replace(model, peak_tilt=peak), reference).differences
-        assert (one.here, one.model, one.near) == (peak, model.peak_tilt, pytest.approx((low, high)))
-        assert f"({low:.3g} to {high:.3g} in the analytic model within 0.01 % of the scene)" in str(one)
+        (difference,) = compare(SHARP, replace(model, peak_tilt=peak), reference).differences
+        assert (difference.here, difference.model, difference.near) == (
+            peak,
+            model.peak_tilt,
+            pytest.approx((low, high)),
+        )
+        assert f"({low:.3g} to {high:.3g} in the analytic model within 0.01 % of the scene)" in str(difference)
 
 
 def test_where_only_copies_end_as_the_run_does_no_number_is_called_the_models():
@@ -233,10 +242,10 @@ def test_where_only_copies_end_as_the_run_does_no_number_is_called_the_models():
     scene, back = beside(-5e-5), run_of(beside(4e-5))
     assert (run_of(scene).outcome, back.outcome) == ("overturns", "rocks")
     run = compare(scene, replace(back, peak_tilt=0.5 * back.peak_tilt))
-    (one,) = (one for one in run.differences if one.quantity == "peak_tilt")
-    low, high = one.near
-    words = f"peak tilt {one.here:.4g} rad ({low:.3g} to {high:.3g} in the analytic model within 0.01 % of the scene)"
-    assert one.model is None and str(one) == words
+    (difference,) = (difference for difference in run.differences if difference.quantity == "peak_tilt")
+    low, high = difference.near
+    copies = f"({low:.3g} to {high:.3g} in the analytic model within 0.01 % of the scene)"
+    assert difference.model is None and str(difference) == f"peak tilt {difference.here:.4g} rad {copies}"
 
 
 def test_a_near_copy_that_reaches_no_end_leaves_the_run_uncompared(monkeypatch):
@@ -274,7 +283,7 @@ def borne(period, damping=0.0):
 
 
 def outside_of(scene):
-    return [(one.quantity, one.value, one.limit) for one in outside(scene, run_of(scene))]
+    return [(caution.quantity, caution.value, caution.limit) for caution in outside(scene, run_of(scene))]
 
 
 @pytest.mark.parametrize(
@@ -306,21 +315,23 @@ def test_a_block_that_stands_has_no_tilt_whatever_an_engine_leaves_of_it():
     scene = Scene(block=STATUE)
     stands = replace(run_of(scene), peak_tilt_ratio=1e-6)
     for outcome, named in (("stands", []), ("slides", []), ("rocks", ["tilt"])):
-        assert [one.quantity for one in outside(scene, replace(stands, outcome=outcome))] == named
+        assert [caution.quantity for caution in outside(scene, replace(stands, outcome=outcome))] == named
 
 
 @pytest.mark.parametrize("engine", ["exudyn", "pybullet"])
 def test_an_engine_says_once_that_a_scene_is_outside_the_range_and_is_compared(engine):
     """At a slenderness of .01 PyBullet takes 45 times the loss of eq. (7), with e off by .007 alone."""
     scene = ROCKING.with_(block={"slenderness": 0.01}, start=Start(tilt=0.006), duration=2.0)
-    run, inside = (get_engine(engine).simulate(one, history=False) for one in (scene, ROCKING.with_(duration=0.2)))
-    said, none = ([str(one) for one in each.warnings if "outside the range" in str(one)] for each in (run, inside))
+    scenes = scene, ROCKING.with_(duration=0.2)
+    run, inside = (get_engine(engine).simulate(given, history=False) for given in scenes)
+    texts = ([str(caution) for caution in response.warnings] for response in (run, inside))
+    warned, none = ([text for text in each if "outside the range" in text] for each in texts)
     low, high, words = RANGE["slenderness"]
     words = words.format(low=low, high=high)
-    assert (said, none) == (
+    assert (warned, none) == (
         [f"slenderness 0.01 is outside the range in which engines are tested ({words}): nothing is promised there"],
         [],
     )
-    lost = [one for one in run.differences if one.quantity == "impact_loss"]
-    assert len(lost) == (engine == "pybullet")
-    assert all(one.model == pytest.approx(3e-4, rel=1e-3) and one.here > 10 * one.model for one in lost)
+    losses = [difference for difference in run.differences if difference.quantity == "impact_loss"]
+    assert len(losses) == (engine == "pybullet")
+    assert all(loss.model == pytest.approx(3e-4, rel=1e-3) and loss.here > 10 * loss.model for loss in losses)

@@ -46,16 +46,17 @@ def test_record_holds_what_the_contract_names(engine, variant):
     # those that tests are drawn from
     assert set(VARIANTS[engine]) == set(record.variants) and variant == record.default_variant
     assert tuple(VARIANTS) == engines.BUILT_IN
-    for name, own in record.variants.items():
-        assert own.kind == ("defaults" if name in ("first-script", "native-contact") else "tuned")
+    for name, choice in record.variants.items():
+        assert choice.kind == ("defaults" if name in ("first-script", "native-contact") else "tuned")
     assert (engine in ACCURATE) == (record.variants[variant].kind == "tuned")
-    for one in record.variants.values():
-        assert is_dataclass(one.settings) and one.settings.__dataclass_params__.frozen
-        assert fields(one.settings) and all(0 < value < math.inf for value in asdict(one.settings).values())
-        assert one.kind in KINDS and one.computes and one.imposes and (one.calls or not record.subject)
-        down = sorted(one.levels, reverse=True)  # from coarse to fine; of a stiffness the finer is the larger
+    for choice in record.variants.values():
+        assert is_dataclass(choice.settings) and choice.settings.__dataclass_params__.frozen
+        assert fields(choice.settings) and all(0 < value < math.inf for value in asdict(choice.settings).values())
+        assert choice.kind in KINDS and choice.computes and choice.imposes and (choice.calls or not record.subject)
+        down = sorted(choice.levels, reverse=True)  # from coarse to fine; of a stiffness the finer is the larger
         assert (
-            list(one.levels) == (down[::-1] if one.accuracy_parameter == "stiffness" else down) and len(one.levels) > 1
+            list(choice.levels) == (down[::-1] if choice.accuracy_parameter == "stiffness" else down)
+            and len(choice.levels) > 1
         )
     # A package that is one compiled module stands in no list before Python 3.12; it has the distribution's name.
     (distribution, *_) = metadata.packages_distributions().get(record.package, [record.package])
@@ -101,8 +102,8 @@ def test_unknown_variants_and_settings_are_refused_and_the_known_ones_are_named(
 @every_variant
 def test_given_restitution_is_refused_or_kept_but_never_ignored(engine, variant):
     given = scene(0.2, duration=0.8, start=Start(tilt=0.12)).with_(block={"restitution": 0.7})
-    own = get_engine(engine).variants[variant]
-    if own.takes_restitution:
+    record = get_engine(engine).variants[variant]
+    if record.takes_restitution:
         first = simulate(engine, variant, given).impacts[0]
         assert first.rate_after / first.rate_before == pytest.approx(0.7, abs=2e-3)  # by a couple, see test_physics
     else:
@@ -192,7 +193,9 @@ def test_runs_repeat_bit_for_bit_also_in_other_processes(engine, variant):
         apart = list(two.map(lambda _: guard.run_apart(simulate, engine, variant, given, time_limit=120.0), range(2)))
     for there in (second, *(run for run, _ in apart)):
         assert (first.end, first.impacts) == (there.end, there.impacts)
-        assert all(np.array_equal(getattr(first.history, one), getattr(there.history, one)) for one in History.COLUMNS)
+        assert all(
+            np.array_equal(getattr(first.history, column), getattr(there.history, column)) for column in History.COLUMNS
+        )
 
 
 def test_all_else_works_where_no_engine_is_installed():
@@ -252,15 +255,15 @@ print(json.dumps(found))
 def test_only_assisted_variants_use_the_formula_of_the_restitution(tmp_path, names):
     """Of the engines here none; the fake one does, which shows that its use is seen."""
     path = os.pathsep.join([str(install_fake_engine(tmp_path)), os.environ["PYTHONPATH"]])
-    found = []
+    results = []
     for factor in ("1.0", "0.8"):
         command = [sys.executable, "-c", FORMULA, factor, "crude", *names]
         done = subprocess.run(
             command, capture_output=True, text=True, timeout=600, env={**os.environ, "PYTHONPATH": path}
         )
         assert done.returncode == 0, done.stderr
-        found.append(json.loads(done.stdout.splitlines()[-1]))
-    right, wrong = found
+        results.append(json.loads(done.stdout.splitlines()[-1]))
+    right, wrong = results
     assisted = {name for name, (kind, _) in right.items() if kind == "assisted"}
     assert {name for name in right if right[name] != wrong[name]} == assisted == {"crude, euler"}
 
@@ -410,16 +413,16 @@ BAD_ENTRIES = {
 def test_a_broken_entry_is_named_and_no_engine(monkeypatch, tmp_path, what):
     name, value, source, words, key = BAD_ENTRIES[what]
     monkeypatch.syspath_prepend(install(tmp_path, "crude-engine", {name: value}, crude_engine=source))
-    found, broken = find_engines(engines.BUILT_IN)
-    assert found == {} and list(broken) == [key]
+    usable, broken = find_engines(engines.BUILT_IN)
+    assert usable == {} and list(broken) == [key]
     assert str(broken[key]).startswith(f"engine {name!r}, " + BY.format(value, "crude-engine") + words)
 
 
 def test_two_packages_with_one_name_keep_the_first(monkeypatch, tmp_path):
     install(tmp_path, "z-engine", {"crude": ENTRY})
     monkeypatch.syspath_prepend(install_fake_engine(tmp_path))
-    found, broken = find_engines(engines.BUILT_IN)
-    assert list(found) == ["crude"] and "crude-engine 0.1" in found["crude"].origin
+    usable, broken = find_engines(engines.BUILT_IN)
+    assert list(usable) == ["crude"] and "crude-engine 0.1" in usable["crude"].origin
     assert list(broken) == ["crude of z-engine 0.1"] and "that name is taken" in str(broken["crude of z-engine 0.1"])
 
 
@@ -449,8 +452,8 @@ def test_a_broken_or_absent_adapter_from_outside_costs_no_other_engine(
 ):
     modules = dict(crude_engine=FAKE_ENGINE, crude_record=RECORD.format(package=package), crude_adapter=adapter)
     monkeypatch.syspath_prepend(install(tmp_path, "crude-engine", {"crude": "crude_record:ENGINE"}, **modules))
-    found, broken = find_engines(engines.BUILT_IN)
-    monkeypatch.setitem(engines.ENGINES, "crude", found["crude"])
+    usable, broken = find_engines(engines.BUILT_IN)
+    monkeypatch.setitem(engines.ENGINES, "crude", usable["crude"])
     assert broken == {} and "crude" not in engines.available_engines(["crude"])[0]
     with pytest.raises(error) as caught:
         engines.get_engine("crude")
@@ -476,8 +479,8 @@ def test_what_an_adapter_raises_names_its_line(monkeypatch, tmp_path, source, wo
     with pytest.raises(TypeError) as caught:
         engine.simulate(load_scene(RIGID))
     line = next(number for number, text in enumerate(source.split("\n"), 1) if place in text)
-    told = raised(caught.value)
-    assert told.startswith(words) and told.endswith(f"(in crude_engine, line {line})")
+    text = raised(caught.value)
+    assert text.startswith(words) and text.endswith(f"(in crude_engine, line {line})")
 
 
 @pytest.mark.slow  # all engines are loaded to be listed
@@ -495,10 +498,10 @@ def test_what_an_adapter_raises_names_its_line(monkeypatch, tmp_path, source, wo
 )
 def test_the_commands_name_a_broken_one_in_one_message(tmp_path, old, new, words):
     packages = install(tmp_path, "crude-engine", {"crude": ENTRY}, crude_engine=changed(old, new))
-    asked = python(packages, "-m", "comparisons", "run", RIGID, "--engine", "crude")
-    assert asked.returncode == 2 and "Traceback" not in asked.stderr
-    *_, said = asked.stderr.splitlines()  # a slow machine says before that the model is compiled
-    assert said.startswith("Error: engine 'crude'") and words in said
+    completed = python(packages, "-m", "comparisons", "run", RIGID, "--engine", "crude")
+    assert completed.returncode == 2 and "Traceback" not in completed.stderr
+    *_, message = completed.stderr.splitlines()  # a slow machine says before that the model is compiled
+    assert message.startswith("Error: engine 'crude'") and words in message
     listed = python(packages, "-m", "comparisons", "engines", *["crude"] * ("versions" in words))
     assert words in listed.stdout + listed.stderr
     assert "versions" in words or all(name in listed.stdout for name in engines.BUILT_IN)

@@ -4,6 +4,7 @@ import gc
 import math
 import os
 import signal
+import sys
 import threading
 import time
 from dataclasses import asdict, replace
@@ -15,7 +16,7 @@ import pytest
 from bearing_laws import NAMES, bearings_of
 from engine_cases import scene
 
-from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start
+from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start, load_scene
 from analytic import simulate as exact
 from analytic.rocking import BearingLaw, restitution
 from analytic.scene import BEARINGS
@@ -68,9 +69,9 @@ def test_settings_go_with_weight_size_and_gravity(gravity, factors):
 
     mass, radius, usual = MEASURED
     block = Block(mass=64 * mass, radius=4 * radius, slenderness=0.2)
-    found = scaled(Scene(block=block, start=Start(tilt=0.1), gravity=gravity * usual), CompliantCorners())
+    settings = scaled(Scene(block=block, start=Start(tilt=0.1), gravity=gravity * usual), CompliantCorners())
     wanted = {name: factors.get(name, 1) * value for name, value in asdict(CompliantCorners()).items()}
-    assert asdict(found) == pytest.approx(wanted)
+    assert asdict(settings) == pytest.approx(wanted)
 
 
 @pytest.mark.parametrize("share, base", [(0.59, None), (0.8, 3172.05)])
@@ -93,17 +94,18 @@ def test_a_block_left_alone_does_not_sink(base):
     assert np.ptp(height) < 0.1 * sink  # what the tolerance of the steps leaves
 
 
-@pytest.mark.parametrize("law", NAMES)
-@pytest.mark.parametrize("way", [-3e-2, 2e-5, 0.2])
-def test_the_bearings_spring_meets_the_law_at_both_ends_of_a_step(law, way):
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("ahead", [-3e-2, 2e-5, 0.2])
+def test_the_bearings_spring_meets_the_law_at_both_ends_of_a_step(name, ahead):
+    """The travel of the last step is that expected of the next one."""
     from engines.exudyn.scene import Bearing
 
-    rule = BearingLaw.of(bearings_of(law, count=4))
-    bearing = Bearing(rule, 0.01)
-    spring = bearing.spring(way)
-    for travel in (0.0, way):
-        x, z = 0.01 + travel, rule.hysteretic(bearing.z, travel)
-        assert spring["stiffness"][0] * (x - spring["offset"][0]) == pytest.approx(rule.force(x, z), rel=1e-10)
+    law, spring = BearingLaw.of(bearings_of(name, count=4)), {}
+    bearing = Bearing(law, 0.01 - ahead)
+    bearing.commit(SimpleNamespace(SetObjectParameter=lambda number, field, value: spring.update({field: value})), 0.01)
+    for travel in (0.0, ahead):
+        x, z = 0.01 + travel, law.hysteretic(bearing.z, travel)
+        assert spring["stiffness"][0] * (x - spring["offset"][0]) == pytest.approx(law.force(x, z), rel=1e-10)
 
 
 @pytest.mark.parametrize(
@@ -147,9 +149,9 @@ def test_the_implicit_steps_change_no_impact_and_save_most_steps(base, monkeypat
     monkeypatch.setattr("engines.exudyn.stepping.WORTHWHILE", math.inf)
     explicit = simulate(given)
     assert both.steps < 0.5 * explicit.steps and len(both.impacts) >= 2
-    for one, other in zip(both.impacts[:3], explicit.impacts[:3], strict=True):
-        assert one.time == pytest.approx(other.time, abs=1e-5)
-        assert ratio(one) == pytest.approx(ratio(other), abs=3e-6)
+    for impact, reference in zip(both.impacts[:3], explicit.impacts[:3], strict=True):
+        assert impact.time == pytest.approx(reference.time, abs=1e-5)
+        assert ratio(impact) == pytest.approx(ratio(reference), abs=3e-6)
 
 
 def test_the_error_of_time_falls_with_the_square_of_the_implicit_step():
@@ -167,10 +169,10 @@ def test_where_newton_finds_no_end_the_explicit_steps_go_on(monkeypatch):
 
     usual, usual_settings = simulate(RELEASED).steps, stepping.solver_settings
 
-    def hopeless(*asked, **settings):
-        made = usual_settings(*asked, **settings)
-        made.timeIntegration.newton.relativeTolerance = 1e-300
-        return made
+    def hopeless(*arguments, **values):
+        settings = usual_settings(*arguments, **values)
+        settings.timeIntegration.newton.relativeTolerance = 1e-300
+        return settings
 
     for name, value in (("solver_settings", hopeless), ("RESIDUAL", 1e-30), ("ROUNDING", 0.0)):
         monkeypatch.setattr(f"engines.exudyn.stepping.{name}", value)
@@ -184,6 +186,17 @@ def test_small_swings_on_the_stiff_corners_they_ask_for_are_stepped_implicitly()
     given = scene(0.2, duration=3.0, motion=PulseMotion("one-sine", 1.1 * 9.81 * math.tan(0.2), 20.0))
     response = simulate(given, stiffness=5e13)
     assert response.peak_tilt == pytest.approx(exact(given).peak_tilt, rel=0.02) and response.steps < 40_000
+
+
+@pytest.mark.parametrize("name", ["caryatid-isolated", "free-rocking-isolated"])
+def test_a_step_makes_at_most_ten_calls_of_python(name):
+    calls = []
+    sys.setprofile(lambda frame, event, argument: calls.append(None) if event == "call" else None)
+    try:
+        response = simulate(load_scene(name))
+    finally:
+        sys.setprofile(None)
+    assert response.failure is None and len(calls) <= 10 * response.steps
 
 
 # Coulomb's law.
@@ -213,11 +226,11 @@ def test_the_anchor_of_a_block_in_the_air_goes_with_its_lower_corner():
     from engines.exudyn.scene import DISPLACEMENT, Anchor
 
     gaps, moved = {"left": (0.3, 0.2, 0.0), "right": (0.1, 0.05, 0.0)}, []
-    told = SimpleNamespace(
-        GetObjectOutput=lambda one, kind: gaps[one] if kind == DISPLACEMENT else (0.0, 0.0, 0.0),
+    system = SimpleNamespace(
+        GetObjectOutput=lambda corner, kind: gaps[corner] if kind == DISPLACEMENT else (0.0, 0.0, 0.0),
         SetObjectParameter=lambda *given: moved.append(given),
     )
-    Anchor(("left", "right"), 0.5, 1e6).commit(told)
+    Anchor(("left", "right"), 0.5, 1e6).commit(system)
     assert moved == [(corner, "offset", [0.1, 0.0, 0.0]) for corner in ("left", "right")]
 
 

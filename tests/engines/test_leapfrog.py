@@ -6,6 +6,7 @@ import bisect
 import importlib
 import math
 from functools import partial
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -22,7 +23,7 @@ from engines import get_engine
 from engines import loop as stepping
 from engines.checks import IMPULSE_LIMIT, energy_gain, impulse_error
 from engines.contract import Mismatch
-from engines.loads import added_mass, ground_velocity, placement
+from engines.loads import added_mass, ground_gain, ground_velocities, ground_velocity, placement
 from engines.loop import (
     GROWTH,
     HOLD,
@@ -70,8 +71,8 @@ def test_the_block_at_the_start_turns_about_its_lower_corner_which_stays_on_the_
     b, h = math.copysign(1.0, tilt or rate) * given.block.half_width, given.block.half_height
     # The corner from the centre, turned by the tilt toward +x: (b, -h).
     across, up = b * math.cos(tilt) - h * math.sin(tilt), -h * math.cos(tilt) - b * math.sin(tilt)
-    found = x + across, z + h + up, vx + rate * up, vz - rate * across
-    assert found == pytest.approx((0.2 + b, 0.0, -0.4, 0.0), abs=1e-14)
+    corner = x + across, z + h + up, vx + rate * up, vz - rate * across
+    assert corner == pytest.approx((0.2 + b, 0.0, -0.4, 0.0), abs=1e-14)
 
 
 PHASES = [("one-sine", 0.8), ("half-sine", 0.8), ("one-cosine", 0.8)]
@@ -84,6 +85,18 @@ def test_the_grounds_velocity_is_the_integral_of_its_acceleration(shape, phase):
     gained = np.cumsum(pulse.acceleration(0.5 * (time[1:] + time[:-1]))) * (time[1] - time[0])
     assert velocity(pulse.end + 1.0) == pytest.approx(gained[-1], abs=1e-8)
     np.testing.assert_allclose([velocity(t) for t in time[4000::4000].tolist()], gained[3999::4000], rtol=0, atol=1e-8)
+
+
+@pytest.mark.parametrize(
+    "motion", [PulseMotion("one-sine", 2.0, 5.0, start=0.3), SampledMotion(0.3, np.array([1.0, -2.0, 3.0, 4.0]))]
+)
+def test_the_grounds_velocity_is_the_same_at_many_times_and_between_two(motion):
+    """At samples, between them, at the last one and beyond it."""
+    velocity, gain, times = ground_velocity(motion), ground_gain(motion), np.linspace(0.0, 2.0, 41)
+    values = [velocity(t) for t in times.tolist()]
+    np.testing.assert_allclose(ground_velocities(motion, times), values, rtol=0, atol=1e-15)
+    for i, begin in enumerate(times.tolist()):
+        assert [gain(begin, t) for t in times[i:].tolist()] == [value - values[i] for value in values[i:]]
 
 
 # The length of steps: small where a point lands, held after it, growing else; jumps of the ground and the end met.
@@ -231,9 +244,9 @@ def flown(given, step, plain=False):
     """Rows of a `Flying` block in steps of this length and half of it in turn."""
     bodies, lengths = Flying(given), iter([step, 0.5 * step, 0.5 * step] * 10**5)
     loads = sampled_loads(given) if plain else mean_loads(given, bodies, step)
-    found, ended = march(bodies, given, given.duration, lambda points: next(lengths), loads, step)
+    rows, ended = march(bodies, given, given.duration, lambda points: next(lengths), loads, step)
     assert ended == "done"
-    return found, bodies
+    return rows, bodies
 
 
 @pytest.mark.parametrize("damping", [0.0, 2e3])
@@ -252,13 +265,13 @@ def test_loads_for_the_mean_of_two_steps_are_of_second_order_in_uneven_steps(mon
 def test_the_ground_and_gravity_give_exactly_what_they_have():
     """Sums of what all steps give: the ground's velocity and g t, at half a step before the end, in any steps."""
     motion = PulseMotion("one-sine", 3.0, 21.0, start=0.013, vertical=PulseMotion("one-sine", 2.0, 21.0, start=0.013))
-    found, bodies = flown(scene(0.2, 212.0, 0.2, motion=motion, gravity=3.7), 7e-3)
+    rows, bodies = flown(scene(0.2, 212.0, 0.2, motion=motion, gravity=3.7), 7e-3)
     step, across, up, _ = np.array(bodies.loads).T
     fine = np.linspace(0.0, step.sum() - 0.5 * step[-1], 400_001)
     middle = 0.5 * (fine[1:] + fine[:-1])
     for sums, level in ((across, motion.acceleration(middle)), (up, motion.vertical.acceleration(middle) + 3.7)):
         assert -sums.sum() == pytest.approx(level.sum() * fine[1], abs=1e-6)
-    assert found[-1, 0] == pytest.approx(0.2, abs=1e-9)
+    assert rows[-1, 0] == pytest.approx(0.2, abs=1e-9)
 
 
 @pytest.mark.parametrize("damping", [1e4, 1e9])
@@ -266,8 +279,8 @@ def test_a_damper_of_any_strength_is_stable(damping):
     """A base under the acceleration a creeps at a m/c."""
     bearings = Bearings(law="linear", count=1, ka=1e-3, damping=damping)
     pushed = scene(0.2, 212.0, 0.1, bearings=bearings, motion=PulseMotion("rectangular", -2.0, math.pi / 0.1))
-    found, _ = flown(pushed, 1e-3)
-    assert np.abs(found[:, 5]).max() <= 2.0 * 212.0 / damping + 2e-3 and np.isfinite(found).all()
+    rows, _ = flown(pushed, 1e-3)
+    assert np.abs(rows[:, 5]).max() <= 2.0 * 212.0 / damping + 2e-3 and np.isfinite(rows).all()
 
 
 @pytest.mark.parametrize("damping", [1e-9, 50.0, 1e9])
@@ -294,8 +307,8 @@ def test_how_a_run_ends(monkeypatch, spin, after, words, count):
     monkeypatch.setattr(stepping, "row_limit", lambda duration, largest: 50)
     given = scene(0.2, 212.0, 0.1, bearings=LINEAR)
     bodies = Flying(given, spin, after)
-    found, ended = march(bodies, given, 0.1, lambda points: 1e-3, mean_loads(given, bodies, 1e-3), 1e-3)
-    assert (ended, len(found)) == (words, count)
+    rows, ended = march(bodies, given, 0.1, lambda points: 1e-3, mean_loads(given, bodies, 1e-3), 1e-3)
+    assert (ended, len(rows)) == (words, count)
 
 
 # In the engines.
@@ -306,13 +319,13 @@ every_ruled = pytest.mark.parametrize("engine", RULED)
 @every_ruled
 def test_the_error_of_restitution_falls_along_the_ladder(engine):
     """From the energies of swings, which count what flight loses."""
-    engine, found = get_engine(engine), []
+    engine, errors_found = get_engine(engine), []
     scenes = [scene(0.2, 212.0, 3.5, start=Start(tilt=share * 0.2)) for share in (0.3, 0.55, 0.8)]
     for step in engine.variants["impact-aware"].levels:
         off = [errors.impact_errors(given, engine.simulate(given, largest_step=step), 2)["swing"] for given in scenes]
-        found.append(rms(np.concatenate(off)))
-    assert found == sorted(found, reverse=True)
-    assert found[0] > 20 * found[-1] and found[1] < 2e-4 and found[-1] < 5e-6
+        errors_found.append(rms(np.concatenate(off)))
+    assert errors_found == sorted(errors_found, reverse=True)
+    assert errors_found[0] > 20 * errors_found[-1] and errors_found[1] < 2e-4 and errors_found[-1] < 5e-6
 
 
 @pytest.mark.parametrize("engine, variant", [*((name, "impact-aware") for name in RULED), ("pybullet", "fixed-step")])
@@ -346,8 +359,10 @@ def test_bases_on_bearings(engine, base, damping):
     model, response = exact(given), get_engine(engine).simulate(given)
     assert response.outcome == model.outcome, response.failure
     assert response.peak_base_displacement == pytest.approx(model.peak_base_displacement, rel=5e-3)
-    here, there = (one.impacts[0].rate_after / one.impacts[0].rate_before for one in (response, model))
-    assert here == pytest.approx(there, abs=1e-3)
+    run_ratio, model_ratio = (
+        result.impacts[0].rate_after / result.impacts[0].rate_before for result in (response, model)
+    )
+    assert run_ratio == pytest.approx(model_ratio, abs=1e-3)
 
 
 @every_ruled
@@ -356,8 +371,8 @@ def test_a_pulse_that_begins_with_a_jump_lifts_the_block_at_once(engine):
     pulse = PulseMotion("rectangular", 1.3 * 9.81 * math.tan(0.2), 6.0, 0.10037)
     given, late = scene(0.2, duration=0.3, motion=pulse), [pulse.start + 0.02, pulse.start + 0.1]
     histories = exact(given).history, get_engine(engine).simulate(given).history
-    wanted, found = (np.interp(late, history.time, history.tilt) for history in histories)
-    np.testing.assert_allclose(found, wanted, rtol=1e-3)
+    expected, computed = (np.interp(late, history.time, history.tilt) for history in histories)
+    np.testing.assert_allclose(computed, expected, rtol=1e-3)
 
 
 @every_ruled
@@ -397,10 +412,10 @@ def without_mass(change, body, link, mass=None, localInertiaDiagonal=None, **res
     change(body, link, **rest)
 
 
-def other_text(asked, given):
+def other_text(old, new):
     def read(right, text):
-        assert asked in text
-        return right(text.replace(asked, given))
+        assert old in text
+        return right(text.replace(old, new))
 
     return read
 
@@ -415,7 +430,12 @@ def forgetful_space(name):
     "engine, call, wrong, words",
     [
         ("pybullet", "pybullet.changeDynamics", without_mass, "block: inertia is"),
-        ("pybullet", "pybullet.changeDynamics", lambda change, body, link, **one: change(body, -1, **one), "friction"),
+        (
+            "pybullet",
+            "pybullet.changeDynamics",
+            lambda change, body, link, **values: change(body, -1, **values),
+            "friction",
+        ),
         ("mujoco", "mujoco.MjModel.from_xml_string", other_text('mass="3172.05"', 'mass="3000.0"'), "3000.0], not"),
         ("mujoco", "mujoco.MjModel.from_xml_string", other_text('cone="elliptic"', ""), "cone is 0"),
         ("mujoco", "mujoco.MjModel.from_xml_string", other_text('friction="5.0 0 0"', ""), "contact: friction is"),
@@ -541,15 +561,19 @@ def mutate_exudyn(monkeypatch, gain, delay):
     """The spring of the bearings is `gain` times as stiff, and acts from where the base was `delay` [s] ago."""
     from engines.exudyn import scene as model
 
-    spring = model.Bearing.spring
+    commit = model.Bearing.commit
 
-    def changed(self, ahead):
-        one = spring(self, ahead)
-        k = gain * one["stiffness"][0]
-        late = {} if self.connector is None else {"damping": [self.law.count * self.law.damping - k * delay, 0.0, 0.0]}
-        return {**one, "stiffness": [k, 0.0, 0.0], **late}  # at x - delay v
+    def changed(self, mbs, x):
+        def change(connector, name, value):
+            if name == "stiffness":
+                value = [gain * value[0], 0.0, 0.0]
+                damping = self.law.count * self.law.damping - value[0] * delay  # the spring's force at x - delay v
+                mbs.SetObjectParameter(connector, "damping", [damping, 0.0, 0.0])
+            mbs.SetObjectParameter(connector, name, value)
 
-    monkeypatch.setattr(model.Bearing, "spring", changed)
+        return commit(self, SimpleNamespace(SetObjectParameter=change), x)
+
+    monkeypatch.setattr(model.Bearing, "commit", changed)
 
 
 def mutate_leapfrog(monkeypatch, gain, delay):
@@ -600,8 +624,8 @@ IMPOSED = {
 @pytest.mark.parametrize("engine, variant", [case for case in CASES if case[0] != "exudyn"])
 def test_a_leapfrog_engines_record_says_what_its_adapter_imposes(engine, variant):
     engine = get_engine(engine)
-    own = engine.variants[variant]
-    couple = {"restitution given: a couple before each landing"} if own.takes_restitution else set()
-    assert {*own.imposes.split("; ")} - {"a plane, by joints"} == IMPOSED[type(own.settings)] | couple
-    trace = engine.run(scene(0.2, 212.0, 0.01, start=Start(tilt=2e-3)), variant, own.settings).trace
-    assert trace.first_script == isinstance(own.settings, stepping.FirstScript)
+    record = engine.variants[variant]
+    couple = {"restitution given: a couple before each landing"} if record.takes_restitution else set()
+    assert {*record.imposes.split("; ")} - {"a plane, by joints"} == IMPOSED[type(record.settings)] | couple
+    trace = engine.run(scene(0.2, 212.0, 0.01, start=Start(tilt=2e-3)), variant, record.settings).trace
+    assert trace.first_script == isinstance(record.settings, stepping.FirstScript)

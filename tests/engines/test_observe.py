@@ -162,8 +162,8 @@ def test_a_run_that_stops_early_fails_with_the_last_finite_state_and_the_engines
     assert response.failure.last_state.time == trace.time[699] and response.end.tilt == trace.tilt[699]
 
     assert "ended early" in seen(scene, trace.upto(500)).failure.reason
-    own = seen(scene, trace.upto(500), failure=Failure("Newton failed", "error code 7")).failure
-    assert (own.reason, own.message, own.last_state.time) == ("Newton failed", "error code 7", trace.time[499])
+    kept = seen(scene, trace.upto(500), failure=Failure("Newton failed", "error code 7")).failure
+    assert (kept.reason, kept.message, kept.last_state.time) == ("Newton failed", "error code 7", trace.time[499])
 
 
 def test_warnings_of_the_engine_and_of_the_record_reach_the_response_once():
@@ -171,10 +171,10 @@ def test_warnings_of_the_engine_and_of_the_record_reach_the_response_once():
     odd = scene.with_(motion=dataclasses.replace(scene.motion, warnings=("the record is odd",)))
     trace, _ = sampled(scene, 2e-3)
     gone = dataclasses.replace(trace, tilt=np.full_like(trace.tilt, np.nan))
-    said = Caution("record", "the record is odd"), Caution("engine", "soft")
-    assert seen(scene, trace).warnings == () and seen(scene, trace, warnings=("soft",)).warnings == said[1:]
-    for one in (trace, gone):
-        assert seen(odd, one, warnings=["soft", "soft"]).warnings == said
+    cautions = Caution("record", "the record is odd"), Caution("engine", "soft")
+    assert seen(scene, trace).warnings == () and seen(scene, trace, warnings=("soft",)).warnings == cautions[1:]
+    for steps in (trace, gone):
+        assert seen(odd, steps, warnings=["soft", "soft"]).warnings == cautions
 
 
 def test_a_run_outside_the_model_is_warned_of_but_not_a_failed_one():
@@ -310,10 +310,10 @@ def test_impacts_on_stiff_and_damped_bearings_are_carried_stably(scene):
     columns = [getattr(reference.history, name)[::20] for name in Trace.COLUMNS]
     response = seen(scene, Trace(*columns, EDGE, 6e-3))
     assert response.outcome == reference.outcome == "rocks"
-    for one, other in zip(response.impacts[:2], reference.impacts[:2], strict=True):
-        assert one.time == pytest.approx(other.time, abs=1e-4)
-        assert one.rate_before == pytest.approx(other.rate_before, rel=2e-2)
-        assert one.rate_after == pytest.approx(other.rate_after, rel=2e-2)
+    for impact, expected in zip(response.impacts[:2], reference.impacts[:2], strict=True):
+        assert impact.time == pytest.approx(expected.time, abs=1e-4)
+        assert impact.rate_before == pytest.approx(expected.rate_before, rel=2e-2)
+        assert impact.rate_after == pytest.approx(expected.rate_after, rel=2e-2)
 
 
 def test_a_carry_takes_substeps_as_the_bearing_needs_them():
@@ -321,8 +321,10 @@ def test_a_carry_takes_substeps_as_the_bearing_needs_them():
     scene = damped(1e6, base=212.0)
     reference = simulate(scene, output_step=2e-3)
     trace = Trace(*(getattr(reference.history, name) for name in Trace.COLUMNS), EDGE)
-    found, wanted = ((one.impacts[0].time, one.impacts[0].rate_before) for one in (seen(scene, trace), reference))
-    assert found == pytest.approx(wanted, rel=1e-5)
+    computed, expected = (
+        (result.impacts[0].time, result.impacts[0].rate_before) for result in (seen(scene, trace), reference)
+    )
+    assert computed == pytest.approx(expected, rel=1e-5)
 
 
 def test_a_carry_takes_no_more_steps_than_it_needs(monkeypatch):
@@ -336,9 +338,9 @@ def test_a_carry_takes_no_more_steps_than_it_needs(monkeypatch):
 @pytest.mark.parametrize("direction, step, inner", [(1, "last", -1), (-1, "first", 1)])
 def test_a_force_that_is_extrapolated_goes_through_the_two_steps_beside_a_contact(direction, step, inner):
     _, trace, *_ = observed("isolated", 4e-3)
-    found = find_swings(trace)
-    for at in (edge := getattr(found, step), edge + inner):
-        along = swings._tangent(trace, found, direction)(trace.time[at])
+    all_swings = find_swings(trace)
+    for at in (edge := getattr(all_swings, step), edge + inner):
+        along = swings._tangent(trace, all_swings, direction)(trace.time[at])
         np.testing.assert_allclose(along[:9], trace.bearing_force[at][:9], rtol=1e-9)  # of swings of several steps
 
 
@@ -350,9 +352,9 @@ def test_a_passage_of_the_upright_is_an_impact_unless_the_block_is_in_the_air(fr
     centre = pivoting_centre(scene, trace)
     centre[:, 1] += np.where(np.abs(trace.time - first) < 0.05, gap * scene.block.radius, 0.0)
     raised = dataclasses.replace(trace, centre=centre)
-    found, *_, missed = find_events(scene.with_(friction=friction), raised, find_swings(raised))
+    impacts, *_, missed = find_events(scene.with_(friction=friction), raised, find_swings(raised))
     count = len(find_events(scene, trace, find_swings(trace))[0])
-    assert (len(found), missed) == (count - flies, ()) and (abs(found[0].time - first) > 0.1) == flies
+    assert (len(impacts), missed) == (count - flies, ()) and (abs(impacts[0].time - first) > 0.1) == flies
 
 
 @pytest.mark.parametrize("share, reason", [(1.05, "an impact added energy"), (0.95, None)])

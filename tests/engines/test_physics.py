@@ -170,35 +170,37 @@ def first_impacts(response):
 @accurate_variant
 def test_impact_times_of_a_released_block_under_vertical_motion(engine, variant):
     given, limit = HEAVED.with_(base=Base(mass=212.0)), bound(engine, "impact times", "sliding base")
-    wanted, found = first_impacts(exact(given)), simulate(engine, variant, given, history=False)
-    assert found.outcome == "rocks" and found.failure is None
-    np.testing.assert_allclose(first_impacts(found), wanted, rtol=0, atol=limit)
-    assert abs(first_impacts(exact(without(given)))[1] - wanted[1]) > 50 * limit
+    expected, response = first_impacts(exact(given)), simulate(engine, variant, given, history=False)
+    assert response.outcome == "rocks" and response.failure is None
+    np.testing.assert_allclose(first_impacts(response), expected, rtol=0, atol=limit)
+    assert abs(first_impacts(exact(without(given)))[1] - expected[1]) > 50 * limit
 
 
 @accurate_variant
 def test_rocking_on_bearings_under_vertical_motion(engine, variant):
     reference, level = exact(DRIVEN), exact(without(DRIVEN))
-    found = simulate(engine, variant, DRIVEN, history=False)
-    tilt, shift = (bound(engine, f"peak {one}", "rocking on bearings, one-sine") for one in ("tilt", "displacement"))
-    assert found.peak_tilt_ratio == pytest.approx(reference.peak_tilt_ratio, abs=tilt)
+    response = simulate(engine, variant, DRIVEN, history=False)
+    tilt, shift = (
+        bound(engine, f"peak {quantity}", "rocking on bearings, one-sine") for quantity in ("tilt", "displacement")
+    )
+    assert response.peak_tilt_ratio == pytest.approx(reference.peak_tilt_ratio, abs=tilt)
     assert abs(level.peak_tilt_ratio - reference.peak_tilt_ratio) > 50 * tilt
-    assert found.peak_base_displacement == pytest.approx(reference.peak_base_displacement, rel=shift)
-    assert found.min_normal_ratio == pytest.approx(reference.min_normal_ratio, abs=2e-3)
-    assert len(found.impacts) == len(reference.impacts) > 5
-    assert found.uplifts[0] == pytest.approx(reference.uplifts[0], abs=1e-5)
-    assert RIGID_BEARINGS in map(str, found.warnings)
+    assert response.peak_base_displacement == pytest.approx(reference.peak_base_displacement, rel=shift)
+    assert response.min_normal_ratio == pytest.approx(reference.min_normal_ratio, abs=2e-3)
+    assert len(response.impacts) == len(reference.impacts) > 5
+    assert response.uplifts[0] == pytest.approx(reference.uplifts[0], abs=1e-5)
+    assert RIGID_BEARINGS in map(str, response.warnings)
 
 
 @every_variant
 def test_every_variant_feels_vertical_motion_and_says_where_a_block_would_jump(engine, variant):
     run = partial(simulate, engine, variant, history=False)
-    heaving, level = (one.with_(duration=0.6) for one in (HEAVED, without(HEAVED)))
+    heaving, level = (given_scene.with_(duration=0.6) for given_scene in (HEAVED, without(HEAVED)))
     wanted, felt = (first_impacts(solve(heaving))[0] - first_impacts(solve(level))[0] for solve in (exact, run))
     assert felt == pytest.approx(wanted, rel=0.15)
     up = SampledMotion(0.005, 12.0 * np.sin(9.0 * TIMES))
-    found = run(HEAVED.with_(motion=replace(HEAVING, vertical=up), start=Start(tilt=0.05), duration=1.0))
-    assert found.failure is not None or any("the block would jump" in warning.text for warning in found.warnings)
+    response = run(HEAVED.with_(motion=replace(HEAVING, vertical=up), start=Start(tilt=0.05), duration=1.0))
+    assert response.failure is not None or any("the block would jump" in warning.text for warning in response.warnings)
 
 
 @pytest.mark.parametrize("given", [HEAVED.with_(duration=0.4), DRIVEN.with_(duration=0.7)], ids=["heaved", "driven"])
@@ -295,8 +297,8 @@ def test_a_level_is_right_or_told(engine, variant, slenderness, base):
     limit = RESTITUTION if kind.flight_damping is None else 0.02
     for value in kind.levels:
         response, _ = record.traced(given, variant=variant, **{kind.accuracy_parameter: value})
-        told = response.failure or compare(given, response).differences
-        assert told or worst(given, response) < limit, value
+        reported = response.failure or compare(given, response).differences
+        assert reported or worst(given, response) < limit, value
 
 
 every_subject = pytest.mark.parametrize("engine", ["exudyn", "pybullet"])
@@ -305,7 +307,7 @@ every_subject = pytest.mark.parametrize("engine", ["exudyn", "pybullet"])
 def flight_of(model):
     """(the first flight, the mode after it), each with its time."""
     modes = model.sliding.modes
-    return next((one, after) for one, after in pairwise(modes) if one[1] == "flight")
+    return next((begin, end) for begin, end in pairwise(modes) if begin[1] == "flight")
 
 
 @every_subject
@@ -313,7 +315,9 @@ def flight_of(model):
 def test_a_block_that_slides_does_so_in_engines(engine, scene):
     model, run = exact(scene), get_engine(engine).simulate(scene)
     assert (run.failure, run.outcome, run.differences) == (None, model.outcome, ())
-    assert run.comparable in ("yes", "on an edge") and not [one for one in run.warnings if one.kind == "model"]
+    assert run.comparable in ("yes", "on an edge") and not [
+        warning for warning in run.warnings if warning.kind == "model"
+    ]
     assert run.sliding.peak == pytest.approx(model.sliding.peak, rel=1e-3)
     assert run.friction_demand <= scene.friction
     if model.outcome == "overturns":
@@ -329,12 +333,12 @@ def test_a_block_that_slides_does_so_in_engines(engine, scene):
 def test_neither_a_landing_nor_a_passage_in_the_air_is_an_impact_that_differs(engine, scene):
     """The landing is one in the model only, and off the upright; in the air the tilt changes side without any."""
     model, run = exact(scene, history=False), get_engine(engine).simulate(scene)
-    begin, end = (one[0] for one in flight_of(model))
+    begin, end = (each[0] for each in flight_of(model))
     assert (run.failure, run.outcome, run.differences, run.comparable) == (None, "rocks", (), "yes")
-    assert [one.time for one in model.impacts if begin <= one.time <= end] == [end]
-    assert not [one.time for one in run.impacts if begin <= one.time <= end]
-    here, there = (impacts_of(one)[:5] for one in (run, model))
-    assert np.allclose(here, there, rtol=1e-3) and len(impacts_of(model)) == len(model.impacts) - 1
+    assert [each.time for each in model.impacts if begin <= each.time <= end] == [end]
+    assert not [each.time for each in run.impacts if begin <= each.time <= end]
+    run_rows, model_rows = (impacts_of(each)[:5] for each in (run, model))
+    assert np.allclose(run_rows, model_rows, rtol=1e-3) and len(impacts_of(model)) == len(model.impacts) - 1
 
 
 def test_a_run_that_does_not_slip_where_the_model_does_differs():
@@ -342,8 +346,10 @@ def test_a_run_that_does_not_slip_where_the_model_does_differs():
     stuck = replace(exact(SAVED, history=False).sliding, peak=0.0, end=0.0, path=0.0)
     for given, outcome, differs in ((SAVED, "rocks", ["peak_slip"]), (SLIDES, "stands", ["outcome", "peak_slip"])):
         run = replace(exact(given, history=False), engine="any", outcome=outcome)
-        for slid, told in ((stuck, differs), (None, [])):
-            assert [one.quantity for one in compare(given, replace(run, sliding=slid)).differences] == told
+        for slid, quantities in ((stuck, differs), (None, [])):
+            assert [
+                difference.quantity for difference in compare(given, replace(run, sliding=slid)).differences
+            ] == quantities
 
 
 @pytest.mark.parametrize("engine", ["pybullet", "mujoco", "dart"])
@@ -467,8 +473,8 @@ def test_a_flight_without_pull_keeps_the_share_at_any_step(kept):
 @pytest.mark.parametrize("kept, why", [(1 + 1e-6, "above"), (0.09, "below")])
 def test_what_a_couple_does_not_reach_is_refused_by_engine_and_script_alike(engine, kept, why):
     scene = let_go("isolated", 0.2, kept)
-    given, own = scene.block.restitution, momentum_restitution(scene)
-    words = f"block.restitution = {given!r}: {why} what a couple .*, 0.1 to 1 times the {own:.6g} of eq.*{ALONE}"
+    given, momentum = scene.block.restitution, momentum_restitution(scene)
+    words = f"block.restitution = {given!r}: {why} what a couple .*, 0.1 to 1 times the {momentum:.6g} of eq.*{ALONE}"
     for run in (get_engine(engine).simulate, lambda scene: write_script(ENGINES["exudyn"], scene)):
         with pytest.raises(SceneError, match=words):
             run(scene)
@@ -506,27 +512,27 @@ def test_the_pivot_holds_whatever_friction_the_scene_gives(engine):
     assert holding(scene.with_(friction=0.6, block={"restitution": None})).friction == 0.6
     isolated = let_go("isolated", 0.2, 0.8).with_(friction=0.6)
     assert holding(isolated) is isolated  # the base follows
-    found = get_engine(engine).simulate(scene.with_(friction=0.6, duration=0.1))
-    assert "the contact's friction is 4.93" in found.warnings[-1].text
+    response = get_engine(engine).simulate(scene.with_(friction=0.6, duration=0.1))
+    assert "the contact's friction is 4.93" in response.warnings[-1].text
 
 
 def check_impacts(engine, scene, bound, jump=1e-3, least=8):
     """jump: bound of the rms error of the base velocity's jump, over the largest; least: so many impacts are more."""
     ground = "isolated" if scene.base else "rigid"
-    found, model = get_engine(engine).simulate(scene), RockingModel.of(scene)
-    before = np.array([impact.rate_before for impact in found.impacts])
-    after = np.array([impact.rate_after for impact in found.impacts])
+    response, model = get_engine(engine).simulate(scene), RockingModel.of(scene)
+    before = np.array([impact.rate_before for impact in response.impacts])
+    after = np.array([impact.rate_after for impact in response.impacts])
     fast = np.abs(before) > 0.06 * np.abs(before).max()
     assert fast.sum() > least
     error = (after / before)[fast] / scene.block.restitution - 1
     assert np.sqrt((error**2).mean()) < bound
     if ground == "isolated":  # (8): the base takes the momentum, of the couple, too
-        jumps = np.array([impact.base_velocity_jump for impact in found.impacts])[fast]
+        jumps = np.array([impact.base_velocity_jump for impact in response.impacts])[fast]
         wanted = (model.jump_arm * (before - after))[fast]
         assert np.sqrt(((jumps - wanted) ** 2).mean()) < jump * np.abs(wanted).max()
-    assert found.outcome == exact(scene).outcome == "rocks"
-    (said,) = [one for one in found.warnings if one.quantity == "restitution"]
-    assert str(said).startswith(f"restitution given, {scene.block.restitution:.4g}")
+    assert response.outcome == exact(scene).outcome == "rocks"
+    (caution,) = [warning for warning in response.warnings if warning.quantity == "restitution"]
+    assert str(caution).startswith(f"restitution given, {scene.block.restitution:.4g}")
 
 
 @every_coupled

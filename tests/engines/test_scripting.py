@@ -60,9 +60,11 @@ def law(name, **values):
 
 def upward(scene, **parts):
     """The scene with half of its pulse as vertical motion."""
-    one = scene.motion
-    up = PulseMotion(one.shape, 0.5 * one.amplitude, one.frequency, one.start, **parts)
-    return scene.with_(motion=PulseMotion(one.shape, one.amplitude, one.frequency, one.start, one.phase, up))
+    motion = scene.motion
+    up = PulseMotion(motion.shape, 0.5 * motion.amplitude, motion.frequency, motion.start, **parts)
+    return scene.with_(
+        motion=PulseMotion(motion.shape, motion.amplitude, motion.frequency, motion.start, motion.phase, up)
+    )
 
 
 SHAPES = ("one-sine", "one-cosine", "half-sine", "rectangular", "ricker")
@@ -107,14 +109,14 @@ def rms(errors):
 @pytest.mark.parametrize("name", [*FEW, *(pytest.param(name, marks=pytest.mark.long) for name in SOME | OTHERS)])
 def test_a_script_is_exact(engine, name, tmp_path):
     """To the accuracy that is promised of scripts; and it prints what the project reads."""
-    found = ran(engine, scene := (FEW | SOME | OTHERS)[name], tmp_path)
-    seen, model, given = found.seen, found.model, scene.block.restitution is not None
+    result = ran(engine, scene := (FEW | SOME | OTHERS)[name], tmp_path)
+    seen, model, given = result.seen, result.model, scene.block.restitution is not None
     assert (seen.failure, seen.outcome) == (None, model.outcome)
-    assert found.said.startswith(seen.outcome) or f"\n{seen.outcome}" in found.said  # PyBullet prints on import
+    assert result.said.startswith(seen.outcome) or f"\n{seen.outcome}" in result.said  # PyBullet prints on import
     # A couple that is short against the vibration of exudyn's corners would press them in instead: it is off by more.
     wide = 2 if given and engine == "exudyn" else 1
-    assert rms(found.errors) <= wide * (4e-4 if scene.base or given else 3e-5)
-    assert rms(found.jumps) <= wide * 1e-3
+    assert rms(result.errors) <= wide * (4e-4 if scene.base or given else 3e-5)
+    assert rms(result.jumps) <= wide * 1e-3
     if scene.base:
         assert seen.peak_base_displacement == pytest.approx(model.peak_base_displacement, rel=wide * 3e-4)
     if wide > 1:
@@ -125,38 +127,38 @@ def test_a_script_is_exact(engine, name, tmp_path):
         near = analytic.simulate(scene.with_(block={"slenderness": scene.block.slenderness * (1 + 1e-4)}))
         moved = abs(near.peak_tilt / model.peak_tilt - 1)  # 9e-4 in the most sensitive of these scenes
         assert seen.peak_tilt == pytest.approx(model.peak_tilt, rel=max(1e-3, 2 * moved))
-    check_print(scene, found)
+    check_print(scene, result)
 
 
-def check_print(scene, found):
+def check_print(scene, result):
     """Assert that outcome, peaks and impacts as printed are those that the project reads from the same steps."""
-    said, seen = found.said, found.seen
-    peak = float(re.search(r"tilt ([\d.]+) of the slenderness", said)[1])
+    printed, seen = result.said, result.seen
+    peak = float(re.search(r"tilt ([\d.]+) of the slenderness", printed)[1])
     assert seen.outcome == "overturns" or peak == pytest.approx(seen.peak_tilt_ratio, abs=2e-5)
     if scene.base:
-        base = float(re.search(r"base ([\d.]+) m", said)[1])
+        base = float(re.search(r"base ([\d.]+) m", printed)[1])
         assert base == pytest.approx(seen.peak_base_displacement, rel=1e-4, abs=2e-6)
-    listed = [tuple(map(float, one)) for one in re.findall(r"impact at ([\d.]+) s: e (-?[\d.]+), ", said)]
-    same = [(one, e) for time, e in listed for one in seen.impacts if abs(one.time - time) < 1e-4]
-    assert abs(len(listed) - len(found.errors)) <= 1  # one may be as faint as the limit
+    listed = [tuple(map(float, impact)) for impact in re.findall(r"impact at ([\d.]+) s: e (-?[\d.]+), ", printed)]
+    same = [(impact, e) for time, e in listed for impact in seen.impacts if abs(impact.time - time) < 1e-4]
+    assert abs(len(listed) - len(result.errors)) <= 1  # one may be as faint as the limit
     assert len(same) >= len(listed) - 1
-    for one, e in same:
-        assert e == pytest.approx(one.rate_after / one.rate_before, abs=2e-4)
+    for impact, e in same:
+        assert e == pytest.approx(impact.rate_after / impact.rate_before, abs=2e-4)
 
 
 @every_engine
 @pytest.mark.parametrize("scene", [SAVED, SLIDES_ON_BEARINGS], ids=["rocks", "on bearings"])
 def test_a_script_slides_as_the_model_does_and_says_how_far(engine, scene, tmp_path):
-    found = ran(engine, scene, tmp_path)
-    model, slid = found.model, found.model.sliding
-    assert f"\n{model.outcome}" in f"\n{found.said}"
-    told = [float(number) for number in re.search(r"slip ([\d.]+) m, end (-?[\d.]+)", found.said).groups()]
-    assert told == pytest.approx([slid.peak, slid.end], abs=1e-3 * slid.peak)
-    assert [np.abs(found.slip).max(), found.slip[-1]] == pytest.approx(told, abs=1e-6)
+    result = ran(engine, scene, tmp_path)
+    model, slid = result.model, result.model.sliding
+    assert f"\n{model.outcome}" in f"\n{result.said}"
+    printed = [float(number) for number in re.search(r"slip ([\d.]+) m, end (-?[\d.]+)", result.said).groups()]
+    assert printed == pytest.approx([slid.peak, slid.end], abs=1e-3 * slid.peak)
+    assert [np.abs(result.slip).max(), result.slip[-1]] == pytest.approx(printed, abs=1e-6)
     if model.outcome == "overturns":
-        assert found.seen.overturning_time == pytest.approx(model.overturning_time, rel=1e-3)
+        assert result.seen.overturning_time == pytest.approx(model.overturning_time, rel=1e-3)
     else:
-        assert found.seen.peak_tilt == pytest.approx(model.peak_tilt, abs=2e-4 * scene.block.slenderness)
+        assert result.seen.peak_tilt == pytest.approx(model.peak_tilt, abs=2e-4 * scene.block.slenderness)
 
 
 @every_engine
@@ -203,9 +205,9 @@ def test_numbers_at_the_head_are_all_that_a_reader_changes(engine, tmp_path):
         text, count = re.subn(old, new, text)
         assert count == 1
     script.write_text(text)
-    found = measured(other, script, run_alone(script, "--csv", tmp_path / "history.csv"))
-    assert found.seen.outcome == found.model.outcome and rms(found.errors) <= 4e-4 and len(found.errors)
-    assert found.seen.peak_base_displacement == pytest.approx(found.model.peak_base_displacement, rel=5e-3)
+    result = measured(other, script, run_alone(script, "--csv", tmp_path / "history.csv"))
+    assert result.seen.outcome == result.model.outcome and rms(result.errors) <= 4e-4 and len(result.errors)
+    assert result.seen.peak_base_displacement == pytest.approx(result.model.peak_base_displacement, rel=5e-3)
 
 
 @every_engine
@@ -216,10 +218,10 @@ def test_a_script_ends_with_the_run_and_says_as_it_does_that_nothing_is_decided(
         "beyond its balance": on_ground(block_of(0.2)).with_(motion=None, start={"tilt": 0.22}, duration=0.1),
         "decided": released(on_ground(block_of(0.2))).with_(duration=0.3),
     }[name]
-    found, run = ran(engine, scene, tmp_path), get_engine(engine).simulate(scene)
-    assert (found.trace.time[-1], run.end.time) == pytest.approx((scene.duration, found.trace.time[-1]), abs=1e-9)
+    result, run = ran(engine, scene, tmp_path), get_engine(engine).simulate(scene)
+    assert (result.trace.time[-1], run.end.time) == pytest.approx((scene.duration, result.trace.time[-1]), abs=1e-9)
     assert run.decided == (name == "decided")
-    assert re.search(rf"^{re.escape(run.outcome_text)}[;,]", found.said, re.MULTILINE)
+    assert re.search(rf"^{re.escape(run.outcome_text)}[;,]", result.said, re.MULTILINE)
 
 
 @every_engine
@@ -265,7 +267,9 @@ def test_a_script_keeps_the_friction_of_its_scene_or_says_why_not(engine, tmp_pa
     assert words in " ".join(ast.get_docstring(ast.parse(text)).split()) and words in unkept_friction(scene)
     plain = scene.with_(block={"restitution": None})
     natural = RockingModel.of(plain).restitution
-    scripts = [write_script(ENGINES[engine], one, "a") for one in (plain, plain.with_(block={"restitution": natural}))]
+    scripts = [
+        write_script(ENGINES[engine], given, "a") for given in (plain, plain.with_(block={"restitution": natural}))
+    ]
     assert scripts[0] == scripts[1]  # eq. (7) needs no couple
     for kept in (scene.with_(friction=6.0), *(scene.with_(block={"restitution": e}) for e in (natural, None))):
         text = written(engine, kept, tmp_path).read_text()
@@ -275,8 +279,8 @@ def test_a_script_keeps_the_friction_of_its_scene_or_says_why_not(engine, tmp_pa
 @pytest.mark.parametrize("restitution, mu", [(None, 5.0), (0.8, 1 / math.tan(0.1))])
 def test_a_script_without_a_friction_has_as_much_as_a_couple_needs(restitution, mu):
     scene = released(on_ground(block_of(0.1))).with_(block={"restitution": restitution})
-    said = re.search(r"^mu = (\S+)", "".join(write_script(ENGINES["exudyn"], scene).values()), re.MULTILINE)
-    assert float(said[1]) == pytest.approx(mu, rel=1e-5)
+    friction = re.search(r"^mu = (\S+)", "".join(write_script(ENGINES["exudyn"], scene).values()), re.MULTILINE)
+    assert float(friction[1]) == pytest.approx(mu, rel=1e-5)
 
 
 @pytest.mark.parametrize("damage", [("0.005 ", "1e9 "), ("0.01 ", "nan "), ("0.015 ", "0.015 nan #")])
@@ -300,8 +304,8 @@ def test_a_record_of_uneven_times_is_the_same_motion(tmp_path):
     assert not any(float(row.split()[1]) for row in rows[:100])
     record.write_text("\n".join([head, rows[0], *rows[90:]]))
     run_alone(script, "--csv", tmp_path / "uneven.csv")
-    one, other = (np.loadtxt(tmp_path / name, delimiter=",", skiprows=1) for name in ("even.csv", "uneven.csv"))
-    assert abs(other[:, 1]).max() == pytest.approx(abs(one[:, 1]).max(), rel=1e-9)
+    even, uneven = (np.loadtxt(tmp_path / name, delimiter=",", skiprows=1) for name in ("even.csv", "uneven.csv"))
+    assert abs(uneven[:, 1]).max() == pytest.approx(abs(even[:, 1]).max(), rel=1e-9)
 
 
 # Mistakes.
@@ -313,15 +317,15 @@ def test_every_mistake_can_be_made_in_every_scene_that_has_what_it_concerns(engi
     engine = ENGINES[engine]
     tried = [(scene, with_mistake(engine, scene, None)) for scene in scenes().values()]
     known = engine.known_mistakes().values()
-    assert len({tuple(one.replacements.items()) for one in known}) == len(known)
-    assert {one.group for one in known} == set(GROUPS)
-    assert all(len(one.key) <= 20 and one.done[0].isupper() or one.done[0].isdigit() for one in known)
-    for one in known:
-        fitting = [(scene, plain) for scene, plain in tried if one.fits(scene)]
-        assert fitting, one.key
+    assert len({tuple(mistake.replacements.items()) for mistake in known}) == len(known)
+    assert {mistake.group for mistake in known} == set(GROUPS)
+    assert all(len(mistake.key) <= 20 and mistake.done[0].isupper() or mistake.done[0].isdigit() for mistake in known)
+    for mistake in known:
+        fitting = [(scene, plain) for scene, plain in tried if mistake.fits(scene)]
+        assert fitting, mistake.key
         for scene, plain in fitting:
-            files = with_mistake(engine, scene, one)
-            assert files.keys() == plain.keys() and files != plain, (scene.name, one.key)
+            files = with_mistake(engine, scene, mistake)
+            assert files.keys() == plain.keys() and files != plain, (scene.name, mistake.key)
             ast.parse(files["script.py"])
     assert ENGINES["mujoco"].known_mistakes() == {}
 

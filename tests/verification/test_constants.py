@@ -78,7 +78,7 @@ def sample():
     """([scenes whose impacts are judged], [statues whose peak tilts are], [scenes whose outcomes are])."""
     isolated = load_scene("free-rocking-isolated").with_(duration=4.0)
     heavy = {"base": Base(mass=MASS), "block": caryatid_block(0.2), "start": Start(tilt=0.12)}
-    released = [free_scene(*one, 0.6) for one in itertools.product((0.15, 0.45), (None, BASE.mass / MASS))]
+    released = [free_scene(*case, 0.6) for case in itertools.product((0.15, 0.45), (None, BASE.mass / MASS))]
     drawn = (scene for index in itertools.count() if (scene := random_scene(0, index)).motion and _stays(scene))
     near = [hard_cases()[f"critical pulse {sign}0.001"].scene for sign in "-+"]
     statues = list(itertools.islice(drawn, 12))
@@ -102,7 +102,7 @@ def ran(engine, variant, **settings):
         abs(run.peak_tilt_ratio - simulate(scene, history=False).peak_tilt_ratio)
         for scene, run in zip(statues, runs[len(released) :], strict=False)
     ]
-    bits = repr([(run.peak_tilt_ratio, run.steps, some) for run, some in zip(runs, impacts, strict=True)])
+    bits = repr([(run.peak_tilt_ratio, run.steps, each) for run, each in zip(runs, impacts, strict=True)])
     errors = rms(sum(impacts[: len(released)], [])), *np.maximum((np.median(peaks), max(peaks)), LEAST)
     return [run.outcome for run in runs], bits, np.array(errors)
 
@@ -136,13 +136,13 @@ def test_every_constant_declared_is_a_number_that_is_there(engine, constant, mon
 @each_constant
 def test_a_constant_halved_or_doubled_changes_as_much_as_is_listed(engine, constant, monkeypatch):
     outcomes, bits, errors = as_it_is(engine, ACCURATE[engine])
-    found = []
+    factors = []
     for factor in (0.5, 2.0):
         with monkeypatch.context() as patch:
             ended, *others = ran(engine, ACCURATE[engine], **changed(engine, constant, factor, patch))
         assert ended == outcomes
         ratios = others[1] / errors
-        found.append(None if others[0] == bits else float(max(*ratios, *(1 / ratios))))
+        factors.append(None if others[0] == bits else float(max(*ratios, *(1 / ratios))))
     listed = MOVES[engine].get(constant, (None, None))
-    print(f"{engine}, {constant}: {found}, listed {listed}")
-    assert found == [one and pytest.approx(one, rel=ALMOST) for one in listed]
+    print(f"{engine}, {constant}: {factors}, listed {listed}")
+    assert factors == [value and pytest.approx(value, rel=ALMOST) for value in listed]

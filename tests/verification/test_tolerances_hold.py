@@ -26,10 +26,10 @@ def shared(monkeypatch):
     traced = agreement.traced
 
     def once(engine, variant, scene, history=True):
-        asked = engine, variant, pickle.dumps(scene)
-        if asked not in KEPT:
-            KEPT[asked] = traced(engine, variant, scene)
-        return KEPT[asked]
+        key = engine, variant, pickle.dumps(scene)
+        if key not in KEPT:
+            KEPT[key] = traced(engine, variant, scene)
+        return KEPT[key]
 
     monkeypatch.setattr(agreement, "traced", once)
 
@@ -56,20 +56,21 @@ def test_row_of_the_tolerance_table(row, shared):
 
 
 def row(quantity, engine, variant, scenes):
-    (found,) = [
-        one
-        for one in TABLE
-        if (one.quantity, one.engine, one.variant, one.scenes) == (quantity, engine, variant, scenes)
+    (match,) = [
+        candidate
+        for candidate in TABLE
+        if (candidate.quantity, candidate.engine, candidate.variant, candidate.scenes)
+        == (quantity, engine, variant, scenes)
     ]
-    return found
+    return match
 
 
 def assert_caught(rows):
     """Every row is out of its bound, by a number: a run that broke off is not what is meant."""
-    for one in rows:
-        value = one.found()
-        assert math.isfinite(value), f"{one.name}: {value}"
-        assert not one.holds(value), f"{one.name}: the mutation is not seen, {value:.3g} {one.unit}"
+    for tested in rows:
+        value = tested.found()
+        assert math.isfinite(value), f"{tested.name}: {value}"
+        assert not tested.holds(value), f"{tested.name}: the mutation is not seen, {value:.3g} {tested.unit}"
 
 
 def run_otherwise(monkeypatch, change=lambda scene: scene, **settings):
@@ -161,10 +162,10 @@ class Lagging(BearingLaw):
 
 @pytest.mark.slow
 def test_a_bearing_force_that_lags_one_step_fails(monkeypatch):
-    one = row("bearing force replayed", *DEFAULT, "isolated Caryatid, synthetic motion")
+    tested = row("bearing force replayed", *DEFAULT, "isolated Caryatid, synthetic motion")
     monkeypatch.setattr("engines.loop.BearingLaw", Lagging)
     with pytest.raises(agreement.Unmeasurable, match="does not match the bearing force"):  # the run itself says so
-        one.found()
+        tested.found()
 
 
 # Step size, and what stands for it in an adaptive engine.
