@@ -193,6 +193,8 @@ class Engine:
         Name of a module whose ``MISTAKES``, a tuple of `engines.contract.Mistake`, are made in that script.
     subject : bool
         The studies are about this engine; engines that are no subject are shown for comparison.
+    title : str
+        The name as its makers write it, shown on pages; "": `name`.
     origin : str
         The entry point that declared an engine of another package; "" for engines of this project.
     """
@@ -209,6 +211,7 @@ class Engine:
     script: str | None = None
     mistakes: str | None = None
     subject: bool = False
+    title: str = ""
     origin: str = ""
 
     def load(self) -> ModuleType:

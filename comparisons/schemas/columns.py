@@ -18,10 +18,14 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
+from engines import ENGINES
+
 Row = Mapping[str, Any]
 Key = str | Callable[[Any], Any]
 
 
+# An engine's name, unless it is an argument of a command, a part of a longer name or of a list without blanks.
+TYPED = r"(?<!engine )(?<!engines )(?<!script )(?<![\w/=.,\[-])(?:{})(?![\w/=\]-]|[.,]\S)"
 MINUS_DIGITS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 UNIT = re.compile(r"(?<=[\d⁰¹²³⁴⁵⁶⁷⁸⁹]) (?=(?:ms|s|m|N/m|kg|rad|deg|Hz|g|of)\b|[%×])|(?<=\bof) (?=\d)")
 
@@ -66,8 +70,15 @@ def typeset(text: str) -> str:
 
 
 def unbroken(text: str) -> str:
-    """The text with no line break between a number and its unit, or the count that it is of."""
-    return UNIT.sub("\u00a0", text)
+    """The text with no line break between a number and its unit, or the count that it is of, and `spelled`."""
+    return UNIT.sub("\u00a0", spelled(text))
+
+
+def spelled(text: str) -> str:
+    """The text with engines called as their makers write them, but in commands and lists of names to be typed."""
+    titles = {name: engine.title for name, engine in ENGINES.items() if engine.title}
+    names = "|".join(map(re.escape, titles))
+    return re.sub(TYPED.format(names), lambda found: titles[found[0]], text) if titles else text
 
 
 def power_of_ten(value: float) -> str:

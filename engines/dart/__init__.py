@@ -9,6 +9,7 @@ __all__ = ["ENGINE"]  # keeps the reference from importing the adapter of an ext
 
 ENGINE = Engine(
     name="dart",
+    title="DART",
     package="dartpy",
     install=EXTRA.format("dart"),
     adapter="engines.dart.adapter",

@@ -9,6 +9,7 @@ __all__ = ["ENGINE"]  # keeps the reference from importing the adapter of an ext
 
 ENGINE = Engine(
     name="drake",
+    title="Drake",
     package="pydrake",
     install=EXTRA.format("drake"),
     adapter="engines.drake.adapter",

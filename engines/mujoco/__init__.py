@@ -9,6 +9,7 @@ __all__ = ["ENGINE"]  # keeps the reference from importing the adapter of an ext
 
 ENGINE = Engine(
     name="mujoco",
+    title="MuJoCo",
     package="mujoco",
     install=EXTRA.format("mujoco"),
     adapter="engines.mujoco.adapter",

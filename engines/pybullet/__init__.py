@@ -8,6 +8,7 @@ from ..contract import HELD, LARGE_STEP, NO_MATTER, READING, ROUNDING, STEP, Eng
 
 ENGINE = Engine(
     name="pybullet",
+    title="PyBullet",
     package="pybullet",
     install="pip install pybullet (its wheels end at CPython 3.11: use Python 3.11)",
     adapter="engines.pybullet.adapter",

@@ -20,7 +20,7 @@ from comparisons.plotting.wording import (
     listed,
     tally,
 )
-from comparisons.schemas.columns import NAME, Column, number, percent, short
+from comparisons.schemas.columns import NAME, Column, number, percent, short, spelled
 
 ROWS = [
     {"part": "cell", "engine": "one", "variant": "fine", "ratio": None, "rms": 1.234e-5, "failed": 0, "runs": 4},
@@ -213,3 +213,16 @@ def test_what_so_few_motions_can_show_is_computed_from_their_number():
 def test_no_mark_is_told_by_its_colour_alone():
     signs = [Mark("1", level).sign for level in SIGNS]
     assert len(set(signs)) == len(SIGNS) == 5 and all(signs)
+
+
+@pytest.mark.parametrize(
+    "text, shown",
+    [
+        ("1 of 2 (pybullet); none in mujoco.", "1 of 2 (PyBullet); none in MuJoCo."),
+        ("rocking run SCENE --engine pybullet", "rocking run SCENE --engine pybullet"),
+        ("pip install rocking[dart,drake]", "pip install rocking[dart,drake]"),
+        ("engines/dart/adapter.py, import mujoco.viewer", "engines/dart/adapter.py, import mujoco.viewer"),
+    ],
+)
+def test_engines_are_called_as_their_makers_write_them_but_where_a_name_is_typed(text, shown):
+    assert spelled(text) == shown
