@@ -96,16 +96,16 @@ def _advance(state, load, oscillator, over):
 def _largest_inside(state, load, oscillator, h):
     """|x| where the velocity changes sign between 0 and h, by bisection of the exact solution."""
     w, zeta, wd = oscillator
-    low, high, found = 0.0, h, state[0]
+    low, high, displacement = 0.0, h, state[0]
     for _ in range(50):
         middle = 0.5 * (low + high)
         over = math.exp(-zeta * w * middle), math.cos(wd * middle), math.sin(wd * middle), middle
-        found, speed = _advance(state, load, oscillator, over)
+        displacement, speed = _advance(state, load, oscillator, over)
         if speed * state[1] > 0:
             low = middle
         else:
             high = middle
-    return abs(found)
+    return abs(displacement)
 
 
 @inner
@@ -165,8 +165,8 @@ class BearingScan:
     def holds(self, period: float, damping: float) -> bool:
         """Whether bearings of this period [s] and damping [-] are suitable; False outside the range scanned."""
         axes = self.dampings, np.log(self.periods)
-        found = RegularGridInterpolator(axes, self.demand, bounds_error=False, fill_value=math.inf)
-        return bool(found((damping, math.log(period))) <= 1)
+        interpolated = RegularGridInterpolator(axes, self.demand, bounds_error=False, fill_value=math.inf)
+        return bool(interpolated((damping, math.log(period))) <= 1)
 
     def bearings(self, period: float, damping: float) -> Bearings:
         """The bearings of a period [s] and one of the dampings scanned [-]."""
@@ -278,9 +278,9 @@ def hardest(
     demands = []
     for motion in motions:
         run = simulate_many([scene.with_(bearings=bearings, motion=motion, duration=None)], contact=True)
-        found = _demands(run, scene, stroke, tilt)
-        demands += [(limit, motion, float(demand[0])) for limit, demand in found.items()]
-    return max(demands, key=lambda one: one[2])
+        demand_by_limit = _demands(run, scene, stroke, tilt)
+        demands += [(limit, motion, float(demand[0])) for limit, demand in demand_by_limit.items()]
+    return max(demands, key=lambda row: row[2])
 
 
 def _worst(scene, scenes, motions, stroke, tilt, workers, progress):
@@ -288,27 +288,27 @@ def _worst(scene, scenes, motions, stroke, tilt, workers, progress):
     demand, moved, done = np.zeros(len(scenes)), np.zeros(len(scenes)), 0
     for motion in motions:
         for part in np.array_split(np.arange(len(scenes)), 1 + len(scenes) // CHUNK):
-            found = simulate_many([scenes[j].with_(motion=motion) for j in part], contact=True, workers=workers)
-            moved[part] = np.maximum(moved[part], found.peak_base_displacement)
-            demand[part] = np.maximum.reduce([demand[part], *_demands(found, scene, stroke, tilt).values()])
+            outcomes = simulate_many([scenes[j].with_(motion=motion) for j in part], contact=True, workers=workers)
+            moved[part] = np.maximum(moved[part], outcomes.peak_base_displacement)
+            demand[part] = np.maximum.reduce([demand[part], *_demands(outcomes, scene, stroke, tilt).values()])
             done += len(part)
             if progress:
                 progress(done, len(scenes) * len(motions))
     return demand, moved
 
 
-def _demands(found: Outcomes, scene: Scene, stroke: float, tilt: float) -> dict[str, np.ndarray]:
+def _demands(outcomes: Outcomes, scene: Scene, stroke: float, tilt: float) -> dict[str, np.ndarray]:
     """{name of LIMITS: demand of each run}; where the block lifts or slides, that on this limit is above 1."""
     beyond = np.nextafter(1.0, 2.0)
-    lost = found.failed | found.overturns if tilt else found.failed
-    demands = {"model": np.where(lost, math.inf, 0.0), "stroke": found.peak_base_displacement / stroke}
+    lost = outcomes.failed | outcomes.overturns if tilt else outcomes.failed
+    demands = {"model": np.where(lost, math.inf, 0.0), "stroke": outcomes.peak_base_displacement / stroke}
     if scene.friction is not None:
-        rubs = found.friction_demand / scene.friction
-        demands["slip"] = np.maximum(rubs, np.where(found.slid, beyond, 0.0))
+        rubs = outcomes.friction_demand / scene.friction
+        demands["slip"] = np.maximum(rubs, np.where(outcomes.slid, beyond, 0.0))
     if tilt:
-        return {**demands, "tilt": found.peak_tilt / scene.block.slenderness / tilt}
-    uplift = found.friction_demand / math.tan(scene.block.slenderness)
-    return {**demands, "uplift": np.maximum(uplift, np.where(found.lifted, beyond, 0.0))}
+        return {**demands, "tilt": outcomes.peak_tilt / scene.block.slenderness / tilt}
+    uplift = outcomes.friction_demand / math.tan(scene.block.slenderness)
+    return {**demands, "uplift": np.maximum(uplift, np.where(outcomes.lifted, beyond, 0.0))}
 
 
 def _crossed(coarse: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
@@ -335,13 +335,13 @@ def _between(demand: np.ndarray) -> np.ndarray:
 def _designs(mass: float, stroke: float, design: Mapping[str, Any]) -> tuple[np.ndarray, list[Bearings]]:
     """(evenly spaced dampings for which bearings exist, their designs for 1 s)."""
 
-    def made(damping):
+    def designed(damping):
         return design_bearings(mass, 1.0, float(damping), stroke, **design)
 
     possible = []
     for damping in np.arange(DAMPINGS[0], DAMPINGS[1], DAMPING_STEP):
         try:
-            made(damping)
+            designed(damping)
             possible.append(damping)
         except SettingError as error:
             problem = error
@@ -349,7 +349,7 @@ def _designs(mass: float, stroke: float, design: Mapping[str, Any]) -> tuple[np.
         raise SettingError(f"no bearings of {DAMPINGS[0]:g} to {DAMPINGS[1]:g} of critical damping: {problem}")
     number = COARSE * math.ceil((possible[-1] - possible[0]) / DAMPING_STEP / COARSE)
     dampings = np.linspace(possible[0], possible[-1], number + 1)
-    return dampings, [made(damping) for damping in dampings]
+    return dampings, [designed(damping) for damping in dampings]
 
 
 def _check(scene, motions, stroke, tilt, periods):

@@ -82,13 +82,13 @@ class SceneError(ValueError):
 
     def _line(self) -> str:
         where = f"{cut(self.file, FILE_LENGTH)}: " if self.file else ""
-        found = "" if self.value is None else f" = {_shown(self.value)}"
+        value_text = "" if self.value is None else f" = {_shown(self.value)}"
         problem, remedy = cut(self.problem, TEXT_LENGTH), cut(self.remedy, TEXT_LENGTH)
-        return f"{where}{cut(self.key, KEY_LENGTH)}{found}: {problem}; {remedy}"
+        return f"{where}{cut(self.key, KEY_LENGTH)}{value_text}: {problem}; {remedy}"
 
     def with_others(self, *mistakes: SceneError) -> SceneError:
         """The same error with further mistakes, and those that they carry, added."""
-        others = (*self.others, *(one for mistake in mistakes for one in (mistake, *mistake.others)))
+        others = (*self.others, *(error for mistake in mistakes for error in (mistake, *mistake.others)))
         return SceneError(self.key, self.value, self.problem, self.remedy, self.file, others)
 
     def in_file(self, file: str | PathLike[str]) -> SceneError:

@@ -130,10 +130,10 @@ class Margin:
 
         A short band of rocking between standing and overturning does not count.
         """
-        found = self.outcomes
+        bands = self.outcomes
         return any(
             high - low < 2 * self.step and not (outcome == "rocks" and before != after)
-            for (_, _, before), (low, high, outcome), (_, _, after) in zip(found, found[1:], found[2:], strict=False)
+            for (_, _, before), (low, high, outcome), (_, _, after) in zip(bands, bands[1:], bands[2:], strict=False)
         )
 
     def beyond(self, change: float) -> str:
@@ -297,7 +297,7 @@ def margins(
     values = {name: value for name, each in QUANTITIES.items() if (value := each.value(scene)) is not None}
     values = {name: value for name, value in values.items() if not only or name in only}
     check_cost(scene, len(values) * len(changes))
-    found = []
+    results = []
     for name, value in values.items():
         quantity = QUANTITIES[name]
         if progress:
@@ -307,8 +307,8 @@ def margins(
         if margin.interleaved:
             bands, ends = _bands(scene, name, _finer(margin, changes), tilt, workers)
             margin = replace(margin, bands=bands, **ends)
-        found.append(margin)
-    return sorted(found, key=lambda margin: math.inf if margin.nearest is None else abs(margin.nearest))
+        results.append(margin)
+    return sorted(results, key=lambda margin: math.inf if margin.nearest is None else abs(margin.nearest))
 
 
 def check_cost(scene: Scene, runs: int, most: float = MOST_STEPS) -> None:
@@ -352,8 +352,8 @@ def _bands(scene, name, changes, tilt, workers):
     for _ in range(BISECTIONS if len(edges) else 0):
         middle = 0.5 * (low + high)
         points, where = np.unique(middle, return_inverse=True)
-        found, failed = _states(scene, name, points, None, tilt, workers)
-        same = (found[where, columns] == before) & ~failed[where]
+        middle_states, failed = _states(scene, name, points, None, tilt, workers)
+        same = (middle_states[where, columns] == before) & ~failed[where]
         low, high = np.where(same, middle, low), np.where(same, high, middle)
     boundaries = 0.5 * (low + high)
     bands, state = [], states[0]
@@ -397,16 +397,16 @@ def _refusal(error):
 def _scenes(scene, name, changes):
     """(the changes about 0 that give a valid scene, their scenes, {"ends_down", "ends_up": why none lies beyond})."""
     changed = QUANTITIES[name].changed
-    kept, ends = {0.0: scene}, {}
+    valid, ends = {0.0: scene}, {}
     for key, direction in (("ends_up", changes[changes > 0]), ("ends_down", changes[changes < 0][::-1])):
         for change in direction:
             try:
-                kept[change] = changed(scene, 1 + change)
+                valid[change] = changed(scene, 1 + change)
             except SceneError as error:
                 ends[key] = _refusal(error)
                 break
-    ordered = sorted(kept)
-    return np.array(ordered), [kept[change] for change in ordered], ends
+    ordered = sorted(valid)
+    return np.array(ordered), [valid[change] for change in ordered], ends
 
 
 def _states(scene, name, changes, scenes, tilt, workers):
@@ -445,32 +445,32 @@ def nearby(scene: Scene, *, workers: int | None = None) -> tuple[np.ndarray, Out
     return changes, simulate_many([scene] * len(changes), scales=1 + changes, workers=workers)
 
 
-def cliffs(scene: Scene, changes: np.ndarray, found: Outcomes) -> tuple[Caution, ...]:
+def cliffs(scene: Scene, changes: np.ndarray, outcomes: Outcomes) -> tuple[Caution, ...]:
     """A warning if a change of the motion below `SHARE` changes the outcome, or the peak tilt by a factor of `FOLD`.
 
     changes, found : results of `nearby`. The value of a `Caution` is the smallest such change.
     """
-    own = len(changes) // 2
-    names, ratios = found.names, found.peak_tilt / scene.block.slenderness
-    said = []
-    other = _nearest(changes, names != names[own])
-    if other is not None:
-        there = "the analytic model fails" if names[other] == "failed" else f"it {names[other]}"
+    centre = len(changes) // 2
+    names, ratios = outcomes.names, outcomes.peak_tilt / scene.block.slenderness
+    cautions = []
+    changed = _nearest(changes, names != names[centre])
+    if changed is not None:
+        instead = "the analytic model fails" if names[changed] == "failed" else f"it {names[changed]}"
         text = (
-            f"The outcome is sensitive to changes of the motion below {SHARE:.0%}: the block {names[own]}, but at "
-            f"{changes[other]:+.2%} {there}."
+            f"The outcome is sensitive to changes of the motion below {SHARE:.0%}: the block {names[centre]}, but at "
+            f"{changes[changed]:+.2%} {instead}."
         )
-        said.append(Caution("motion", text, "outcome", float(changes[other]), SHARE))
+        cautions.append(Caution("motion", text, "outcome", float(changes[changed]), SHARE))
     upright = (names != "overturns") & (names != "failed")
-    low, high = np.minimum(ratios, ratios[own]), np.maximum(ratios, ratios[own])
-    apart = _nearest(changes, upright & upright[own] & (high >= np.maximum(FOLD * low, SEEN)))
+    low, high = np.minimum(ratios, ratios[centre]), np.maximum(ratios, ratios[centre])
+    apart = _nearest(changes, upright & upright[centre] & (high >= np.maximum(FOLD * low, SEEN)))
     if apart is not None:
         text = (
-            f"The peak tilt is sensitive to changes of the motion below {SHARE:.0%}: {ratios[own]:.3g} of the "
+            f"The peak tilt is sensitive to changes of the motion below {SHARE:.0%}: {ratios[centre]:.3g} of the "
             f"slenderness, but {ratios[apart]:.3g} at {changes[apart]:+.2%}."
         )
-        said.append(Caution("motion", text, "peak tilt", float(changes[apart]), SHARE))
-    return tuple(said)
+        cautions.append(Caution("motion", text, "peak tilt", float(changes[apart]), SHARE))
+    return tuple(cautions)
 
 
 def _nearest(changes: np.ndarray, wanted: np.ndarray) -> int | None:

@@ -371,7 +371,7 @@ def paired(level: SampledMotion, upright: SampledMotion) -> SampledMotion:
     SceneError
         The two together would hold more than `MOST_SAMPLES`.
     """
-    said: list[str] = []
+    notes: list[str] = []
     step = min(level.dt, upright.dt)
     samples = max(level.end, upright.end) / step
     if samples > MOST_SAMPLES:
@@ -381,28 +381,28 @@ def paired(level: SampledMotion, upright: SampledMotion) -> SampledMotion:
             f"beside {level.end:.4g} s at {level.dt:.4g} s they are {samples:.3g} samples together",
             f"resample the finer one, to at most {MOST_SAMPLES:.0e} in the longer one's time",
         )
-    first, second = (_resampled(motion, step, said) for motion in (level, upright))
+    first, second = (_resampled(motion, step, notes) for motion in (level, upright))
     count = max(len(first), len(second))
     first, second = (
-        _padded(samples, count, step, motion.label, said) for samples, motion in ((first, level), (second, upright))
+        _padded(samples, count, step, motion.label, notes) for samples, motion in ((first, level), (second, upright))
     )
-    warnings = tuple(dict.fromkeys((*level.warnings, *upright.warnings, *said)))
+    warnings = tuple(dict.fromkeys((*level.warnings, *upright.warnings, *notes)))
     vertical = replace(upright, dt=step, samples=second, warnings=())
     return SampledMotion(step, first, f"{level.label}, vertical {upright.label}", warnings, vertical)
 
 
-def _resampled(motion: SampledMotion, step: float, said: list[str]) -> np.ndarray:
+def _resampled(motion: SampledMotion, step: float, notes: list[str]) -> np.ndarray:
     """Samples at the step [s]; the last one at the motion's end, or the first after it."""
     if math.isclose(motion.dt, step, rel_tol=SAME_STEP):
         return motion.samples
-    said.append(f"{motion.label}: resampled from {motion.dt:.6g} s to the {step:.6g} s of the other component")
+    notes.append(f"{motion.label}: resampled from {motion.dt:.6g} s to the {step:.6g} s of the other component")
     times = step * np.arange(math.ceil(motion.end / step * (1 - SAME_STEP)) + 1)
     last = times[-1] <= motion.end * (1 + SAME_STEP)
     return motion.acceleration(np.append(times[:-1], motion.end) if last else times)
 
 
-def _padded(samples: np.ndarray, count: int, step: float, label: str, said: list[str]) -> np.ndarray:
+def _padded(samples: np.ndarray, count: int, step: float, label: str, notes: list[str]) -> np.ndarray:
     missing = count - len(samples)
     if missing:
-        said.append(f"{label}: {missing * step:.6g} s of zeros put at its end, as the other component is longer")
+        notes.append(f"{label}: {missing * step:.6g} s of zeros put at its end, as the other component is longer")
     return np.append(samples, np.zeros(missing))

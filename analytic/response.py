@@ -288,7 +288,7 @@ class Response:
             if dataclasses.is_dataclass(value):
                 value = dataclasses.asdict(value)  # type: ignore[arg-type]  # no class is a field's value
             elif isinstance(value, tuple):
-                value = [dataclasses.asdict(one) if dataclasses.is_dataclass(one) else one for one in value]  # type: ignore[arg-type]  # as above
+                value = [dataclasses.asdict(entry) if dataclasses.is_dataclass(entry) else entry for entry in value]  # type: ignore[arg-type]  # as above
             values[part.name] = value
         values["impact_count"] = len(self.impacts)
         return _finite(values)
@@ -313,7 +313,7 @@ class Response:
         numbers = {part.name: _number(values.get(part.name)) for part in dataclasses.fields(cls) if part.type is float}
         series = {name: tuple(values[name]) for name in ("uplifts", "rests")}
         series |= {
-            name: tuple(kind(**one) for one in values.get(name, ()))
+            name: tuple(kind(**entry) for entry in values.get(name, ()))
             for name, kind in (("warnings", Caution), ("differences", Difference))
         }
         return cls(
@@ -354,20 +354,20 @@ def _finite(value: Any) -> Any:
 
 def scene_warnings(scene: "Scene") -> tuple[Caution, ...]:
     """Warnings that precede any outcome of a scene: a base without bearings or friction, a start beyond balance."""
-    found, tilt, gamma = [], scene.start.tilt, scene.block.slenderness
+    warnings, tilt, gamma = [], scene.start.tilt, scene.block.slenderness
     if scene.base is not None and scene.bearings is None:
         words = (
             "No friction is modelled under the base, and it has no bearings: such a base exists in thought experiments "
             "only. Leave it out if the pedestal is fixed to the ground."
         )
-        found.append(Caution("model", words))
+        warnings.append(Caution("model", words))
     if abs(tilt) >= gamma:
         words = (
             f"The block starts at a tilt of {tilt:.4g} rad, past its balance at {gamma:.4g} rad: it falls unless "
             "something brings it back."
         )
-        found.append(Caution("limit", words, "start.tilt", tilt, gamma))
-    return tuple(found)
+        warnings.append(Caution("limit", words, "start.tilt", tilt, gamma))
+    return tuple(warnings)
 
 
 def limit_warnings(scene: "Scene", peak_base_displacement: float, peak_slip: float = 0.0) -> tuple[Caution, ...]:
@@ -375,18 +375,18 @@ def limit_warnings(scene: "Scene", peak_base_displacement: float, peak_slip: flo
 
     peak_slip : 0 of a block that overturns, whose slip goes on in its fall.
     """
-    found = []
+    warnings = []
     limit = None if scene.bearings is None else scene.bearings.x_max
     if limit is not None and peak_base_displacement > limit:
         words = (
             f"the base moves by {peak_base_displacement:.3g} m, beyond the x_max = {limit:.3g} m of its bearings: they "
             "may tear or hit a stop, and the outcome is outside the model"
         )
-        found.append(Caution("limit", words, "peak_base_displacement", peak_base_displacement, limit))
+        warnings.append(Caution("limit", words, "peak_base_displacement", peak_base_displacement, limit))
     if peak_slip > scene.block.half_width:
         words = (
             f"the block slips by {peak_slip:.3g} m, beyond its half width of {scene.block.half_width:.3g} m: the "
             "model's support has no edge, and from one as wide as the block it would fall"
         )
-        found.append(Caution("limit", words, "peak_slip", peak_slip, scene.block.half_width))
-    return tuple(found)
+        warnings.append(Caution("limit", words, "peak_slip", peak_slip, scene.block.half_width))
+    return tuple(warnings)

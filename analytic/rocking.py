@@ -432,9 +432,9 @@ def design_bearings(
     except (ArithmeticError, ValueError) as error:  # scipy's, where numbers overflow
         if isinstance(error, SettingError):
             raise
-        asked = ", ".join(f"{name} = {value:.4g}" for name, value in targets.items() if name != "delta_k")
+        targets_text = ", ".join(f"{name} = {value:.4g}" for name, value in targets.items() if name != "delta_k")
         ratio = f"stiffness_ratio = {stiffness_ratio:.4g}"
-        raise SettingError(f"{asked}, {ratio}: no bearings give that; change one of them") from None
+        raise SettingError(f"{targets_text}, {ratio}: no bearings give that; change one of them") from None
     kb = secant - f0 / x_max
     bearings = Bearings(count=count, ka=stiffness_ratio * kb, kb=kb, alpha=alpha, delta_k=delta_k, x_max=x_max)
     got = properties(bearings, mass, x_max)

@@ -93,11 +93,11 @@ class Part(BaseModel):
 
 def scene_error(error: ValidationError, part: type[Part]) -> SceneError:
     """All mistakes that pydantic found in a `part`, one per key; unknown keys first, as they explain missing ones."""
-    found: dict[str, SceneError] = {}
+    by_key: dict[str, SceneError] = {}
     for problem in sorted(error.errors(), key=lambda problem: problem["type"] != "extra_forbidden"):
         mistake = _mistake(problem, part)
-        found.setdefault(mistake.key, mistake)
-    first, *others = found.values()
+        by_key.setdefault(mistake.key, mistake)
+    first, *others = by_key.values()
     return first.with_others(*others)
 
 

@@ -101,9 +101,9 @@ MOTIONS = {
 }
 
 
-def _as_text(found: object) -> object:
+def _as_text(value: object) -> object:
     """The number of a channel as text."""
-    return str(found) if type(found) is int else found
+    return str(value) if type(value) is int else value
 
 
 class _Motion(Part):
@@ -180,15 +180,15 @@ class _Motion(Part):
 
     def _read(self, path: Path, key: Literal["record", "vertical"]) -> SampledMotion:
         if key == "record":
-            said: dict[str, Any] = {"column": self.column, "channel": self.channel}
-            return read_record(path, self.units, self.scale, dt=self.dt, **said)
-        said = {"column": self.vertical_column, "channel": self.vertical_channel}
+            choice: dict[str, Any] = {"column": self.column, "channel": self.channel}
+            return read_record(path, self.units, self.scale, dt=self.dt, **choice)
+        choice = {"column": self.vertical_column, "channel": self.vertical_channel}
         try:
-            return read_record(path, None, self.scale, dt=self.dt, **said)
+            return read_record(path, None, self.scale, dt=self.dt, **choice)
         except SceneError as error:
             if error.key != "motion.units":
                 raise
-        return read_record(path, self.units, self.scale, dt=self.dt, **said)  # it does not say its unit
+        return read_record(path, self.units, self.scale, dt=self.dt, **choice)  # it does not say its unit
 
     def _recorded(self, folder: Path, key: Literal["record", "vertical"]) -> SampledMotion:
         """The component that `key` names; a vertical one without a file is another channel of the record."""
@@ -199,13 +199,13 @@ class _Motion(Part):
             return self._read(path, key)
         except SceneError as error:
             if error.key.startswith("motion.") and error.key != "motion.record":
-                own, remedy = error.key, error.remedy
-                word = own.removeprefix("motion.")
+                full_key, remedy = error.key, error.remedy
+                word = full_key.removeprefix("motion.")
                 if word in ("column", "channel") and key == "vertical":
-                    own, remedy = f"motion.vertical_{word}", remedy.replace(word, f"vertical_{word}")
-                raise SceneError(own, error.value, f"{error.problem} ({path.name})", remedy) from None
-            found = "" if error.value is None else f" = {error.value!r}"
-            where = "" if error.key in ("record", "motion.record") else f"{error.key}{found}: "
+                    full_key, remedy = f"motion.vertical_{word}", remedy.replace(word, f"vertical_{word}")
+                raise SceneError(full_key, error.value, f"{error.problem} ({path.name})", remedy) from None
+            value_text = "" if error.value is None else f" = {error.value!r}"
+            where = "" if error.key in ("record", "motion.record") else f"{error.key}{value_text}: "
             raise SceneError(f"motion.{key}", name, where + error.problem, error.remedy) from None
 
 
@@ -283,12 +283,12 @@ def _scene(table: Mapping[str, Any], path: Path) -> Scene:
     scene: Scene | None = None
     try:
         file = _SceneFile.model_validate(table)  # not **table: a key may be called self
-        said = file.motion
+        motion_table = file.motion
     except ValidationError as error:
         mistakes.append(scene_error(error, _SceneFile))
-        said = _motion_alone(table)
+        motion_table = _motion_alone(table)
     try:
-        motion = said.motion(path.parent) if said else None
+        motion = motion_table.motion(path.parent) if motion_table else None
     except SceneError as error:
         mistakes.append(error)
     try:
@@ -463,9 +463,9 @@ def with_bearings(text: str, bearings: Bearings, base: Base | None = None) -> st
     """
     lines = text.rstrip().split("\n")
     heads = [number for number, line in enumerate(lines) if line.lstrip().startswith("[")] + [len(lines)]
-    own = next((number for number in heads[:-1] if lines[number].split("#")[0].strip() == "[bearings]"), len(lines))
-    following = next((number for number in heads if number > own), len(lines))
-    before = lines[:own] if own < len(lines) else [*lines, ""]
+    begin = next((number for number in heads[:-1] if lines[number].split("#")[0].strip() == "[bearings]"), len(lines))
+    following = next((number for number in heads if number > begin), len(lines))
+    before = lines[:begin] if begin < len(lines) else [*lines, ""]
     after = ["", *lines[following:]] if following < len(lines) else []
     under = [] if base is None else [*_base(base), ""]
     return "\n".join([*before, *under, *_bearings(bearings), *after]) + "\n"

@@ -73,19 +73,19 @@ def too_long(scene: Scene, spent: str) -> SceneError:
 def _parts(scene: Scene) -> list[tuple[float, str, float, str, str]]:
     """[(ratio to a usual value, key, value, problem, remedy)] of all causes of a long run."""
     model, omega, turn = RockingModel.of(scene), scene.rocking_frequency, 2 * math.pi
-    found = [(0.0, "block.radius", scene.block.radius, f"the block rocks at {omega:.3g} rad/s", "give a larger one")]
+    parts = [(0.0, "block.radius", scene.block.radius, f"the block rocks at {omega:.3g} rad/s", "give a larger one")]
     if model.restitution > NEARLY_ELASTIC:
         problem, remedy = "impacts lose almost no energy", "give a smaller one"
-        found.append((1.0, "block.restitution", model.restitution, problem, remedy))
+        parts.append((1.0, "block.restitution", model.restitution, problem, remedy))
     if scene.duration is not None:
         periods = scene.duration * omega / turn
-        found.append((periods / 100, "run.duration", scene.duration, f"{periods:.3g} rocking periods", "shorten it"))
+        parts.append((periods / 100, "run.duration", scene.duration, f"{periods:.3g} rocking periods", "shorten it"))
     if scene.motion is not None:
         periods, key = scene.motion.end * omega / turn, slowest_key(scene.motion)
         problem = f"the motion lasts {scene.motion.end:.3g} s, {periods:.3g} rocking periods"
         remedy = "raise it" if key == "motion.frequency" else "lower it"
-        found.append((periods / 100, key, getattr(scene.motion, key.removeprefix("motion.")), problem, remedy))
-    return found + _bearing_parts(scene, model)
+        parts.append((periods / 100, key, getattr(scene.motion, key.removeprefix("motion.")), problem, remedy))
+    return parts + _bearing_parts(scene, model)
 
 
 def _bearing_parts(scene, model):
@@ -95,14 +95,14 @@ def _bearing_parts(scene, model):
     free = model.M - (model.m * model.R * math.cos(model.gamma)) ** 2 / model.J  # effective mass of the base [kg]
     ringing, decay = math.sqrt(law.count * (law.kb + law.dk) / free), law.count * law.damping / free
     problem = f"the base vibrates at {ringing:.3g} rad/s on such bearings"
-    found = [(ringing / omega, "bearings.ka", bearings.ka, problem, "lower it")]
+    parts = [(ringing / omega, "bearings.ka", bearings.ka, problem, "lower it")]
     if decay:
         problem = f"such dampers stop the base within {1 / decay:.3g} s"
-        found.append((decay / omega, "bearings.damping", law.damping, problem, "lower it"))
+        parts.append((decay / omega, "bearings.damping", law.damping, problem, "lower it"))
     if bearings.alpha is not None:
         problem, remedy = "the law yields almost at a point", 'lower it, or give law = "bilinear"'
-        found.append((bearings.alpha / USUAL_EXPONENT, "bearings.alpha", bearings.alpha, problem, remedy))
-    return found
+        parts.append((bearings.alpha / USUAL_EXPONENT, "bearings.alpha", bearings.alpha, problem, remedy))
+    return parts
 
 
 if TYPE_CHECKING:
@@ -276,22 +276,22 @@ def simulate(
     return _response(scene, totals, result, energies, sliding, settings, cpu, history)
 
 
-def _output_step(scene, asked, history):
+def _output_step(scene, step, history):
     """Interval of the history [s]; by default that of the motion's samples, or a share of the (shortest) duration."""
     longest = longest_duration(scene) if scene.duration is None else scene.duration
-    if asked is None:
+    if step is None:
         span = shortest_duration(scene) if scene.duration is None else scene.duration
-        asked = scene.motion.dt if isinstance(scene.motion, SampledMotion) else span / HISTORY_POINTS
-        return asked * max(1, math.ceil(longest / asked / ROWS))
-    if asked <= 0 or not math.isfinite(asked):
-        raise SettingError(f"output_step = {asked!r}: give a time above 0 [s]")
-    if history and longest / asked > MOST_ROWS:
+        step = scene.motion.dt if isinstance(scene.motion, SampledMotion) else span / HISTORY_POINTS
+        return step * max(1, math.ceil(longest / step / ROWS))
+    if step <= 0 or not math.isfinite(step):
+        raise SettingError(f"output_step = {step!r}: give a time above 0 [s]")
+    if history and longest / step > MOST_ROWS:
         least = longest / MOST_ROWS
         raise SettingError(
-            f"output_step = {asked!r}: up to {longest / asked:.3g} rows of history; give at least {least:.3g} s, or "
+            f"output_step = {step!r}: up to {longest / step:.3g} rows of history; give at least {least:.3g} s, or "
             "history=False"
         )
-    return asked
+    return step
 
 
 @functools.cache

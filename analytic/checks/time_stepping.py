@@ -273,9 +273,9 @@ def _on_both(v, body, first, second, sigma):
     T = -(v.X - v.x) / (1 / body.m + body.base) if sigma == 0 else -sigma * body.mu * N
     ratio = T / N if N > 0 else 0.0
     here, there = first.c * ratio + first.n, second.c * ratio + second.n  # here N_1 + there N_2 = J_G tilt'
-    one = (body.J * v.tilt - there * N) / (here - there)
+    N_first = (body.J * v.tilt - there * N) / (here - there)
     x = v.x - T * body.base
-    return T, N, min(one, N - one), Planar(x if sigma == 0 else v.X + T / body.m, 0.0, 0.0, x)
+    return T, N, min(N_first, N - N_first), Planar(x if sigma == 0 else v.X + T / body.m, 0.0, 0.0, x)
 
 
 @inner
@@ -290,15 +290,15 @@ def _solve(v, body, first, second):
             if best <= 0:
                 return after, carrying
             if corners == BOTH:
-                T, N, least, found = _on_both(v, body, first, second, sigma)
+                T, N, least, velocities = _on_both(v, body, first, second, sigma)
                 wrong = 0.0
             else:
-                T, N, found = _on_one(v, body, corner, sigma)
-                least, wrong = N, _approach(found, other)
+                T, N, velocities = _on_one(v, body, corner, sigma)
+                least, wrong = N, _approach(velocities, other)
             impulse = max(-least, abs(T) - body.mu * N)
-            wrong = max(wrong, impulse / body.m, -sigma * _slip_rate(found, corner))
+            wrong = max(wrong, impulse / body.m, -sigma * _slip_rate(velocities, corner))
             if wrong < best:
-                carrying, after, best = corners, found, wrong
+                carrying, after, best = corners, velocities, wrong
     return after, carrying
 
 

@@ -132,11 +132,11 @@ def shared_segments(
         return [(*piece, _line(0.0, 0.0, 0.0)) for piece in level]
     upright = segments(motion.vertical, duration)
     cuts = sorted({end for pieces in (level, upright) for _, end, _ in pieces})
-    found, start, i, j = [], 0.0, 0, 0
+    shared, start, i, j = [], 0.0, 0, 0
     for end in cuts:
-        found.append((start, end, level[i][2], upright[j][2]))
+        shared.append((start, end, level[i][2], upright[j][2]))
         start, i, j = end, i + (level[i][1] == end), j + (upright[j][1] == end)
-    return found
+    return shared
 
 
 def segments(motion: Motion | None, duration: float) -> list[tuple[float, float, GroundFunction]]:
@@ -434,11 +434,11 @@ class Run(Equations):
     @staticmethod
     def states(events: Sequence[tuple[str, Event]], solution: Any) -> list[tuple[float, np.ndarray]]:
         """(t, y) in order of time: the steps, the reversals of block and base, and the passages of the slenderness."""
-        found = list(zip(solution.t, solution.y.T, strict=True))
+        points = list(zip(solution.t, solution.y.T, strict=True))
         for (_, event), times, states in zip(events, solution.t_events, solution.y_events, strict=True):
             if not event.terminal:
-                found += zip(times, states, strict=True)
-        return sorted(found, key=lambda each: each[0])
+                points += zip(times, states, strict=True)
+        return sorted(points, key=lambda each: each[0])
 
     def stepped_over(self, events: Sequence[tuple[str, Event]], solution: Any) -> float | None:
         """Time of the first extreme beyond a threshold that was crossed twice within one step, or None.
@@ -446,18 +446,18 @@ class Run(Equations):
         tilt below 0 where its rate is 0; |a_abs| above g tan(gamma), or the bearing beyond its corner, where the base
         stands still.
         """
-        found = []
+        crossings = []
         for (name, _), times, states in zip(events, solution.t_events, solution.y_events, strict=True):
             for t, y in zip(times, states, strict=True):
                 if name == "apex" and self.side * y[0] < 0:
-                    found.append(float(t))
+                    crossings.append(float(t))
                 elif name == "reversal" and self.side == 0:
                     limit = self.model.uplift_limit(self.vertical(t))
                     if abs(self.contact_acceleration(y, 0.0)) > limit * (1 + 1e-13):
-                        found.append(float(t))
+                        crossings.append(float(t))
                 if name == "reversal" and abs(self.corner) < math.inf and abs(y[4]) > abs(self.corner):
-                    found.append(math.nextafter(t, self.t))
-        return min(found, default=None)
+                    crossings.append(math.nextafter(t, self.t))
+        return min(crossings, default=None)
 
     def direction(self, end: float, ground: GroundFunction) -> float:
         """Sign of the base velocity over the coming stretch; where it stands, of its acceleration."""
@@ -475,27 +475,27 @@ class Run(Equations):
 
     def events(self, direction: float) -> list[tuple[str, Event]]:
         side, model, lifted, turned = self.side, self.model, self.lifted, self.turned
-        found = []
+        events = []
         if side:
             # the root phi = 0 at uplift is divided out
-            found.append(("impact", Event(lambda t, y: side * y[0] / (t - lifted) if t > lifted else 1.0)))
-            found.append(("overturning", Event(lambda t, y: side * y[0] - math.pi / 2, direction=1)))
-            found.append(("apex", Event(lambda t, y: side * y[1], terminal=False, direction=0)))
-            found.append(("unstable", Event(lambda t, y: side * y[0] - model.gamma, terminal=False, direction=1)))
+            events.append(("impact", Event(lambda t, y: side * y[0] / (t - lifted) if t > lifted else 1.0)))
+            events.append(("overturning", Event(lambda t, y: side * y[0] - math.pi / 2, direction=1)))
+            events.append(("apex", Event(lambda t, y: side * y[1], terminal=False, direction=0)))
+            events.append(("unstable", Event(lambda t, y: side * y[0] - model.gamma, terminal=False, direction=1)))
         else:
             limit, vertical = model.uplift_limit, self.vertical
-            found.append(
+            events.append(
                 ("uplift", Event(lambda t, y: abs(self.contact_acceleration(y, 0.0)) - limit(vertical(t)), direction=1))
             )
         if direction:
             stops = self.law.unit.memory  # else there may be several, each a peak
             reversal = Event(lambda t, y: direction * y[3] if t > turned else 1.0, stops, -1 if stops else 0)
-            found.append(("reversal", reversal))
+            events.append(("reversal", reversal))
             ahead = self.law.unit.begin.py_func(direction, self.hysteretic_force(self.y), 1.0, self.law.constants)[2]
             self.corner = corner = direction * ahead
             if ahead < math.inf:
-                found.append(("corner", Event(lambda t, y: direction * (y[4] - corner), direction=1)))
-        return found
+                events.append(("corner", Event(lambda t, y: direction * (y[4] - corner), direction=1)))
+        return events
 
     def at_overturning(self, ground: GroundFunction) -> None:
         self.overturning = self.t

@@ -39,12 +39,12 @@ class _Lowering(NativeLowering):
         state.flags.no_compile = True
         state["library"] = _Linked(state.targetctx.codegen(), state.func_id.func_qualname)
         super().run_pass(state)
-        made = state["cr"]
+        lowered = state["cr"]
         # as numba does with machine code; callers find the function by this key, which nothing calls
-        where, name = made.fndesc.lookup_module(), made.fndesc.qualname
-        key = _dynfunc.make_function(where, name, "", 0, made.env, (state["library"],))
-        state.targetctx.insert_user_function(key, made.fndesc, [state["library"]])
-        state["cr"] = made._replace(cfunc=key)
+        where, name = lowered.fndesc.lookup_module(), lowered.fndesc.qualname
+        key = _dynfunc.make_function(where, name, "", 0, lowered.env, (state["library"],))
+        state.targetctx.insert_user_function(key, lowered.fndesc, [state["library"]])
+        state["cr"] = lowered._replace(cfunc=key)
         return True
 
 
@@ -88,17 +88,17 @@ def chosen(functions: Sequence[Callable[..., Any]]) -> Any:
     def choose(number, *arguments):
         return last(*arguments)
 
-    for place, own in reversed(list(enumerate(before))):
-        choose = _either(place, own, choose)
+    for place, function in reversed(list(enumerate(before))):
+        choose = _either(place, function, choose)
     return choose
 
 
-def _either(place: int, own: Callable[..., Any], others: Callable[..., Any]) -> Any:
+def _either(place: int, function: Callable[..., Any], otherwise: Callable[..., Any]) -> Any:
     @inlined
     def choose(number, *arguments):
         if number == place:
-            return own(*arguments)
-        return others(number, *arguments)
+            return function(*arguments)
+        return otherwise(number, *arguments)
 
     return choose
 

@@ -163,24 +163,24 @@ def model_warnings(
 ) -> tuple[Caution, ...]:
     """Warnings where a run violates the model's assumptions: compressive contact, no sliding, and bearings that are
     rigid under a vertical motion. slides : by a solver whose block slides and flies with a friction, and is seen to."""
-    found = []
+    warnings = []
     if scene.bearings is not None and scene.motion is not None and scene.motion.vertical is not None:
-        found.append(Caution("model", RIGID_BEARINGS))
+        warnings.append(Caution("model", RIGID_BEARINGS))
     if slides and scene.friction is not None:
-        return tuple(found)
+        return tuple(warnings)
     if min_normal_ratio <= 0:
         words = (
             f"the least normal force at the contact is {min_normal_ratio:.3g} m g: the block would jump, and the "
             "outcome is outside the model" + ("" if scene.friction else "; with a friction in the scene it flies")
         )
-        found.append(Caution("model", words, "min_normal_ratio", min_normal_ratio, 0.0))
+        warnings.append(Caution("model", words, "min_normal_ratio", min_normal_ratio, 0.0))
     if scene.friction is not None and friction_demand > scene.friction:
         words = (
             f"the friction demand {friction_demand:.3g} is above the scene's friction {scene.friction:.3g}: the block "
             "would slide, and the outcome is outside the model"
         )
-        found.append(Caution("model", words, "friction_demand", friction_demand, scene.friction))
-    return tuple(found)
+        warnings.append(Caution("model", words, "friction_demand", friction_demand, scene.friction))
+    return tuple(warnings)
 
 
 def run_warnings(
@@ -197,13 +197,13 @@ def run_warnings(
 
     base_velocity : at the end [m/s]. slides : as in `model_warnings`. peak_slip : as in `limit_warnings` [m].
     """
-    found = [*about_record(scene.motion), *model_warnings(scene, friction_demand, min_normal_ratio, slides)]
-    found += limit_warnings(scene, peak_base_displacement, peak_slip)
+    warnings = [*about_record(scene.motion), *model_warnings(scene, friction_demand, min_normal_ratio, slides)]
+    warnings += limit_warnings(scene, peak_base_displacement, peak_slip)
     drift = abs(base_velocity) * CAP_PERIODS * period(scene)  # rounding errors are no motion
     if scene.base is not None and scene.bearings is None and drift > PEAK_TOLERANCE * peak_base_displacement:
         words = (
             f"the base slides on at {base_velocity:.3g} m/s with no bearing to stop it: its displacement has no peak, "
             "the one given is that at the end of the run"
         )
-        found.append(Caution("model", words, "base_velocity", base_velocity, 0.0))
-    return tuple(found)
+        warnings.append(Caution("model", words, "base_velocity", base_velocity, 0.0))
+    return tuple(warnings)

@@ -36,7 +36,7 @@ def find_uplift(shape, vertical, refused, step, P, work):
     threshold, slope, G = step.gravity * shape.slope, shape.slope, P[L.GRAVITY]
     if abs(row[0]) > threshold and not refused:
         return 0.0
-    size, found, least = bound(row, order, h), -1.0, threshold
+    size, first, least = bound(row, order, h), -1.0, threshold
     if vertical is not None:
         least, power = slope * G[0], slope
         for k in range(1, highest + 1):
@@ -57,8 +57,8 @@ def find_uplift(shape, vertical, refused, step, P, work):
                     continue
             root = first_root(event, order, h, work)
             if root >= 0:
-                found, h = root, root
-    return found
+                first, h = root, root
+    return first
 
 
 @inner
@@ -90,33 +90,33 @@ def upper_bound(phi, s, order, h):
 def find_passage(gamma, s, tilt, sooner, order, P, work):
     """(kind, time) of the first passage of the slenderness or of pi/2; sooner : (kind, time) of another event, else
     returned."""
-    (found, h), phi, event = sooner, P[L.PHI], P[L.EVENT]
+    (kind, h), phi, event = sooner, P[L.PHI], P[L.EVENT]
     top = upper_bound(phi, s, order, h)
     if top > gamma > s * tilt:
         root = find_fall(phi, -s, gamma, order, h, event, work)
         if root >= 0:
-            found, h = L.PASSAGE, root
+            kind, h = L.PASSAGE, root
     if top > 0.5 * math.pi:
         root = find_fall(phi, -s, 0.5 * math.pi, order, h, event, work)
         if root >= 0:
-            found, h = L.OVERTURNING, root
-    return found, h
+            kind, h = L.OVERTURNING, root
+    return kind, h
 
 
 @inner
 def find_turn(direction, corner, sooner, order, P, work):
     """(kind, time) of the first reversal or corner of the bearings; direction : of the base velocity; sooner : as in
     `find_passage`."""
-    found, h = sooner
+    kind, h = sooner
     if direction != 0:
         root = find_fall(P[L.V], direction, 0.0, order, h, P[L.EVENT], work)
         if root > 0:
-            found, h = L.REVERSAL, root
+            kind, h = L.REVERSAL, root
         if corner < math.inf:
             root = find_fall(P[L.Q], -direction, corner, order, h, P[L.EVENT], work)
             if root >= 0:
-                found, h = L.CORNER, root
-    return found, h
+                kind, h = L.CORNER, root
+    return kind, h
 
 
 @inner

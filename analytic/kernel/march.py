@@ -160,7 +160,7 @@ def _integrate(par, ground, upright, options, arrays):
                 break
 
             step = L.Step(t, h, used, highest, gravity, factors, corner)
-            found, h = first_event(shape, upright, body, refused, branch.direction, step, P, work)
+            event, h = first_event(shape, upright, body, refused, branch.direction, step, P, work)
             idle = idle + 1 if tau + h <= tau else 0
             if idle > PATIENCE:
                 status = L.STUCK
@@ -171,9 +171,9 @@ def _integrate(par, ground, upright, options, arrays):
             if s != 0:
                 tilt, rate, peak_tilt = end_of_block(body, step, peak_tilt, P, work)
             if par.on_base:
-                base = end_of_base(par, found, base, branch, step, P)
+                base = end_of_base(par, event, base, branch, step, P)
                 peak_x = max(peak_x, abs(base.x))
-            if found == L.PASSAGE:
+            if event == L.PASSAGE:
                 tilt = s * par.gamma
                 if totals[L.UNSTABLE_TIME] < 0:
                     totals[L.UNSTABLE_TIME] = t + h
@@ -181,24 +181,24 @@ def _integrate(par, ground, upright, options, arrays):
                 held = totals[L.FRICTION], totals[L.NORMAL], totals[L.PEAK_ACCELERATION], peak_x, t + h
             if h > 0:
                 fresh, refused = False, False
-            tau = length if found == L.NONE and h == length - tau else tau + h
+            tau = length if event == L.NONE and h == length - tau else tau + h
             t = begin + tau
 
-            if found == L.UPLIFT:
+            if event == L.UPLIFT:
                 onset = value(P[L.ABSOLUTE if par.on_base else L.GROUND], used, h)
                 mode, s, tilt, rate = L.ROCK, -math.copysign(1.0, onset), 0.0, 0.0
                 fresh = abs(onset) < (gravity_at(par, upright, P, highest, h) + ONSET * par.g) * par.slope
                 if totals[L.UPLIFTS] < arrays.uplifts.shape[0]:
                     arrays.uplifts[int(totals[L.UPLIFTS])] = t
                 totals[L.UPLIFTS] += 1
-            elif found == L.IMPACT:
+            elif event == L.IMPACT:
                 level = value(P[L.GROUND], highest, h) if highest >= 0 else 0.0
                 gravity = gravity_at(par, upright, P, highest, h)
                 rate, v, stays = land(par, rate, base, gravity, level, rest_rate, t, arrays)
                 mode, s, tilt, base = L.ROCK, math.copysign(1.0, rate), 0.0, L.Base(base.x, v, base.z)
                 if stays:
                     mode, s = L.STICK, 0.0
-            elif found == L.OVERTURNING:
+            elif event == L.OVERTURNING:
                 tilt, peak_tilt = s * 0.5 * math.pi, 0.5 * math.pi
                 mode, will_overturn = L.FALLEN, True
                 break
@@ -251,5 +251,5 @@ def _run_rows(rows, pulses, ground, upright, options, into):
     for i in range(rows.shape[0]):
         numbers = tuple_of(rows[i], SIZE)
         par = L.Parameters(*numbers[:OWN], Constants(*numbers[OWN:]))  # type: ignore[call-arg]  # of one length
-        own = L.Ground(ground.kind, ground.dt, ground.samples, None, L.Shaking(*tuple_of(pulses[i], SHAKING)))
-        _integrate(par, own, upright, options, L.Arrays(P, work, impacts, uplifts, rests, history, totals[i]))
+        ground_of_run = L.Ground(ground.kind, ground.dt, ground.samples, None, L.Shaking(*tuple_of(pulses[i], SHAKING)))
+        _integrate(par, ground_of_run, upright, options, L.Arrays(P, work, impacts, uplifts, rests, history, totals[i]))

@@ -346,17 +346,17 @@ def first_event(shape, upright, body, refused, direction, step, P, work):
     refused : the last onset of uplift was a graze; direction : of the base velocity.
     """
     s, tilt, _ = body
-    found, h, order = L.NONE, step.h, step.order
+    kind, h, order = L.NONE, step.h, step.order
     if s == 0:
         root = find_uplift(shape, upright, refused, step, P, work)
         if root >= 0:
-            found, h = L.UPLIFT, root
+            kind, h = L.UPLIFT, root
     else:
         root = find_fall(P[L.PHI], s, 0.0, order, h, P[L.EVENT], work)
         if root >= 0:
-            found, h = L.IMPACT, root
-        found, h = find_passage(shape.gamma, s, tilt, (found, h), order, P, work)
-    return find_turn(direction, step.corner, (found, h), order, P, work)
+            kind, h = L.IMPACT, root
+        kind, h = find_passage(shape.gamma, s, tilt, (kind, h), order, P, work)
+    return find_turn(direction, step.corner, (kind, h), order, P, work)
 
 
 @inlined
@@ -385,14 +385,14 @@ def end_of_block(body, step, peak_tilt, P, work):
 
 
 @inlined
-def end_of_base(par, found, base, branch, step, P):
+def end_of_base(par, event, base, branch, step, P):
     """The base at the end of the step, which is at the event `found`."""
     z, (direction, x_c, mark_c), h, order = base.z, branch, step.h, step.order
     x, v = value(P[L.X], order, h), value(P[L.V], order, h)
-    if found == L.REVERSAL:
+    if event == L.REVERSAL:
         v = 0.0
     travel = mark_c + direction * (x - x_c)
     z = reached(par.law, direction, z, P[L.Q], order, h, travel, par.constants)
-    if found == L.CORNER:
+    if event == L.CORNER:
         z = direction * step.corner
     return L.Base(x, v, z)

@@ -22,7 +22,7 @@ def _record(names: tuple[str, ...]) -> Any:
 
 
 # Constants of all laws: dk, f0, and those of each law; a law fills its own only.
-Constants = _record(("dk", "f0", *dict.fromkeys(name for law in LAWS for name in law.own)))
+Constants = _record(("dk", "f0", *dict.fromkeys(name for law in LAWS for name in law.constant_names)))
 
 
 def law_function(name: str) -> Any:

@@ -100,7 +100,7 @@ def reached(s: float, z: float, q: np.ndarray, order: int, h: float, travel: flo
 LAW = Law(
     "algebraic",
     needs=("kb", "alpha"),
-    own=("alpha", "x0", "d0"),
+    constant_names=("alpha", "x0", "d0"),
     constants=constants,
     after_travel=after_travel,
     work=work,

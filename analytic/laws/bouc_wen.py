@@ -52,7 +52,7 @@ def branch(z: float, direction: float, c: Constants) -> Callable[[float, float],
 LAW = Law(
     "bouc-wen",
     needs=("kb", "alpha"),
-    own=algebraic.LAW.own,
+    constant_names=algebraic.LAW.constant_names,
     constants=algebraic.constants,
     after_travel=after_travel,
     work=work,

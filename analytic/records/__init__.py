@@ -33,7 +33,7 @@ from ..errors import SceneError
 from ..motion import SampledMotion
 from . import content as fema
 from .columns import COLUMNS
-from .content import FEMA, NOT_READ, Asked, Content, Format, read_lines
+from .content import FEMA, NOT_READ, Content, Format, Given, read_lines
 from .networks import COSMOS, CSMIP, DYNA, KNET, KNET_CSV, PEER, SMC
 from .statements import UNITS, G, Unit, resolve, resolved_step
 
@@ -104,12 +104,13 @@ def read_record(
     SceneError
         The message names the file, the line or header key, the value and the remedy.
     """
-    found = read_channels(path, units, scale, dt=dt, column=column, channel=channel)
-    if len(found) > 1:
-        kind = "column" if found[0].format == COLUMNS.name else "channel"
-        problem = f"missing; the file holds {kind}s " + " or ".join(_words(one.number, one.direction) for one in found)
+    channels = read_channels(path, units, scale, dt=dt, column=column, channel=channel)
+    if len(channels) > 1:
+        kind = "column" if channels[0].format == COLUMNS.name else "channel"
+        choice = " or ".join(_words(each.number, each.direction) for each in channels)
+        problem = f"missing; the file holds {kind}s {choice}"
         raise SceneError(f"motion.{kind}", None, problem, f"add {kind}, one of these").in_file(path)
-    return found[0].motion
+    return channels[0].motion
 
 
 def read_channels(
@@ -134,7 +135,7 @@ def read_channels(
     """
     path = Path(path)
     try:
-        form, contents = _contents(path, Asked(dt, column))
+        form, contents = _contents(path, Given(dt, column))
         chosen = contents if channel is None else [_chosen(form, contents, channel)]
         name = str(path) if form is FEMA else path.name
         return tuple(_channel(form.name, content, name, units, scale, dt) for content in chosen)
@@ -142,7 +143,7 @@ def read_channels(
         raise error.in_file(path) from None
 
 
-def _contents(path: Path, asked: Asked) -> tuple[Format, Sequence[Content]]:
+def _contents(path: Path, given: Given) -> tuple[Format, Sequence[Content]]:
     """The format of a file and what it holds."""
     held_by_package = fema.is_one(path)
     lines, name = ([str(path)], "") if held_by_package else read_lines(path)
@@ -157,9 +158,9 @@ def _contents(path: Path, asked: Asked) -> tuple[Format, Sequence[Content]]:
     if not any(line.strip() for line in lines):
         raise SceneError("record", None, "is empty", "give a record with at least two accelerations")
     form = FEMA if held_by_package else next(form for form in FORMATS if form.recognises(lines))
-    if asked.column is not None and form not in (COLUMNS, NOT_READ):
-        raise SceneError("motion.column", asked.column, f"but the file is {form.name}", "remove column")
-    return form, form.read(lines, asked)
+    if given.column is not None and form not in (COLUMNS, NOT_READ):
+        raise SceneError("motion.column", given.column, f"but the file is {form.name}", "remove column")
+    return form, form.read(lines, given)
 
 
 def _chosen(form: Format, contents: Sequence[Content], channel: int | str) -> Content:
@@ -167,14 +168,14 @@ def _chosen(form: Format, contents: Sequence[Content], channel: int | str) -> Co
     if form is COLUMNS or not contents[0].channel:
         raise SceneError("motion.channel", channel, "but the file has no several channels", "remove channel")
     word = " ".join(str(channel).split()).casefold()
-    found = [content for content in contents if content.channel == word] or [
+    matches = [content for content in contents if content.channel == word] or [
         content for content in contents if content.direction.casefold() == word
     ]
-    if len(found) != 1:
-        problem = "names several channels" if found else "not a channel of the file"
+    if len(matches) != 1:
+        problem = "names several channels" if matches else "not a channel of the file"
         choice = " or ".join(_words(content.channel, content.direction) for content in contents)
         raise SceneError("motion.channel", channel, problem, f"choose one of {choice}, by its number")
-    return found[0]
+    return matches[0]
 
 
 def _words(number: str, direction: str) -> str:

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import SceneError
-from .content import Asked, Content, Format
+from .content import Content, Format, Given
 from .statements import (
     SAME,
     Statements,
@@ -132,7 +132,7 @@ class Sheet:
         )
 
 
-def _read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
+def _read(lines: Sequence[str], given: Given) -> tuple[Content, ...]:
     """The `Content` of each column of accelerations, or of the one asked for, or of accelerations alone.
 
     Raises
@@ -141,8 +141,8 @@ def _read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
         Lines of unlike length, an unreadable number, decimal commas that cannot be told from separators, times that
         are not uniform or contradict a stated step, a statement inside the data, or no acceleration.
     """
-    sheet = _sheet(unquoted(lines), asked)
-    alone = asked.column is None and not sheet.titles.words[1:]
+    sheet = _sheet(unquoted(lines), given)
+    alone = given.column is None and not sheet.titles.words[1:]
     if alone and sheet.runs_on:
         values = fortran_values(sheet.lines, sheet.table[0][0] - 1)
         check_count("number of samples", sheet.count or 0, values)
@@ -156,10 +156,10 @@ def _read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
         if len(fields) != sheet.width:
             problem = f"holds {len(fields)} columns, the first line {sheet.width}"
             raise SceneError(f"line {at}", sheet.lines[at - 1].strip(), problem, REMEDY)
-    return _accelerations(sheet, times, asked.column)
+    return _accelerations(sheet, times, given.column)
 
 
-def _sheet(lines: Sequence[str], asked: Asked) -> Sheet:
+def _sheet(lines: Sequence[str], given: Given) -> Sheet:
     """The `Sheet` of the lines of a file."""
     header, rows = split(lines)
     separator, table = parted(rows)
@@ -171,7 +171,7 @@ def _sheet(lines: Sequence[str], asked: Asked) -> Sheet:
     table = unpaired(table, titles.words)
     width = len(table[0][1])
     count = stated_count([*leading, *header])
-    runs_on = asked.column is None and separator is None and _runs_on(table, bool(titles.words), count)
+    runs_on = given.column is None and separator is None and _runs_on(table, bool(titles.words), count)
     titles = Titles() if runs_on else Titles(titles.at, titles.words[:width])
     words = [*leading, *((at, line) for at, line in header if at != titles.at)]
     # Statements in the other titles do not apply to the times.
@@ -183,7 +183,7 @@ def _sheet(lines: Sequence[str], asked: Asked) -> Sheet:
     if width > 2 and not titles.words and rises(table, 1):
         kinds[0] = NUMBERS
     kinds = [UNKNOWN if kind == NUMBERS and not counts(table, place) else kind for place, kind in enumerate(kinds)]
-    return Sheet(lines, table, titles, kinds, words, stated, count, spectrum, separator, runs_on, asked.dt)
+    return Sheet(lines, table, titles, kinds, words, stated, count, spectrum, separator, runs_on, given.dt)
 
 
 def _runs_on(table: Table, titled: bool, count: int | None) -> bool:
@@ -263,23 +263,23 @@ def _accelerations(sheet: Sheet, times: Sequence[int], wanted: int | str | None)
     named = len(offered) > 1 or wanted is not None
     places = [chosen] if chosen in offered else offered
     steps = {at: at if at is None else _step(sheet, at) for at in {_nearest(times, place) for place in places}}
-    found: dict[int, Content] = {}
+    contents: dict[int, Content] = {}
     errors = []
     for place in places:
         try:
-            found[place] = _acceleration(sheet, steps[_nearest(times, place)], place, named)
+            contents[place] = _acceleration(sheet, steps[_nearest(times, place)], place, named)
         except SceneError as error:
             errors.append(error)
-    choice = f"column, {' or '.join(sheet.names[place] for place in found or offered)}"
+    choice = f"column, {' or '.join(sheet.names[place] for place in contents or offered)}"
     if wanted is not None and chosen not in offered:
         what = f"but the file has {sheet.width} columns" if chosen is None else f"is {sheet.kinds[chosen] or TIME}"
         raise SceneError("motion.column", wanted, what, f"give {choice}")
-    if errors and found:
+    if errors and contents:
         problem = f"missing; not all columns are accelerations ({errors[0].key}: {errors[0].problem})"
         raise SceneError("motion.column", None, problem, f"add {choice}")
     if errors:
         raise errors[0]
-    return tuple(found.values())
+    return tuple(contents.values())
 
 
 def _acceleration(sheet: Sheet, step: float | None, place: int, named: bool) -> Content:
@@ -306,15 +306,15 @@ def _check_kind(sheet: Sheet, place: int) -> None:
 def _place(sheet: Sheet, wanted: int | str) -> int | None:
     """The index of the column of that number or title; None without one."""
     word = in_latin(str(wanted).strip()).casefold()
-    found = [place for place in range(sheet.width) if word == str(place + 1)] or [
+    places = [place for place in range(sheet.width) if word == str(place + 1)] or [
         place
         for place, title in enumerate(sheet.titles.words)
         if word in (name_of(title).casefold(), title.strip().casefold())
     ]
-    if len(found) > 1:
-        choice = " or ".join(sheet.names[place] for place in found)
+    if len(places) > 1:
+        choice = " or ".join(sheet.names[place] for place in places)
         raise SceneError("motion.column", wanted, "names several columns", f"give column, {choice}, by its number")
-    return found[0] if found else None
+    return places[0] if places else None
 
 
 def _one_after_the_other(sheet: Sheet) -> list[float]:

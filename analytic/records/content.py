@@ -42,7 +42,7 @@ CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 
 
 @dataclass(frozen=True)
-class Asked:
+class Given:
     """What the user states of a record. None: not stated, so that the file must state it.
 
     dt : float or None
@@ -79,7 +79,7 @@ class Format:
 
     name: str
     recognises: Callable[[Sequence[str]], bool]
-    read: Callable[[Sequence[str], Asked], Sequence[Content]]
+    read: Callable[[Sequence[str], Given], Sequence[Content]]
 
 
 def first_of(lines: Sequence[str]) -> str:
@@ -201,20 +201,16 @@ def _unzipped(content: bytes, limit: int) -> tuple[bytes, str]:
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             # What macOS adds of its own is no record.
-            inside = [
-                one for one in archive.infolist() if not one.is_dir() and not one.filename.startswith("__MACOSX/")
-            ]
-            if SPREADSHEET & {one.filename for one in inside}:
+            names = [name for name in archive.namelist() if not name.endswith("/") and not name.startswith("__MACOSX/")]
+            if SPREADSHEET & {*names}:
                 raise SceneError("record", None, "is a spreadsheet", "save the sheet with the record as CSV")
-            if len(inside) != 1:
-                names = ", ".join(one.filename for one in inside[:LISTED]) + (", ..." if len(inside) > LISTED else "")
-                raise SceneError(
-                    "record", None, f"holds {len(inside)} files: {names}", "unpack it and give one of them"
-                )
-            if inside[0].flag_bits & 1:
+            if len(names) != 1:
+                problem = f"holds {len(names)} files: {', '.join(names[:LISTED])}" + ", ..." * (len(names) > LISTED)
+                raise SceneError("record", None, problem, "unpack it and give one of them")
+            if archive.getinfo(names[0]).flag_bits & 1:
                 raise SceneError("record", None, "is a zip file with a password", "unpack it first")
-            with archive.open(inside[0]) as file:
-                return file.read(limit + 1), inside[0].filename
+            with archive.open(names[0]) as file:
+                return file.read(limit + 1), names[0]
     except SceneError:
         raise
     except DAMAGE as error:
@@ -249,7 +245,7 @@ def _is_refused(lines: Sequence[str]) -> bool:
     return _name(lines) is not None
 
 
-def _refuse(lines: Sequence[str], asked: object) -> NoReturn:
+def _refuse(lines: Sequence[str], given: object) -> NoReturn:
     """Refuse the file, saying what to do instead."""
     name = _name(lines) or ""  # `_is_refused` found one
     raise _refused(name, SIGNS[name][1])
@@ -291,7 +287,7 @@ def _is_named(lines: Sequence[str]) -> bool:
     return len(lines) == 1 and is_one(lines[0])
 
 
-def _read(lines: Sequence[str], asked: Asked) -> Sequence[Content]:
+def _read(lines: Sequence[str], given: Given) -> Sequence[Content]:
     """The `Content` of a motion, ``fema-p695:SET/NUMBER/COMPONENT``, alone in a list.
 
     Raises
@@ -326,7 +322,7 @@ def names(name: str) -> list[str]:
     """
     chosen = name.removeprefix(PREFIX)
     sets = (chosen,) if chosen else WHOLE
-    return [f"{PREFIX}{one}/{number}/{component}" for one in sets for number, component in _motions(name, one)]
+    return [f"{PREFIX}{part}/{number}/{component}" for part in sets for number, component in _motions(name, part)]
 
 
 def _motions(name: str, chosen: str) -> dict[tuple[str, str], Any]:

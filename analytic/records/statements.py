@@ -286,8 +286,8 @@ def interval(where: str, token: str, unit: str = "") -> float:
     SceneError
         Not a number, not above 0, or a unit of time that is not known; names `where`.
     """
-    digits, own = match.groups() if (match := _WRITTEN_STEP.fullmatch(token)) else (token, None)
-    value, unit = number(where, digits), own or unit
+    digits, attached = match.groups() if (match := _WRITTEN_STEP.fullmatch(token)) else (token, None)
+    value, unit = number(where, digits), attached or unit
     if unit.lower() not in PER_SECOND:
         raise SceneError(
             where,
@@ -306,19 +306,19 @@ def in_seconds(where: str, row: str) -> str:
     SceneError
         It begins with a date or a clock of another form; names `where`.
     """
-    found = _STAMP.search(row)
+    stamp = _STAMP.search(row)
     if _DATED.match(row) and not _STAMP.match(row):
         raise SceneError(where, row, "its time is a date or a clock of no known form", "write the times in seconds")
-    if not found:
+    if not stamp:
         return row
-    year, _, month, day, *clock, decimals = found.groups()
+    year, _, month, day, *clock, decimals = stamp.groups()
     try:
         days = datetime.date(int(year), int(month), int(day)).toordinal() if year else 0
     except ValueError as error:
-        raise SceneError(where, found[0], f"not a date ({error})", "write the times in seconds") from None
+        raise SceneError(where, stamp[0], f"not a date ({error})", "write the times in seconds") from None
     hours, minutes, seconds = map(int, clock)
     whole = str(86_400 * days + 3600 * hours + 60 * minutes + seconds)
-    return row[: found.start()] + whole + (decimals or "") + row[found.end() :]
+    return row[: stamp.start()] + whole + (decimals or "") + row[stamp.end() :]
 
 
 def usable(where: str, dt: float) -> float:
@@ -381,8 +381,8 @@ def uniform_step(tokens: Sequence[str]) -> float:
         if np.ptp(steps) <= 1e-6 * step:
             return float(f"{step:.12g}")
         for unit in (_printed_unit(tokens), np.full(len(times), JITTER * step)):
-            if unit.max() <= 0.5 * step and (found := _fit(times, unit, step)):
-                return found
+            if unit.max() <= 0.5 * step and (fitted := _fit(times, unit, step)):
+                return fitted
     usual = float(np.median(steps))
     worst = int(np.abs(steps - usual).argmax()) + 1
     raise SceneError(
@@ -542,9 +542,9 @@ def read_statements(header: Iterable[tuple[int, str]]) -> Statements:
         for match in _STEP.finditer(text):
             where = f"line {at}, step"
             steps[where] = _agreed(where, _step(where, line, match), steps)
-        for pattern in (_STEP, _COUNT):
-            for match in pattern.finditer(text):
-                line, taken = (one[: match.start()] + " " * len(match[0]) + one[match.end() :] for one in (line, taken))
+        for match in (*_STEP.finditer(text), *_COUNT.finditer(text)):
+            blank = " " * len(match[0])
+            line, taken = (part[: match.start()] + blank + part[match.end() :] for part in (line, taken))
         if _SPOKEN.search(taken):
             unread.append(f"line {at} speaks of sampling in words that are not understood: {line[:60].strip()}")
         rest.append((at, line))
@@ -560,10 +560,10 @@ def stated_count(header: Iterable[tuple[int, str]]) -> int | None:
 
 def unused_factors(header: Iterable[tuple[int, str]]) -> tuple[str, ...]:
     """Sentences on factors other than 1 that the lines of a header name: the values stay as they are printed."""
-    found = ((at, line, _FACTOR.search(folded(line))) for at, line in header)
+    searched = ((at, line, _FACTOR.search(folded(line))) for at, line in header)
     return tuple(
         f"line {at} names a factor, and the numbers are taken without it: {line[:60]}"
-        for at, line, match in found
+        for at, line, match in searched
         if match and exact(match["factor"]) != 1
     )
 
@@ -604,22 +604,23 @@ def _agreed(where: str, step: tuple[float, float], others: Mapping[str, tuple[fl
         if abs(step[0] - other[0]) > rounding + SAME * other[0]:
             problem = f"but {place.removesuffix(', step')} states a step of {other[0]:.9g} s"
             raise SceneError(where, step[0], problem, "correct the wrong one")
-    return step if where not in others else min(step, others[where], key=lambda one: one[1])
+    return step if where not in others else min(step, others[where], key=lambda step_and_rounding: step_and_rounding[1])
 
 
 def _per_second(header: Iterable[tuple[int, str]]) -> int:
     """Units of time in a second, from the words of the header."""
-    found = {}
+    lines_by_unit = {}
     for at, line in header:
         for match in _TIME.finditer(folded(line)):
             word = match[1]
             if word in OTHER_TIMES:
                 raise SceneError(f"line {at}", match[0], "not a time in s or ms", "write the times in seconds")
             if word in PER_SECOND:
-                found[PER_SECOND[word]] = at
-    if len(found) > 1:
-        raise SceneError(f"line {max(found.values())}", None, "times in s and in ms", "correct the wrong unit of time")
-    return next(iter(found), 1)
+                lines_by_unit[PER_SECOND[word]] = at
+    if len(lines_by_unit) > 1:
+        last = f"line {max(lines_by_unit.values())}"
+        raise SceneError(last, None, "times in s and in ms", "correct the wrong unit of time")
+    return next(iter(lines_by_unit), 1)
 
 
 def stated_unit(header: Iterable[tuple[int, str]], titles: int | None = None) -> Unit | None:
@@ -637,7 +638,7 @@ def stated_unit(header: Iterable[tuple[int, str]], titles: int | None = None) ->
     SceneError
         Two units, a velocity, a displacement, or a unit that is not known.
     """
-    found = acceleration = other = None
+    unit = acceleration = other = None
     for at, line in header:
         line = _spaced(line)
         names = _ACCELERATION.search(folded(line)), _OTHER.search(folded(line))
@@ -648,13 +649,13 @@ def stated_unit(header: Iterable[tuple[int, str]], titles: int | None = None) ->
             if factor is None:
                 problem, units = "not an acceleration in a unit that is known", ", ".join(UNITS)
                 raise SceneError(where, word, problem, f"write one of {units} in its place, if it is one")
-            if found and found.factor != factor:
-                raise SceneError(where, word, f"but {found.where} says {found.word}", "correct the wrong one")
-            found = found or Unit(word, factor, f"line {at}")
+            if unit and unit.factor != factor:
+                raise SceneError(where, word, f"but {unit.where} says {unit.word}", "correct the wrong one")
+            unit = unit or Unit(word, factor, f"line {at}")
     if other and not acceleration:
         remedy = "give the acceleration file of this record; if it is one, let its header say so"
         raise SceneError(*other, "not an acceleration", remedy)
-    return found
+    return unit
 
 
 def _units_in(line: str, titles: bool, named: bool) -> Iterator[tuple[str, float | None]]:

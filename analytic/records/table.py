@@ -59,11 +59,11 @@ def unquoted(lines: Sequence[str]) -> Sequence[str]:
     parts = {at: line.split('"') for at, line in enumerate(lines) if '"' in line and QUOTED.fullmatch(line.strip())}
     if not parts:
         return lines
-    commas = any("," in field for found in parts.values() for field in found[1::2] if DATA.match(field))
+    commas = any("," in field for pieces in parts.values() for field in pieces[1::2] if DATA.match(field))
     bare = list(lines)
-    for at, found in parts.items():
-        inside = [field if DATA.match(field) else re.sub("[,;]", "", field) for field in found[1::2]]
-        between = [text.replace(",", ";") if commas else text for text in found[::2]]
+    for at, pieces in parts.items():
+        inside = [field if DATA.match(field) else re.sub("[,;]", "", field) for field in pieces[1::2]]
+        between = [text.replace(",", ";") if commas else text for text in pieces[::2]]
         bare[at] = "".join(itertools.chain(*zip(between, [*inside, ""], strict=True)))
     return bare
 
@@ -82,9 +82,10 @@ def split(lines: Sequence[str]) -> tuple[list[tuple[int, str]], list[tuple[int, 
         if not rows and RULER.fullmatch(text):
             continue
         if text.startswith(COMMENT):
+            comment = at, in_latin(text[:HEADER_WIDTH])
             if not rows:
-                header.append((at, in_latin(text[:HEADER_WIDTH])))
-            elif (found := read_statements([(at, in_latin(text[:HEADER_WIDTH]))])).step or stated_unit(found.rest):
+                header.append(comment)
+            elif (statements := read_statements([comment])).step or stated_unit(statements.rest):
                 raise SceneError(f"line {at}", text, "a statement inside the data", "give one record of the file")
         elif text and not rows and (at <= begin or not DATA.match(text) or HEADING.match(text)):
             header.append((at, in_latin(text[:HEADER_WIDTH])))
@@ -295,7 +296,7 @@ class Titles:
 
 def find_titles(header: Sequence[tuple[int, str]], separator: str | None, width: int) -> Titles:
     """The `Titles` of `width` columns: the last line of the header, or the last but one with the units of the last."""
-    named = [(at, found.string[found.end() :]) for at, line in header if (found := SEQUENCE.match(line.lstrip(" #")))]
+    named = [(at, match.string[match.end() :]) for at, line in header if (match := SEQUENCE.match(line.lstrip(" #")))]
     for at, line in named or header[-1:]:
         words = _parted(line, separator, width, _is_name)
         above = _parted(header[-2][1], separator, width, _is_name) if len(header) > 1 and not named else ()
@@ -385,8 +386,8 @@ def time_words(title: str) -> str:
 
 def spectrum_in(words: Sequence[tuple[int, str]]) -> tuple[int, str] | None:
     """The line of a header that names a spectrum, or whose first word is a period or a frequency, if one does."""
-    named = [one for one in words if _SPECTRUM.search(folded(one[1]))]
-    begun = [one for one in words[-1:] if _BEGINS_WITH_PERIODS.fullmatch(folded(one[1].lstrip("#%!/ ")))]
+    named = [line for line in words if _SPECTRUM.search(folded(line[1]))]
+    begun = [line for line in words[-1:] if _BEGINS_WITH_PERIODS.fullmatch(folded(line[1].lstrip("#%!/ ")))]
     return next(iter(named + begun), None)
 
 
@@ -397,7 +398,7 @@ def known_unit(word: str) -> str:
         return ""
     if plain(word) in WORDS or plain(word) in NOT_ACCELERATIONS - {"m", "in", "ft"}:
         return word
-    length, per, squared = found.groups() if (found := _GLUED.fullmatch(word.replace("²", "2"))) else ("", "", "")
+    length, per, squared = glued.groups() if (glued := _GLUED.fullmatch(word.replace("²", "2"))) else ("", "", "")
     return f"{length}/s2" if squared else f"{length}/s" if per or length in ("cm", "mm") else ""
 
 

@@ -120,7 +120,7 @@ def level_impact(par, contact, s, before):
     """
     b, h, mu = par.R * math.sin(par.gamma), par.R * math.cos(par.gamma), contact.mu
     rate, drift, climb = before
-    r, kind, found, impulse, count = -s, -1, before, 0.0, 0
+    r, kind, velocity, impulse, count = -s, -1, before, 0.0, 0
     for sigma in (0.0, 1.0, -1.0):
         after, push, normal = one_corner(par, contact, h, r * b, sigma, before, contact.given)
         good = r * after.rate >= 0 and normal >= 0
@@ -132,9 +132,9 @@ def level_impact(par, contact, s, before):
         if good:
             count += 1
             if count == 1:
-                kind, found, impulse = NEW_STICKS if sigma == 0 else NEW_SLIPS, after, push
+                kind, velocity, impulse = NEW_STICKS if sigma == 0 else NEW_SLIPS, after, push
     if contact.given:
-        return kind, found, impulse, 1
+        return kind, velocity, impulse, 1
     for sigma in (0.0, 1.0, -1.0):
         across, push, normal = both_corners(par, contact, h, sigma, drift, climb)
         tilting = abs(contact.centre * rate - h * push) / b  # (I1): difference of the impulses of the corners
@@ -144,8 +144,8 @@ def level_impact(par, contact, s, before):
             count += 1
             if count == 1:
                 kind, impulse = BOTH_STICK if sigma == 0 else BOTH_SLIP, push
-                found = Velocity(0.0, across, 0.0)
-    return kind, found, impulse, count
+                velocity = Velocity(0.0, across, 0.0)
+    return kind, velocity, impulse, count
 
 
 @inner
@@ -289,7 +289,7 @@ def bearing_of_step(par, contact, block, base, branch, start, highest, P):
 
 
 @inner
-def end_of_step(par, block, found, step, P, totals, work):
+def end_of_step(par, block, event, step, P, totals, work):
     """The block at the end of a step, in its old mode; keeps peaks and the way that it slid."""
     tilt, rate, order, h = block.tilt, block.rate, step.order, step.h
     if block.s != 0:
@@ -307,13 +307,13 @@ def end_of_step(par, block, found, step, P, totals, work):
     totals[L.PEAK_SLIP] = max(totals[L.PEAK_SLIP], abs(slip))
     if block.mode >= ROCK:
         totals[L.LIFTED] = 1.0
-    if found == L.PASSAGE:
+    if event == L.PASSAGE:
         tilt = block.s * par.gamma
         if totals[L.UNSTABLE_TIME] < 0:
             totals[L.UNSTABLE_TIME] = step.t + h
-    elif found == L.IMPACT or found == LEVEL:
+    elif event == L.IMPACT or event == LEVEL:
         tilt = 0.0
-    elif found == STOP:
+    elif event == STOP:
         speed = 0.0
     return Block(block.mode, block.s, block.sigma, tilt, rate, slip, speed, gap, rise)
 
@@ -497,34 +497,34 @@ def march(par, resting, contact, ground, upright, options, into):
                 break
             last = noted(block, last, t, into)
             step = L.Step(t, h, order, highest, start.gravity, factors, corner)
-            found, h, side = next_event(par, contact, block, refused, branch.direction, step, P, work)
+            event, h, side = next_event(par, contact, block, refused, branch.direction, step, P, work)
             idle = idle + 1 if tau + h <= tau else none
             if idle > PATIENCE:
                 status = L.STUCK
                 break
             step = L.Step(t, h, order, highest, start.gravity, factors, corner)
             written = read(par, contact, upright, block, step, options, into, written)
-            block = end_of_step(par, block, found, step, P, totals, work)
+            block = end_of_step(par, block, event, step, P, totals, work)
             if par.on_base:
-                base = end_of_base(par, found, base, branch, step, P)
+                base = end_of_base(par, event, base, branch, step, P)
                 totals[L.PEAK_X] = max(totals[L.PEAK_X], abs(base.x))
             if abs(block.tilt) <= par.gamma:
                 held = totals[L.FRICTION], totals[L.NORMAL], totals[L.PEAK_ACCELERATION], totals[L.PEAK_X], step.t + h
             if h > 0:
                 fresh, refused = none + L.NONE, none + L.NONE
-            tau = length if found == L.NONE and h == length - tau else tau + h
+            tau = length if event == L.NONE and h == length - tau else tau + h
             t, previous, count = begin + tau, block, 1
-            if found == L.OVERTURNING:
+            if event == L.OVERTURNING:
                 block = fallen(block, none)
                 break
             start = acting(par, base, upright, highest, h, P)
-            if found == L.IMPACT or found == LANDING:
+            if event == L.IMPACT or event == LANDING:
                 block, base, status = struck(par, contact, block, base, rest_rate, start, t, into)
                 last = none - 1
-            elif found >= CONE or found == L.UPLIFT:
-                block, count = after_event(par, contact, block, found, side, start)
-                if found == CONE or found == L.UPLIFT or found == LOSS:
-                    fresh = none + (LOSS if block.mode == FLIGHT else found)
+            elif event >= CONE or event == L.UPLIFT:
+                block, count = after_event(par, contact, block, event, side, start)
+                if event == CONE or event == L.UPLIFT or event == LOSS:
+                    fresh = none + (LOSS if block.mode == FLIGHT else event)
             if status == L.COMPLETE and count != 1:
                 status = L.NO_MODE
             if not (math.isfinite(block.tilt) and math.isfinite(base.x) and math.isfinite(block.slip)):

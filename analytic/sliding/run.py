@@ -91,21 +91,21 @@ def marched(
     return totals, tables[0], tables[1], tables[2]
 
 
-def stays(found: np.ndarray) -> bool:
+def stays(totals: np.ndarray) -> bool:
     """Whether a march is sound and the block neither slid nor fell: unless it jumps, the kernel's run is the answer."""
-    sound = found[L.STATUS] in (L.COMPLETE, L.DECIDED)
-    return bool(sound and found[L.PATH] == 0 and found[L.MODE] != L.FALLEN)
+    sound = totals[L.STATUS] in (L.COMPLETE, L.DECIDED)
+    return bool(sound and totals[L.PATH] == 0 and totals[L.MODE] != L.FALLEN)
 
 
 def outcome(par: Parameters, contact: L.Contact, ground: Ground, options: Options, totals: np.ndarray) -> None:
     """March a run of many, and write what it found over the kernel's `totals`."""
-    found, *_ = marched(par, contact, ground, options._replace(record=False))
-    if totals[L.NORMAL] > 0 and stays(found):
+    result, *_ = marched(par, contact, ground, options._replace(record=False))
+    if totals[L.NORMAL] > 0 and stays(result):
         return
-    fallen, undetermined = found[L.MODE] == L.FALLEN, problem(par, contact, found) is not None
-    totals[L.STATUS] = L.STUCK if undetermined or found[L.STATUS] not in (L.COMPLETE, L.DECIDED) else L.COMPLETE
+    fallen, undetermined = result[L.MODE] == L.FALLEN, problem(par, contact, result) is not None
+    totals[L.STATUS] = L.STUCK if undetermined or result[L.STATUS] not in (L.COMPLETE, L.DECIDED) else L.COMPLETE
     slots = [L.LIFTED, L.CERTAIN, L.PEAK_TILT, L.PEAK_X, L.IMPACTS, L.PATH, L.PEAK_SLIP]
-    totals[slots], totals[L.WILL_OVERTURN] = found[slots], fallen
+    totals[slots], totals[L.WILL_OVERTURN] = result[slots], fallen
 
 
 def problem(par: Parameters, contact: L.Contact, totals: np.ndarray) -> tuple[str, str] | None:
@@ -138,8 +138,8 @@ def remedies(key: str, scene: Scene, par: Parameters, contact: L.Contact, ground
         totals, *_ = marched(par, contact, ground, options._replace(record=False, output_step=0.0))
         return totals[L.STATUS] in (L.COMPLETE, L.DECIDED) and problem(par, contact, totals) is None
 
-    words, of, own = [], "a friction of " if key == GIVEN else "", max(momentum_restitution(scene), 0.0)
-    if key == GIVEN and tried(par._replace(e=own), contact._replace(given=False)):
+    words, of, momentum = [], "a friction of " if key == GIVEN else "", max(momentum_restitution(scene), 0.0)
+    if key == GIVEN and tried(par._replace(e=momentum), contact._replace(given=False)):
         words.append("leave it out")
     least, most = (
         float(f"{mu:.4g}") for mu in (slipping_friction(par) * ABOVE, paradoxical_friction(par, contact) / ABOVE)
@@ -172,8 +172,8 @@ def slid(
     totals, impacts, changes, table = marched(par, contact, ground, options, rows)
     if totals[L.NORMAL] > 0 and stays(totals):
         return None
-    if found := problem(par, contact, totals):
-        key, words = found
+    if undetermined := problem(par, contact, totals):
+        key, words = undetermined
         value = scene.friction if key == "friction" else scene.block.restitution
         remedy = remedies(key, scene, par, contact, ground, options)
         raise SceneError(key, value, words, remedy, scene.name or None)

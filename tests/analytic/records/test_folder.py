@@ -104,7 +104,7 @@ FOLDERS = {
     ),
     "one's own is never left out": (
         MIXED,
-        {"units": "g", "own": SampledMotion(0.01, 981 * FIRST, "as the scene calls it")},
+        {"units": "g", "scene_motion": SampledMotion(0.01, 981 * FIRST, "as the scene calls it")},
         {"gal_no_unit.csv": [981 * FIRST], "motion.csv": [FIRST]},
         ["spectrum.txt: "],
     ),
@@ -187,12 +187,12 @@ def test_a_scenes_motion_with_its_vertical_one_is_the_records_of_the_folder_whos
     )
     own = load_scene(tmp_path / "scene" / "s.toml").motion
     for directions, count in ((None, 2), (3, 4)):
-        found, left = folder_motions(tmp_path, own=own, directions=directions)
+        found, left = folder_motions(tmp_path, scene_motion=own, directions=directions)
         first = next(iter(found.values()))
         assert first[0] is own and len(first) == count and len({motion.digest() for motion in first}) == count
         verticals = [line for line in left if "vertical" in line]
         assert verticals == ([] if vertical == "a.csv" else [f"a.csv, column 4 (Up): {VERTICAL}"])
-    found, left = folder_motions(tmp_path, own=own.scaled(2.0))  # another motion
+    found, left = folder_motions(tmp_path, scene_motion=own.scaled(2.0))  # another motion
     assert own not in found["a.csv"] and left == folder_motions(tmp_path)[1]
 
 
@@ -230,13 +230,13 @@ def test_a_motion_of_ones_own_that_lies_in_the_folder_is_there_once_and_first(tm
     for name, values in zip(names, (FIRST, SECOND, 2 * FIRST), strict=True):
         write(tmp_path, name, values)
     mine = SampledMotion(0.01, (FIRST, SECOND, 2 * FIRST)[own], "as the scene calls it")
-    found, _ = folder_motions(tmp_path, directions=directions, own=mine)
+    found, _ = folder_motions(tmp_path, directions=directions, scene_motion=mine)
     assert len(found) == 2 and next(iter(found)) == ("c.csv" if own == 2 else "B_*.csv")
     first = next(iter(found.values()))
     assert len(first) == count and first[0].digest() == mine.digest()
     assert len({motion.digest() for motion in first}) == count
     other = SampledMotion(0.01, 1.5 * FIRST)
-    assert folder_motions(tmp_path, own=other)[0].keys() == folder_motions(tmp_path)[0].keys()
+    assert folder_motions(tmp_path, scene_motion=other)[0].keys() == folder_motions(tmp_path)[0].keys()
 
 
 @pytest.mark.parametrize("name", ["caryatid-rigid", "caryatid-isolated"])
