@@ -1,14 +1,14 @@
-"""Margins: the change of a quantity at which a scene reaches another limit state, or its outcome changes.
+"""Margins: the change of a quantity at which the outcome of a scene, or a limit state, changes.
 
 A limit state is reached if the block slides (where the scene gives a friction), if it lifts, if its peak tilt exceeds a
 share of the slenderness, if the base exceeds the x_max of its bearings, or if the block overturns.
 
-The outcome may change more than once: resonances cause narrow bands of another outcome far from the first boundary, and
+The outcome may change more than once. Resonances cause narrow bands of another outcome far from the first boundary, and
 safe gaps beyond it. Each quantity is therefore scanned, one at a time, at equidistant relative changes, and every
 boundary between two changes is bisected. A band narrower than the `step` of the scan may be missed; a band of twice the
 step is always found. Where narrow bands of outcomes alternate, the boundary is interleaved (fractal). The safe gap
-about the scene is then scanned again in steps `FINER` times smaller, and the margin says so, as it may contain still
-narrower bands.
+about the scene is then scanned again in steps `FINER` times smaller, and the margin says so, as the gap may contain
+still narrower bands.
 """
 
 from __future__ import annotations
@@ -49,9 +49,9 @@ NEARBY_STEPS = 1e8  # of all its runs: a minute on two cores
 
 @dataclass(frozen=True)
 class Band:
-    """Relative changes from `low` to `high` of a quantity that reach the same of LIMIT_STATES.
+    """A range of relative changes, from `low` to `high`, that reach the same of LIMIT_STATES.
 
-    holds: the model is valid: N > 0, or a friction is given, with which a block that flies is modelled.
+    holds: whether the model is valid: N > 0, or a friction is given, with which a block that flies is modelled.
     """
 
     low: float
@@ -73,8 +73,8 @@ class Band:
 class Margin:
     """Effects of relative changes of one quantity.
 
-    value: that of the scene. bands: from low to high. step: of the scan. ends_down, ends_up: why the range ends at the
-    first and at the last band, where no scene or no run lies beyond; "" where it is the whole span.
+    value: the quantity in the scene. bands: from low to high. step: of the scan. ends_down, ends_up: why no scene or no
+    run lies beyond the first and beyond the last band; "" where the whole span was scanned.
     """
 
     quantity: str
@@ -87,48 +87,48 @@ class Margin:
 
     @property
     def outcome(self) -> str:
-        """The outcome of the unchanged scene."""
+        """Return the outcome of the unchanged scene."""
         return self._own.outcome
 
     @property
     def down(self) -> float | None:
-        """The nearest change below 0 with another outcome, None if there is none in the range scanned."""
+        """Return the nearest change below 0 with another outcome; None if there is none in the range scanned."""
         return self._edges(_outcome)[0]
 
     @property
     def up(self) -> float | None:
-        """The nearest change above 0 with another outcome, None if there is none in the range scanned."""
+        """Return the nearest change above 0 with another outcome; None if there is none in the range scanned."""
         return self._edges(_outcome)[1]
 
     @property
     def nearest(self) -> float | None:
-        """The nearer of `down` and `up`."""
+        """Return the nearer of `down` and `up`."""
         return _nearer(self._edges(_outcome))
 
     def reached(self, state: str) -> bool:
-        """Whether the unchanged scene reaches one of LIMIT_STATES."""
+        """Return whether the unchanged scene reaches one of LIMIT_STATES."""
         return state in self._own.reached
 
     def change(self, state: str) -> float | None:
-        """The smallest change at which one of LIMIT_STATES is reached, or no longer reached; None as in `down`."""
+        """Return the smallest change at which one of LIMIT_STATES is reached or left; None as in `down`."""
         return _nearer(self._edges(lambda band: state in band.reached))
 
     @property
     def leaves_model(self) -> float | None:
-        """The smallest change at which the model is not valid (N <= 0); 0 if it is not valid now."""
+        """Return the smallest change at which the model is not valid (N <= 0); 0 if it is not for the scene itself."""
         return _nearer(self._edges(lambda band: band.holds)) if self._own.holds else 0.0
 
     @property
     def outcomes(self) -> list[tuple[float, float, str]]:
-        """[(low, high, outcome)]: the bands, adjacent ones of the same outcome joined."""
+        """Return [(low, high, outcome)]: the bands, adjacent ones of the same outcome joined."""
         grouped = [(outcome, list(group)) for outcome, group in itertools.groupby(self.bands, _outcome)]
         return [(group[0].low, group[-1].high, outcome) for outcome, group in grouped]
 
     @property
     def interleaved(self) -> bool:
-        """Whether the outcome changes and changes back within two steps, so that it may change closer than `nearest`.
+        """Return whether the outcome changes and changes back within two steps.
 
-        A short band of rocking between standing and overturning does not count.
+        It may then change closer than `nearest`. A short band of rocking between standing and overturning is no change.
         """
         bands = self.outcomes
         return any(
@@ -137,7 +137,7 @@ class Margin:
         )
 
     def beyond(self, change: float) -> str:
-        """The outcome on the far side of a boundary."""
+        """Return the outcome on the far side of a boundary."""
         edge = next(b for b in self.bands if b.outcome != self.outcome and change == (b.low if change > 0 else b.high))
         return edge.outcome
 
@@ -146,11 +146,11 @@ class Margin:
         return next(band for band in self.bands if band.low <= 0 <= band.high)
 
     def _edges(self, kind):
-        """The nearest changes below and above 0 at which `kind` of a band differs from that of the scene, or None."""
-        others = [band for band in self.bands if kind(band) != kind(self._own)]
+        """Return the nearest changes below and above 0 at which `kind` of a band changes, or None."""
+        different = [band for band in self.bands if kind(band) != kind(self._own)]
         return (
-            max((band.high for band in others if band.high <= 0), default=None),
-            min((band.low for band in others if band.low >= 0), default=None),
+            max((band.high for band in different if band.high <= 0), default=None),
+            min((band.low for band in different if band.low >= 0), default=None),
         )
 
 
@@ -181,12 +181,12 @@ def _bearing(name):
 
 
 def _slenderness(scene, factor):
-    """Another slenderness at the same R, mass and J_O: half width and half height change."""
+    """Return the scene with another slenderness at the same R, mass and J_O: half width and half height change."""
     return scene.with_(block={"slenderness": factor * scene.block.slenderness})
 
 
 def _size(scene, factor):
-    """Another R at the same mass and shape."""
+    """Return the scene with another R at the same mass and shape."""
     inertia = scene.block.corner_inertia
     return scene.with_(
         block={
@@ -238,7 +238,7 @@ QUANTITIES = {
 
 
 def limit_states(scene: Scene) -> tuple[str, ...]:
-    """The LIMIT_STATES that a scene can reach: "stroke" needs bearings with an x_max, "slides" a friction."""
+    """Return the LIMIT_STATES that a scene can reach: "stroke" needs bearings with an x_max, "slides" a friction."""
     needs = {
         "stroke": scene.bearings is not None and scene.bearings.x_max is not None,
         "slides": scene.friction is not None,
@@ -256,11 +256,10 @@ def margins(
     workers: int | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> list[Margin]:
-    """The `Margin` of each quantity for relative changes up to `span`; the smallest change of outcome comes first.
+    """Return the `Margin` of each quantity for relative changes up to `span`, the smallest change of outcome first.
 
     Every run continues until its outcome is decided. The range ends where a change gives no valid scene (e above 1, ka
-    below kb) or one that the model refuses or fails on, and the margin says why; and downwards at the last step before
-    -1.
+    below kb), or one that the model refuses or fails on, and the margin says why; downwards it ends above -1.
 
     Parameters
     ----------
@@ -270,17 +269,15 @@ def margins(
         Largest relative change, up to 9, and the distance of the changes scanned.
     only : collection of str
         Some of QUANTITIES; by default all that the scene has.
-    workers : int or None
-        Threads; by default one per core. The result does not depend on it.
-    progress : callable or None
-        Called with the name of each quantity before its scan.
+    workers, progress : int, callable
+        Threads, by default one per core; called with the name of each quantity before its scan.
 
     Raises
     ------
     SettingError
         tilt, span or step is out of range.
     SceneError
-        The scene itself cannot be run, or is too stiff or too long for so many runs; the message names the part.
+        The scene cannot be run, or is too stiff or too long for so many runs; the message names the part.
     """
     if not 0 < tilt <= 1:
         raise SettingError(f"tilt = {tilt!r}: give a share of the slenderness, above 0 and up to 1")
@@ -299,11 +296,10 @@ def margins(
     check_cost(scene, len(values) * len(changes))
     results = []
     for name, value in values.items():
-        quantity = QUANTITIES[name]
         if progress:
             progress(name)
         bands, ends = _bands(scene, name, changes, tilt, workers)
-        margin = Margin(name, float(value), quantity.unit, bands, step, **ends)
+        margin = Margin(name, float(value), QUANTITIES[name].unit, bands, step, **ends)
         if margin.interleaved:
             bands, ends = _bands(scene, name, _finer(margin, changes), tilt, workers)
             margin = replace(margin, bands=bands, **ends)
@@ -330,13 +326,13 @@ class Contact:
 
     @classmethod
     def of(cls, scene: Scene, response: Response) -> Self:
-        """Those of a run of the scene."""
+        """Return the reserves in a run of the scene."""
         slides = response.sliding is not None and response.sliding.path > 0
         return cls(response.min_normal_ratio, response.friction_demand, scene.friction, slides)
 
 
 def _finer(margin, changes):
-    """The changes, with steps `FINER` times smaller between the nearest changes of the outcome."""
+    """Return the changes, with steps `FINER` times smaller between the nearest changes of the outcome."""
     low = changes[0] if margin.down is None else margin.down
     high = changes[-1] if margin.up is None else margin.up
     counts = np.arange(math.ceil(FINER * low / margin.step), FINER * high / margin.step)
@@ -344,8 +340,10 @@ def _finer(margin, changes):
 
 
 def _bands(scene, name, changes, tilt, workers):
-    """(tuple of `Band` over the changes, why they end). Boundaries are bisected for each state, as two may lie within
-    one step."""
+    """Return (tuple of `Band` over the changes, why they end).
+
+    Boundaries are bisected for each state, as two may lie within one step.
+    """
     changes, states, ends = _scanned(scene, name, changes, tilt, workers)
     edges, columns = np.nonzero(states[1:] != states[:-1])
     low, high, before = changes[edges], changes[edges + 1], states[edges, columns]
@@ -365,7 +363,10 @@ def _bands(scene, name, changes, tilt, workers):
 
 
 def _scanned(scene, name, changes, tilt, workers):
-    """(the changes about 0 up to the first that cannot be run, their states, {"ends_down", "ends_up": why there})."""
+    """Return (the changes about 0 up to the first that cannot be run, their states, why there).
+
+    The last is a dict of "ends_down" and "ends_up".
+    """
     changes, scenes, ends = _scenes(scene, name, changes)
     states, failed = _states(scene, name, changes, scenes, tilt, workers)
     if failed[changes == 0].any():
@@ -381,7 +382,7 @@ def _scanned(scene, name, changes, tilt, workers):
 
 
 def _why(scene):
-    """Why a scene cannot be run."""
+    """Return why a scene cannot be run."""
     try:
         response = simulate(scene, history=False)
     except SceneError as error:
@@ -395,7 +396,7 @@ def _refusal(error):
 
 
 def _scenes(scene, name, changes):
-    """(the changes about 0 that give a valid scene, their scenes, {"ends_down", "ends_up": why none lies beyond})."""
+    """Return (the changes about 0 that give a valid scene, their scenes, why none lies beyond), as `_scanned`."""
     changed = QUANTITIES[name].changed
     valid, ends = {0.0: scene}, {}
     for key, direction in (("ends_up", changes[changes > 0]), ("ends_down", changes[changes < 0][::-1])):
@@ -410,8 +411,10 @@ def _scenes(scene, name, changes):
 
 
 def _states(scene, name, changes, scenes, tilt, workers):
-    """(array (changes, LIMIT_STATES and one more): the states reached, and whether the model is valid; which runs
-    failed)."""
+    """Return (states, which runs failed).
+
+    states : array (changes, LIMIT_STATES and one more): those reached, and whether the model is valid.
+    """
     if scenes is None:
         scenes = [QUANTITIES[name].changed(scene, 1 + change) for change in changes]
     scales = 1 + changes if name == "motion" else None
@@ -432,7 +435,7 @@ def _states(scene, name, changes, scenes, tilt, workers):
 
 
 def nearby(scene: Scene, *, workers: int | None = None) -> tuple[np.ndarray, Outcomes]:
-    """(relative changes of the motion from -SHARE to SHARE, shape (n,); the `Outcomes` at each), 0 in the middle.
+    """Return (relative changes of the motion from -SHARE to SHARE, shape (n,), 0 in the middle; their `Outcomes`).
 
     Raises
     ------
@@ -446,9 +449,9 @@ def nearby(scene: Scene, *, workers: int | None = None) -> tuple[np.ndarray, Out
 
 
 def cliffs(scene: Scene, changes: np.ndarray, outcomes: Outcomes) -> tuple[Caution, ...]:
-    """A warning if a change of the motion below `SHARE` changes the outcome, or the peak tilt by a factor of `FOLD`.
+    """Warn if a change of the motion below `SHARE` changes the outcome, or the peak tilt by a factor of `FOLD`.
 
-    changes, found : results of `nearby`. The value of a `Caution` is the smallest such change.
+    changes, outcomes : results of `nearby`. The value of a `Caution` is the smallest such change.
     """
     centre = len(changes) // 2
     names, ratios = outcomes.names, outcomes.peak_tilt / scene.block.slenderness
@@ -473,6 +476,6 @@ def cliffs(scene: Scene, changes: np.ndarray, outcomes: Outcomes) -> tuple[Cauti
     return tuple(cautions)
 
 
-def _nearest(changes: np.ndarray, wanted: np.ndarray) -> int | None:
-    """Index of the smallest change among those wanted, None if there is none."""
-    return min(np.flatnonzero(wanted).tolist(), key=lambda index: (abs(changes[index]), changes[index]), default=None)
+def _nearest(changes: np.ndarray, selected: np.ndarray) -> int | None:
+    """Return the index of the smallest of the selected changes, None without any. selected : bool, shape of changes."""
+    return min(np.flatnonzero(selected).tolist(), key=lambda index: (abs(changes[index]), changes[index]), default=None)

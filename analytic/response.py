@@ -111,7 +111,7 @@ class History:
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """The columns that it has: `COLUMNS`, and the slip where the block slides."""
+        """Return the names of its columns: `COLUMNS`, and the slip where the block slides."""
         return self.COLUMNS if self.slip is None else (*self.COLUMNS, "slip")
 
     def to_csv(self, path: str | PathLike[str] | TextIO) -> None:
@@ -138,14 +138,14 @@ class Energy:
 
     @property
     def imbalance(self) -> float:
-        """input - (changes + losses) [J]; zero for an exact solution."""
+        """Return input - (changes + losses) [J]; zero for an exact solution."""
         losses = self.hysteretic + self.viscous + self.impact_loss + self.friction
         return self.input - (self.kinetic + self.potential + losses)
 
 
 @dataclass(frozen=True)
 class Sliding:
-    """Slip of the block's corner along its support: largest and last [m], whole way [m], friction work [J], modes.
+    """Slip of the block's corner along its support: largest and last [m], path length [m], friction work [J], modes.
 
     modes: (time [s], mode) of each change: "stick", "slide" (both corners), "rock", "slide-rock", "flight". The slip is
     positive toward +x, and goes on in the last fall.
@@ -182,7 +182,7 @@ class Caution:
 
 
 def about_record(motion: Any) -> tuple[Caution, ...]:
-    """Warnings on an unusual record of a motion; none for pulses or None."""
+    """Return the warnings on an unusual record of a motion; none for pulses or None."""
     return tuple(Caution("record", text) for text in getattr(motion, "warnings", ()))
 
 
@@ -260,7 +260,7 @@ class Response:
     comparable: str = UNCOMPARED  # whether it was compared with the model; see `COMPARED`
     failure: Failure | None = None
     energy: Energy | None = None
-    sliding: Sliding | None = None  # of a block that slides, or may: the scene gives a friction that is used up
+    sliding: Sliding | None = None  # of a block that slides, or may: the scene gives a friction that is exhausted
     history: History | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
@@ -271,7 +271,7 @@ class Response:
 
     @property
     def outcome_text(self) -> str:
-        """The outcome as shown: the outcome, or "undecided (rocks so far)"."""
+        """Return the outcome as shown: the outcome, or "undecided (rocks so far)"."""
         return self.outcome if self.decided or self.outcome == "failed" else f"undecided ({self.outcome} so far)"
 
     @property
@@ -279,7 +279,7 @@ class Response:
         return len(self.impacts)
 
     def to_json(self) -> dict[str, Any]:
-        """The response without its history as a JSON-ready dict; non-finite numbers become None."""
+        """Return the response without its history as a JSON-ready dict; non-finite numbers become None."""
         values = {}
         for part in dataclasses.fields(self):
             if part.name == "history":
@@ -295,14 +295,14 @@ class Response:
 
     @classmethod
     def unmeasured(cls, **known: Any) -> Self:
-        """A response with the `known` fields only: other numbers are NaN, and there are no events."""
+        """Return a response with the `known` fields only: other numbers are NaN, and there are no events."""
         numbers = {part.name: math.nan for part in dataclasses.fields(cls) if part.type is float}
         nothing = dict(overturning_time=None, unstable_time=None, impacts=(), uplifts=(), rests=(), steps=0)
         return cls(**{**numbers, **nothing, "end": State(*[math.nan] * 6), **known})
 
     @classmethod
     def from_json(cls, values: Mapping[str, Any], history: History | None = None) -> Self:
-        """The response from the values of `to_json`; numbers that were not finite are NaN.
+        """Return the response from the values of `to_json`; numbers that were not finite are NaN.
 
         values may lack cpu_seconds. history: the `History` of the response.
         """
@@ -353,7 +353,7 @@ def _finite(value: Any) -> Any:
 
 
 def scene_warnings(scene: "Scene") -> tuple[Caution, ...]:
-    """Warnings that precede any outcome of a scene: a base without bearings or friction, a start beyond balance."""
+    """Return the warnings that precede any outcome of a scene: a base that nothing holds, a start beyond balance."""
     warnings, tilt, gamma = [], scene.start.tilt, scene.block.slenderness
     if scene.base is not None and scene.bearings is None:
         words = (
@@ -371,9 +371,9 @@ def scene_warnings(scene: "Scene") -> tuple[Caution, ...]:
 
 
 def limit_warnings(scene: "Scene", peak_base_displacement: float, peak_slip: float = 0.0) -> tuple[Caution, ...]:
-    """Warnings if the peak base displacement [m] exceeds the bearings' x_max, or the peak slip [m] the half width.
+    """Warn if the peak base displacement [m] exceeds the bearings' x_max, or the peak slip [m] the half width.
 
-    peak_slip : 0 of a block that overturns, whose slip goes on in its fall.
+    peak_slip : 0 for a block that overturns, whose slip goes on in its fall.
     """
     warnings = []
     limit = None if scene.bearings is None else scene.bearings.x_max

@@ -1,4 +1,4 @@
-"""Scenes from scene files (TOML); all mistakes in a file are reported in one `SceneError`.
+"""Scene files (TOML): read, with all mistakes in one `SceneError`, and written from measured quantities.
 
 SI units. Only ``[block]`` is needed; a part that is left out is not modelled::
 
@@ -40,23 +40,23 @@ SI units. Only ``[block]`` is needed; a part that is left out is not modelled::
     [run]                     # optional: without it a run ends when its outcome is decided
     duration = 20.0           # s
 
-Under a vertical motion a_v, gravity is g + a_v(t) for the block. The bearings are vertically rigid in the model, while
-real ones vibrate vertically at some 10 to 20 Hz; a warning says so. Components with different steps or lengths are
-resampled and padded, and ``warnings`` say how. Where the normal force reaches zero and no friction is given, the
-outcome is outside the model.
+Under a vertical motion a_v, gravity is g + a_v(t) for the block. Bearings are vertically rigid in the model, while real
+bearings vibrate vertically at 10 to 20 Hz; a warning says so. Components with different steps or lengths are resampled
+and padded, and ``warnings`` say how. Where the normal force reaches zero and no friction is given, the outcome is
+outside the model.
 
-With ``friction``, Coulomb's coefficient between the block and its support, the block slides where it is used up, and
-flies where the normal force vanishes, in the analytic model and, in place of its own setting, in an engine
-(`analytic.sliding.equations`). Without it the block does not slide, and the friction demand says what that takes. Two
-bounds, which an error names: a block released by hand needs a friction at which its impacts do not slip, and none may
-be so large that a block that slides has no motion (4/3 for a rectangle).
+``friction`` is Coulomb's coefficient between the block and its support. With it the block slides when friction is
+exhausted, and flies where the normal force vanishes (`analytic.sliding.equations`). It holds for the analytic model
+and, in place of the engine's own setting, for engines. Without it the block does not slide, and the friction demand
+says which coefficient that takes. Two bounds, which an error names: a block released by hand needs a friction at which
+its impacts do not slip; and no friction may be so large that a sliding block has no motion (4/3 for a rectangle).
 
 ``rocking run`` also runs the analytic model with start, motion and restitution (or friction) changed by a millionth. It
 warns if the outcome changes: so near an outcome boundary no solver can be trusted.
 
-A scene file from measured quantities: height, width and mass of a block, its base and bearings, a motion.
+A file is written from the height, width and mass of a block, with its base, bearings and motion::
 
-text = scene_text("bust", block_from(1.9, 0.55, density=MATERIALS["marble"]))
+    text = scene_text("bust", block_from(1.9, 0.55, density=MATERIALS["marble"]))
 """
 
 import json
@@ -102,7 +102,7 @@ MOTIONS = {
 
 
 def _as_text(value: object) -> object:
-    """The number of a channel as text."""
+    """Return the number of a channel as text."""
     return str(value) if type(value) is int else value
 
 
@@ -131,7 +131,7 @@ class _Motion(Part):
     scale: Number = 1.0
 
     def motion(self, folder: Path) -> SampledMotion | PulseMotion:
-        """The ground motion; paths of records are relative to `folder`."""
+        """Return the ground motion; paths of records are relative to `folder`."""
         kinds = [kind for kind in MOTIONS if getattr(self, kind) is not None]
         if len(kinds) != 1:
             problem = "names several motions at once" if kinds else "names no motion"
@@ -162,8 +162,8 @@ class _Motion(Part):
         level = synthetic_motion(style, seed)
         if not self.vertical_ratio:
             return level
-        other = (seed + 1) % 2**64 if self.vertical_seed is None else self.vertical_seed
-        return paired(level, synthetic_motion(style, other).scaled(self.vertical_ratio))
+        upright_seed = (seed + 1) % 2**64 if self.vertical_seed is None else self.vertical_seed
+        return paired(level, synthetic_motion(style, upright_seed).scaled(self.vertical_ratio))
 
     def _pulsed(self) -> PulseMotion:
         for key in ("amplitude", "frequency"):
@@ -191,7 +191,7 @@ class _Motion(Part):
         return read_record(path, self.units, self.scale, dt=self.dt, **choice)  # it does not say its unit
 
     def _recorded(self, folder: Path, key: Literal["record", "vertical"]) -> SampledMotion:
-        """The component that `key` names; a vertical one without a file is another channel of the record."""
+        """Return the component that `key` names; a vertical one without a file is another channel of the record."""
         name = self.vertical or self.record if key == "vertical" else self.record
         assert name is not None  # checked
         path = Path(name) if fema.is_one(name) else folder / name
@@ -230,18 +230,18 @@ class _SceneFile(Part):
 
 
 def shipped_scenes() -> tuple[str, ...]:
-    """Names of the scenes that come with the package: ``load_scene("caryatid-isolated")``."""
+    """Return the names of the scenes that come with the package: ``load_scene("caryatid-isolated")``."""
     return tuple(sorted(path.stem for path in SHIPPED.glob("*.toml")))
 
 
 def load_scene(path: str | PathLike[str]) -> Scene:
-    """The scene in a TOML file, or a shipped scene by its name.
+    """Return the scene in a TOML file, or a shipped scene by its name.
 
     Raises
     ------
     SceneError
         The message names the file, the key, the value and the remedy. It lists all mistakes in keys, in values and in
-        the motion. The consistency of the parts is checked after each of them is correct.
+        the motion. The consistency of the parts is checked once each of them is correct.
     """
     path = Path(path)
     if str(path) in shipped_scenes() and not path.exists():
@@ -277,7 +277,7 @@ def _parse(path: Path) -> dict[str, Any]:
 
 
 def _scene(table: Mapping[str, Any], path: Path) -> Scene:
-    """The scene from the tables of a file; raises all mistakes of tables, motion and consistency together."""
+    """Return the scene from the tables of a file; raise all mistakes of tables, motion and consistency together."""
     mistakes: list[SceneError] = []
     file = motion = None
     scene: Scene | None = None
@@ -312,7 +312,7 @@ def _scene(table: Mapping[str, Any], path: Path) -> Scene:
 
 
 def _motion_alone(table: Mapping[str, Any]) -> _Motion | None:
-    """The table [motion] of a file with mistakes elsewhere; None if it is missing or has mistakes itself."""
+    """Return the table [motion] of a file with mistakes elsewhere; None if it is missing or has mistakes itself."""
     try:
         return _Motion.model_validate(table.get("motion"))
     except ValidationError:
@@ -339,9 +339,9 @@ UPLIFT, YIELD = "uplift acceleration g tan(slenderness)", "acceleration at which
 def block_from(
     height: float, width: float, *, depth: float | None = None, density: float | None = None, mass: float | None = None
 ) -> Block:
-    """The homogeneous rectangular `Block` of height and width [m], width along the motion.
+    """Return the homogeneous rectangular `Block` of height and width [m], width along the motion.
 
-    Given is its mass [kg], or its density [kg/m3] and depth [m] across the motion (default: the width).
+    Give its mass [kg], or its density [kg/m3] and depth [m] across the motion (default: the width).
     R = sqrt(h^2 + b^2) and gamma = atan(b/h), with half height h and half width b.
 
     Raises
@@ -369,7 +369,7 @@ def block_from(
 
 
 def derived(scene: Scene) -> list[tuple[str, float, str]]:
-    """Derived quantities of a scene: rows of (name, value, unit).
+    """Return the derived quantities of a scene: rows of (name, value, unit).
 
     Secant period and equivalent damping, W_D/(4 pi E_s) of the hysteresis only, are given if the bearings yield at
     x_max: below yield the loss is smaller than rounding errors.
@@ -411,7 +411,7 @@ def scene_text(
     friction: float | None = None,
     about: Sequence[str] = (),
 ) -> str:
-    """A commented scene file (TOML) that `load_scene` reads.
+    """Return a commented scene file (TOML) that `load_scene` reads.
 
     Parameters
     ----------
@@ -420,7 +420,7 @@ def scene_text(
     motion : dict or None
         Keys of the table [motion].
     tilt : float or None
-        Of the start [rad].
+        Tilt at the start [rad].
     friction : float or None
         Coefficient between the block and its support; None: it does not slide.
     about : sequence of str
@@ -428,7 +428,9 @@ def scene_text(
     """
     lines = [*(f"# {line}" for line in about), f"name = {_toml(name)}"]
     if friction is not None:
-        lines.append(f"friction = {_toml(friction)}  # of the block on its support: it slides where this is used up")
+        lines.append(
+            f"friction = {_toml(friction)}  # of the block on its support: it slides when friction is exhausted"
+        )
     else:
         lines.append("# friction = 0.6  # of the block on its support; without it the block does not slide")
     lines += ["", "[block]"]
@@ -451,14 +453,14 @@ def scene_text(
 
 
 def with_bearings(text: str, bearings: Bearings, base: Base | None = None) -> str:
-    """The text of a scene file with other bearings: the table [bearings] is replaced, or added at the end.
+    """Return the text of a scene file with other bearings: the table [bearings] is replaced, or added at the end.
 
     base : for a scene without one; its table is added before that of the bearings.
 
     Examples
     --------
-    >>> one = Bearings(law="linear", ka=1e4)
-    >>> "ka = 10000.0" in with_bearings("[base]\\nmass = 400.0\\n", one)
+    >>> softer = Bearings(law="linear", ka=1e4)
+    >>> "ka = 10000.0" in with_bearings("[base]\\nmass = 400.0\\n", softer)
     True
     """
     lines = text.rstrip().split("\n")
@@ -491,5 +493,5 @@ def _rows(values):
 
 
 def _toml(value):
-    """A value as TOML writes it, numbers to six digits; JSON's strings and numbers are TOML's."""
+    """Return a value as TOML writes it, numbers to six digits; JSON's strings and numbers are TOML's."""
     return json.dumps(float(f"{value:.6g}") if isinstance(value, float) else value, ensure_ascii=False)

@@ -1,8 +1,8 @@
-"""``simulate(scene)``: the analytic model, by the compiled kernel.
+"""``simulate(scene)``: the analytic model, by the compiled kernel; limits of a run, and when it may end.
 
-Limits of one run: steps, events, rows of the history; and the error for a scene that exceeds them.
-
-The rules of `decision.py` applied to the end state of another solver's run: whether that run may end.
+A run has limits of steps, events and rows of its history; a scene that exceeds them is refused with an error that names
+the cause. The rules of `decision` are applied to the end state of another solver's run, too: they say whether that run
+may end.
 """
 
 from __future__ import annotations
@@ -40,6 +40,7 @@ from .sliding.run import contact_of, is_needed
 from .sliding.run import slid as march
 
 if TYPE_CHECKING:
+    from .motion import Motion
     from .scene import Scene
 
 # Steps of a run until its outcome is decided, some seconds of CPU time: both Caryatid scenes take 6000, bearings of ten
@@ -52,7 +53,7 @@ USUAL_EXPONENT = 100.0  # of a bearing law: up to it, the yielding is no stiffer
 
 
 def most_steps(scene: Scene) -> int:
-    """Largest number of steps of a run of the scene."""
+    """Return the largest number of steps of a run of the scene."""
     longer = 1.0
     if scene.duration is not None:
         longer = max(1.0, (scene.duration - motion_end(scene)) / (CAP_PERIODS * period(scene)))
@@ -61,7 +62,7 @@ def most_steps(scene: Scene) -> int:
 
 
 def too_long(scene: Scene, spent: str) -> SceneError:
-    """The error for a run that has `spent` its limit; it names the part of the scene that is furthest from usual.
+    """Return the error for a run that has `spent` its limit; it names the part of the scene furthest from usual.
 
     The bearings' frequency and decay rate are compared with omega_r, their exponent with 100, and the duration with a
     hundred rocking periods.
@@ -71,7 +72,7 @@ def too_long(scene: Scene, spent: str) -> SceneError:
 
 
 def _parts(scene: Scene) -> list[tuple[float, str, float, str, str]]:
-    """[(ratio to a usual value, key, value, problem, remedy)] of all causes of a long run."""
+    """Return [(ratio to a usual value, key, value, problem, remedy)] of all causes of a long run."""
     model, omega, turn = RockingModel.of(scene), scene.rocking_frequency, 2 * math.pi
     parts = [(0.0, "block.radius", scene.block.radius, f"the block rocks at {omega:.3g} rad/s", "give a larger one")]
     if model.restitution > NEARLY_ELASTIC:
@@ -105,10 +106,6 @@ def _bearing_parts(scene, model):
     return parts
 
 
-if TYPE_CHECKING:
-    from .motion import Motion
-    from .scene import Scene
-
 # Chosen by measurement (`rocking study speed-error`): where CPU against error is least.
 ORDER = 18  # free flight and pulses: long steps
 TOLERANCE = 1e-11
@@ -125,7 +122,7 @@ _NO_SAMPLES.flags.writeable = False  # the same compiled type as the samples of 
 
 
 def parameters(scene: Scene) -> Parameters:
-    """The scene as the kernel's `Parameters`."""
+    """Return the scene as the kernel's `Parameters`."""
     model, law, start = RockingModel.of(scene), BearingLaw.of(scene.bearings), scene.start
     return Parameters(
         m=model.m,
@@ -154,7 +151,7 @@ def parameters(scene: Scene) -> Parameters:
 
 
 def ground(motion: Motion | None, scale: float = 1.0) -> Ground:
-    """The motion as the kernel's `Ground`, times `scale`."""
+    """Return the motion as the kernel's `Ground`, times `scale`."""
     scale = float(scale)
     if motion is None:
         return Ground(QUIET, 1.0, _NO_SAMPLES, None, Shaking(*[0.0] * len(Shaking._fields)))
@@ -181,7 +178,7 @@ def options(
     shortest: float | None = None,
     steps: int = MOST_STEPS,
 ) -> Options:
-    """The kernel's `Options`, checked; `shortest` is by default 0 where it is to `decide`, else infinite.
+    """Return the kernel's `Options`, checked; `shortest` is by default 0 where the run is to `decide`, else infinite.
 
     Raises
     ------
@@ -209,10 +206,9 @@ def simulate(
 ) -> Response:
     """Simulate a scene with the analytic rocking model.
 
-    Without a duration the run ends when its outcome is decided and its peaks are final (`decision`). With a duration, a
-    base that oscillates under a block which will not lift again is followed up to `longest_duration` at most. If the
-    duration ends while the block is certain to overturn (rigid ground, after the motion), the outcome is "overturns",
-    and the time of overturning lies beyond the end.
+    Without a duration the run ends when its outcome is decided and its peaks are final (`decision`). With one, a base
+    that oscillates under a block which will not lift again is followed up to `longest_duration`. If the duration ends
+    while the block is certain to overturn (rigid ground, after the motion), the outcome is "overturns" all the same.
 
     Parameters
     ----------
@@ -220,25 +216,19 @@ def simulate(
     history : bool
         Keep the history at multiples of `output_step` (and at the end).
     tolerance : float
-        The accuracy parameter: the last Taylor term of a step, relative to the motion within the step. The error at the
-        end is larger by the sensitivity of the motion (a few hundred times near overturning).
+        The last Taylor term of a step, relative to the motion within the step. The error at the end is larger by the
+        sensitivity of the motion (a few hundred times near overturning).
     rest_rate : float
         Impacts slower than this fraction of omega_r are summed to their limit and end in rest.
     output_step : float or None
-        [s]; by default the sampling interval of the motion, or a 2000th of the (shortest) duration; in a history that
-        would hold more than a million rows a whole number of these.
-
-    Returns
-    -------
-    Response
+        [s]; by default the sampling interval of the motion or a 2000th of the duration, or a multiple (`_output_step`).
 
     Raises
     ------
     SettingError
         A setting is out of range.
     SceneError
-        A part of the scene is so stiff, or its motion so long, that the run does not end within its budget (`budget`);
-        names that part.
+        The run needs too many steps (`most_steps`) or has too many impacts; the message names the cause in the scene.
     """
     output_step = _output_step(scene, output_step, history)
     settings = {"tolerance": tolerance, "rest_rate": rest_rate, "order": ORDER, "short_order": SHORT_ORDER}
@@ -253,15 +243,7 @@ def simulate(
     par, shaking = parameters(scene), ground(scene.motion)
     compile_kernels(shaking.upright is not None)
     begin = time.process_time()
-    totals, *result = kernel.run(par, shaking, chosen)
-    most = int(totals[[layout.IMPACTS, layout.UPLIFTS, layout.RESTS]].max())
-    if totals[layout.STATUS] == layout.SPENT:
-        reached = f"{chosen.most_steps:.3g} steps of the analytic model reach only {totals[layout.TIME]:.3g} s"
-        raise too_long(scene, reached)
-    if most > EVENTS:
-        raise too_long(scene, f"{most} impacts, of which no more than {EVENTS} are kept")
-    if most > chosen.capacity:
-        totals, *result = kernel.run(par, shaking, chosen._replace(capacity=most))
+    totals, *result = _kernel_run(scene, par, shaking, chosen)
     cpu, slid, sliding = time.process_time() - begin, None, None
     at_end = totals[layout.END_TILT : layout.END_V + 1].tolist()
     energies = _stored(par, *at_end) - _stored(par, par.tilt, par.rate, par.x, par.v)
@@ -276,8 +258,20 @@ def simulate(
     return _response(scene, totals, result, energies, sliding, settings, cpu, history)
 
 
+def _kernel_run(scene, par, shaking, chosen):
+    """Return what the kernel returns, with room for all events; refuse a run beyond the limits."""
+    totals, *result = kernel.run(par, shaking, chosen)
+    most = int(totals[[layout.IMPACTS, layout.UPLIFTS, layout.RESTS]].max())
+    if totals[layout.STATUS] == layout.SPENT:
+        reached = f"{chosen.most_steps:.3g} steps of the analytic model reach only {totals[layout.TIME]:.3g} s"
+        raise too_long(scene, reached)
+    if most > EVENTS:
+        raise too_long(scene, f"{most} impacts, of which no more than {EVENTS} are kept")
+    return (totals, *result) if most <= chosen.capacity else kernel.run(par, shaking, chosen._replace(capacity=most))
+
+
 def _output_step(scene, step, history):
-    """Interval of the history [s]; by default that of the motion's samples, or a share of the (shortest) duration."""
+    """Return the interval of the history [s]; by default that of the motion's samples, or a share of the duration."""
     longest = longest_duration(scene) if scene.duration is None else scene.duration
     if step is None:
         span = shortest_duration(scene) if scene.duration is None else scene.duration
@@ -316,7 +310,7 @@ def compile_kernels(vertical: bool = False) -> None:
 
 @functools.cache
 def versions() -> dict[str, str]:
-    """Versions of Python and of the packages behind the analytic model."""
+    """Return the versions of Python and of the packages behind the analytic model."""
     import numba
 
     return {"numpy": np.__version__, "numba": numba.__version__}
@@ -332,7 +326,7 @@ _REASONS = {
 
 
 def _response(scene, totals, result, energies, sliding, settings, cpu, history):
-    """The `Response` of a run of the kernel, or, with a `Sliding`, of the march of a block that may slide."""
+    """Return the `Response` of a run of the kernel, or, with a `Sliding`, of the march of a block that may slide."""
     impacts, uplifts, rests, table = result
     tilt, rate, x, v, z = totals[layout.END_TILT : layout.END_Z + 1].tolist()
     end = State(float(totals[layout.TIME]), tilt, rate, x, v, BearingLaw.of(scene.bearings).force(x, z, v))
@@ -377,7 +371,7 @@ def _response(scene, totals, result, energies, sliding, settings, cpu, history):
 
 
 def _stored(par, tilt, rate, x, v):
-    """(kinetic, potential) energy [J] of a block that does not slide, in the ground's frame."""
+    """Return (kinetic, potential) energy [J] of a block that does not slide, in the ground's frame."""
     side = math.copysign(1.0, tilt if tilt != 0 else rate)
     c = par.R * math.cos(side * par.gamma - tilt)
     moving = 0.5 * par.M * v * v + par.m * c * v * rate if par.on_base else 0.0
@@ -388,7 +382,7 @@ def _stored(par, tilt, rate, x, v):
 
 
 def _history(scene: Scene, table: np.ndarray, end: State, *slip: float) -> History:
-    """slip : at the end [m], of a block that slides."""
+    """Return the `History` of a table of rows and the end state. slip : at the end [m], of a block that slides."""
     last = np.array([[*astuple(end), *slip]])
     if not len(table) or table[-1, 0] < end.time:
         table = np.vstack([table, last])
@@ -397,14 +391,8 @@ def _history(scene: Scene, table: np.ndarray, end: State, *slip: float) -> Histo
     return History(*columns[:6], shaking, columns[6] if slip else None)  # type: ignore[call-arg]  # of six
 
 
-if TYPE_CHECKING:
-    from .kernel.layout import Parameters
-    from .response import Response
-    from .scene import Scene
-
-
 def is_decided(scene: Scene, response: Response, *, contact_tilt: float = 0.0) -> bool:
-    """Whether the outcome of a run is certain at its end, by rules (a), (b) and (c).
+    """Return whether the outcome of a run is certain at its end, by rules (a), (b) and (c).
 
     Parameters
     ----------
@@ -422,7 +410,7 @@ def is_decided(scene: Scene, response: Response, *, contact_tilt: float = 0.0) -
 
 
 def is_finished(scene: Scene, response: Response, *, contact_tilt: float = 0.0) -> bool:
-    """Whether the outcome of a run is certain at its end and its peaks can no longer grow; see `is_decided`."""
+    """Return whether the outcome of a run is certain at its end and its peaks can no longer grow; see `is_decided`."""
     decided, state = _at_end(scene, response, contact_tilt)
     if not decided or state is None:
         return decided
@@ -431,7 +419,7 @@ def is_finished(scene: Scene, response: Response, *, contact_tilt: float = 0.0) 
 
 
 def _at_end(scene: Scene, response: Response, contact_tilt: float) -> tuple[bool, tuple[Parameters, Body, Base] | None]:
-    """(decided, the kernel's parameters and state; None if the block has overturned or the run failed)."""
+    """Return (decided, the kernel's parameters and state; None if the block has overturned or the run failed)."""
     if response.outcome in ("overturns", "failed"):
         return response.outcome == "overturns", None
     par, end = parameters(scene), response.end
@@ -457,7 +445,7 @@ def until_decided(
     at_least: float = 0.0,
     finished: Callable[[Scene, Response], bool] = is_finished,
 ) -> Response:
-    """``simulate(scene)`` with increasing durations until the run has finished or the longest is reached.
+    """Return the response of runs with increasing durations until one has finished or the longest is reached.
 
     Parameters
     ----------

@@ -76,35 +76,37 @@ def digest(function: Any) -> str:
     return hashlib.sha256("\n".join(content).encode()).hexdigest()
 
 
-def _read(item: Any, known: set[int]) -> Iterator[str]:
-    """Yield texts that differ where the item, or anything that it reads, differs. known: ids of functions already read.
+def _read(item: Any, seen: set[int]) -> Iterator[str]:
+    """Yield texts that differ where the item, or anything that it reads, differs. seen: ids of functions already read.
 
-    They name the modules of functions and classes, too, by which what is stored finds these.
+    They name the modules of the project's items, too, as a stored form finds these by their modules.
     """
     function = getattr(item, "py_func", item)  # of a compiled function
-    if not _of_project(function):
+    module = _module_of(function)
+    if module.partition(".")[0] != __package__.partition(".")[0]:
         yield repr(item.tolist() if isinstance(item, np.ndarray) else getattr(item, "__name__", item))
     elif not inspect.isfunction(function):
-        yield f"{getattr(function, '__module__', '')} {_source(function)}"
-    elif id(function) not in known:
-        known.add(id(function))
-        yield f"{function.__module__} {_plain(function.__code__, function.__doc__)} {function.__defaults__}"
+        yield f"{module} {_source(function)}"
+    elif id(function) not in seen:
+        seen.add(id(function))
+        yield f"{module} {_plain(function.__code__, function.__doc__)} {function.__defaults__}"
         around = inspect.getclosurevars(function).nonlocals
         for name in sorted({*_global(function.__code__), *around}):
             yield name
             for scope in (around, function.__globals__, vars(builtins)):
                 if name in scope:
-                    yield from _read(scope[name], known)
+                    yield from _read(scope[name], seen)
                     break
             else:
                 # Otherwise a change in what it calls would leave a stale kernel.
                 raise NameError(f"{name}, read by {function.__qualname__}, stands below the entry: move the entry down")
 
 
-def _of_project(item):
-    """Return whether the item is a module, class or function of this package."""
-    name = item.__name__ if inspect.ismodule(item) else getattr(item, "__module__", None) if callable(item) else None
-    return (name or "").partition(".")[0] == __package__.partition(".")[0]
+def _module_of(item):
+    """Return the name of the module that an item is, or that a class or function stands in; "" for others."""
+    if inspect.ismodule(item):
+        return item.__name__
+    return (getattr(item, "__module__", None) if callable(item) else None) or ""
 
 
 def _source(kind: Any) -> str:

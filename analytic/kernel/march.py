@@ -1,8 +1,8 @@
-"""The compiled event-driven integrator: full contact, uplift, rocking, impact, rest, re-uplift, overturning.
+"""The compiled event-driven integrator: full contact, uplift, rocking, impact, rest, overturning.
 
-A Taylor series integrator: steps end at every corner of the ground motion, and events inside a step are located as
-roots of the step's polynomials (dense output), so that their times are as accurate as the step. The parts of a step are
-in steps.py, the equations in taylor.py, the bearing laws in laws, the events in events.py.
+It is a Taylor series integrator. Steps end at every corner of the ground motion. Events inside a step are located as
+roots of the step's polynomials (dense output), so that their times are as accurate as the step. The parts of a step and
+the equations are in `steps`, the bearing laws in `laws`, the events in `events`.
 """
 
 import math
@@ -47,14 +47,14 @@ tuple_of: Any = to_fixed_tuple
 
 
 def row_of(par: L.Parameters) -> tuple[float, ...]:
-    """Parameters as an entry of an array of dtype `ROW`."""
+    """Return the parameters as an entry of an array of dtype `ROW`."""
     return (*par[:-1], *par.constants)
 
 
 def arrays(totals: np.ndarray, capacity: int = 0, outputs: int = 0) -> L.Arrays:
-    """Workspace of runs, with room for `capacity` events of a kind and `outputs` rows of history.
+    """Return the workspace of runs, with room for `capacity` events of a kind and `outputs` rows of history.
 
-    totals : (n, TOTALS), a row of each run.
+    totals : (n, TOTALS), a row for each run.
     """
     workspace, scratch = np.zeros((L.ROWS, MAX_ORDER + 2)), np.empty(SCRATCH)
     events = np.empty((capacity, 4)), np.empty(capacity), np.empty(capacity)
@@ -64,7 +64,7 @@ def arrays(totals: np.ndarray, capacity: int = 0, outputs: int = 0) -> L.Arrays:
 def run(
     par: L.Parameters, ground: L.Ground, options: L.Options
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Simulate; (totals by the slots of layout.py, impacts, uplifts, rests, history).
+    """Simulate one run; return (totals, impacts, uplifts, rests, history), totals by the slots of `layout`.
 
     impacts : (n, 4) time, rates before and after, base velocity jump; uplifts, rests : (n,); history : (n, 6) at
     multiples of output_step: time, tilt, rate, x, v, F (empty if output_step is 0).
@@ -89,7 +89,7 @@ def run_rows(rows: np.ndarray, pulses: np.ndarray, ground: L.Ground, options: L.
 # One long function, as two loops share some twenty state variables.
 @inner
 def _integrate(par, ground, upright, options, arrays):
-    """One run. upright : an argument of its own, see steps.py."""
+    """Integrate one run. upright : an argument of its own, see `steps`."""
     P, work, totals, shaking = arrays.P, arrays.work, arrays.totals, ground.shaking
     totals[:] = 0.0
     totals[L.UNSTABLE_TIME], totals[L.NORMAL] = 0.0 if abs(par.tilt) >= par.gamma else -1.0, 1.0
@@ -130,10 +130,10 @@ def _integrate(par, ground, upright, options, arrays):
                 if options.decide and early and (options.record or par.on_base):
                     h = min(h, options.shortest - t)
                 elif options.decide or par.on_base and not early:
-                    final, will_overturn, top, more = _is_final(par, options, body, base, peak_tilt, peak_x, totals)
+                    final, will_overturn, top, further = _is_final(par, options, body, base, peak_tilt, peak_x, totals)
                     if final:
                         peak_tilt, status = max(peak_tilt, top), L.DECIDED
-                        totals[L.IMPACTS] += more
+                        totals[L.IMPACTS] += further
                         break
             steps += 1
             if steps > options.most_steps:
@@ -223,7 +223,7 @@ def _lifted(par, totals):
 
 @inner
 def _is_final(par, options, body, base, peak_tilt, peak_x, totals):
-    """After the motion: (whether the run may end, whether the block will overturn, further peak tilt and impacts)."""
+    """Return, after the motion, (whether the run may end, will overturn?, further peak tilt, further impacts)."""
     if not options.record and not par.on_base:
         return settle(par, body)
     peaks = peak_tilt, peak_x, totals[L.PEAK_ACCELERATION] if options.record else -1.0
@@ -233,7 +233,7 @@ def _is_final(par, options, body, base, peak_tilt, peak_x, totals):
 
 @inner
 def _conclude(par, end_of_motion, body, base, totals):
-    """Whether the outcome at the end is certain; fills the rest of `totals`."""
+    """Determine whether the outcome at the end is certain; fill the rest of `totals`."""
     lifted, overturned = _lifted(par, totals), totals[L.MODE] == L.FALLEN
     certain = overturned or totals[L.STATUS] == L.DECIDED
     if totals[L.STATUS] == L.COMPLETE and not certain and totals[L.TIME] >= end_of_motion:
@@ -246,7 +246,7 @@ def _conclude(par, end_of_motion, body, base, totals):
 # Below all that it calls: at this point its key is taken, see _cache.py.
 @entry
 def _run_rows(rows, pulses, ground, upright, options, into):
-    """upright : an argument of its own, see steps.py."""
+    """Run the rows. upright : an argument of its own, see `steps`."""
     P, work, impacts, uplifts, rests, history, totals = into
     for i in range(rows.shape[0]):
         numbers = tuple_of(rows[i], SIZE)

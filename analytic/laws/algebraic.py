@@ -26,7 +26,7 @@ def constants(bearings: Given) -> dict[str, float]:
 
 @inner
 def virtual_travel(s: float, z: float, c: Constants) -> float:
-    """D_c: position on the limit curve of direction s [m] at which the hysteretic force is z.
+    """Return D_c: the position on the limit curve of direction s [m] at which the hysteretic force is z.
 
     With x_j as in eqs (10) and (12), a negative number would be raised to a power beyond 1.33 m of travel; this form is
     equivalent and avoids it. (The bracket of eq. (12) is misprinted; it must read 1 - x + x_j + 2 x0.)
@@ -37,7 +37,7 @@ def virtual_travel(s: float, z: float, c: Constants) -> float:
 
 @inner
 def on_branch(s: float, travel: float, c: Constants) -> float:
-    """z on the branch of direction s, eqs (9), (11) less their kb x."""
+    """Return z on the branch of direction s, eqs (9), (11) less their kb x."""
     return s * (c.dk * (travel ** (1 - c.alpha) - c.d0) / (1 - c.alpha) + c.f0)
 
 
@@ -59,7 +59,7 @@ def work(z: float, dx: float, c: Constants) -> float:
 
 @inner
 def recoverable(z: float, c: Constants) -> float:
-    """Along the path of eqs (11), (12) between the virtual travels D of z and of 0.
+    """Return the energy along the path of eqs (11), (12) between the virtual travels D of z and of 0.
 
     These are D^-a = D0 + a (f0 + z)/(ka - kb) with a = alpha - 1.
     """

@@ -1,4 +1,4 @@
-"""The records of a folder as motions of a scene, and two horizontal components rotated into other directions."""
+"""The records of a folder as motions of a scene; two horizontal components rotated into other directions."""
 
 import math
 import re
@@ -30,7 +30,7 @@ _AZIMUTH = re.compile(r"(?<!\d)(\d{3})(?=(\.\w+)*$)")
 
 
 def turned(first: SampledMotion, second: SampledMotion, angle: float, name: str) -> SampledMotion:
-    """The motion in the plane at `angle` [rad] from the first of two horizontal components to the second.
+    """Return the motion in the plane at `angle` [rad] from the first of two horizontal components to the second.
 
     The two are brought to one step and one length as `paired` does; neither has a vertical motion.
     """
@@ -41,7 +41,9 @@ def turned(first: SampledMotion, second: SampledMotion, angle: float, name: str)
 
 
 def directions_of(first: SampledMotion, second: SampledMotion, count: int, name: str) -> list[SampledMotion]:
-    """`count` directions of two components, evenly over half a turn; the other half are these with their signs changed.
+    """Return the motions in `count` directions, evenly over half a turn from the first component to the second.
+
+    The other half are these with their signs changed.
 
     Raises
     ------
@@ -54,14 +56,14 @@ def directions_of(first: SampledMotion, second: SampledMotion, count: int, name:
 
 
 def reversed_sign(motion: Motion) -> Motion:
-    """The horizontal motion with its sign changed; the vertical one stays."""
+    """Return the horizontal motion with its sign changed; the vertical one stays."""
     if isinstance(motion, SampledMotion):
         return replace(motion, samples=-motion.samples, label=f"{motion.label}, reversed")
     return replace(motion, amplitude=-motion.amplitude)
 
 
 def same_reversed(scene: Scene) -> bool:
-    """Whether the motion with its sign changed does the same to a scene, mirrored: it starts at rest in the middle."""
+    """Return whether a reversed motion has the mirrored effect on a scene: it starts at rest in the middle."""
     return not any(scene.start.model_dump().values())
 
 
@@ -81,27 +83,23 @@ def folder_motions(
         Its files are read in the order of their names; folders in it are not searched. Or a set of FEMA P695:
         "fema-p695:farfield", or "fema-p695:" for all (`analytic.records.content`).
     directions : int or None
-        Number of directions over half a turn into which each pair of horizontal components is rotated; by default the
-        components are kept. A pair is two horizontal channels of one file, or two files whose names differ in the
-        component alone: E and N, EW and NS, H1 and H2, X and Y, or azimuths 90 degrees apart.
+        Number of directions, over half a turn, into which each pair of horizontal components is rotated. A pair is two
+        horizontal channels of one file, or two files whose names differ in the component alone (`is_pair`).
     scene_motion : SampledMotion, PulseMotion or None
-        The motion of the scene. If it is a component of a record in the folder, alone or with a vertical motion, that
-        record comes first, and this motion is the first of that record.
+        The motion of the scene. If it is a component in the folder, its record, and in it this motion, comes first.
     units, dt : str, float
         Unit and step [s] of records that do not state them.
 
     Returns
     -------
     (dict, list of str)
-        {record: its motions}, a pair of components counting as one record; and a sentence for each file or channel left
-        out: refused, a copy, vertical and no part of `scene_motion`, or not like an earthquake (`Channel.odd`).
+        {record: its motions}; and a sentence for each file or channel left out: refused, a copy, vertical and no part
+        of `scene_motion`, or not like an earthquake (`Channel.odd`).
 
     Raises
     ------
-    SettingError
-        The folder does not exist or has no horizontal motion, or there are too many directions to run.
-    SceneError
-        The set of FEMA P695 is unknown, or its package is not installed.
+    SettingError, SceneError
+        There is no such folder or no horizontal motion in it, or too many directions; or no such set of FEMA P695.
     """
     folder = Path(folder)
     if not folder.is_dir() and not fema.is_one(folder):
@@ -121,8 +119,8 @@ def folder_motions(
     if scene_motion is not None and mine is not None:
         record = next(record for record, group in groups.items() if any(motion is mine for _, motion in group))
         record = record if record in by_record else mine.label
-        others = [motion for motion in by_record.pop(record) if motion.digest() != mine.digest()]
-        by_record = {record: [mine if scene_motion.vertical is None else scene_motion, *others], **by_record}
+        further = [motion for motion in by_record.pop(record) if motion.digest() != mine.digest()]
+        by_record = {record: [mine if scene_motion.vertical is None else scene_motion, *further], **by_record}
     if not by_record:
         raise SettingError(
             f"--records {folder}: no horizontal ground motion in it; " + "; ".join(left[:3] or ["empty"])
@@ -144,7 +142,7 @@ def _motions_of(
 
 
 def _check_cost(directions: int, groups: Iterable[Sequence[tuple[str, SampledMotion]]]) -> None:
-    """Raise `SettingError` where so many directions of the pairs take more than `MOST_STEPS` in a run of each."""
+    """Raise `SettingError` if one run for each direction of the pairs takes more than `MOST_STEPS` in all."""
     pairs = [[motion for _, motion in group] for group in groups if is_pair([word for word, _ in group])]
     steps = sum(RUN_STEPS + len(paired(*pair).samples) for pair in pairs)
     if directions * steps > MOST_STEPS:
@@ -155,7 +153,10 @@ def _check_cost(directions: int, groups: Iterable[Sequence[tuple[str, SampledMot
 
 
 def _is_level_of(motion: SampledMotion | None, level: SampledMotion, upright: SampledMotion | None = None) -> bool:
-    """Whether `own` is this horizontal motion, with this vertical one or, without it, with its own if it has one."""
+    """Return whether `motion` is this horizontal motion, with this vertical one.
+
+    Without an `upright` one, `motion` may have any vertical motion.
+    """
     if motion is None:
         return False
     upright = upright or motion.vertical
@@ -166,7 +167,10 @@ def _is_level_of(motion: SampledMotion | None, level: SampledMotion, upright: Sa
 
 
 def _once(groups: Mapping[str, Components], left: list[str]) -> dict[str, Components]:
-    """The groups without copies of a motion, which `left` then names; of a copy and a pair the pair stays whole."""
+    """Return the groups without copies of a motion, which `left` then names.
+
+    Of a copy and a pair the pair stays whole.
+    """
     first: dict[str, SampledMotion] = {}
     for record in sorted(groups, key=lambda record: not is_pair([word for word, _ in groups[record]])):
         for _, motion in groups[record]:
@@ -174,15 +178,15 @@ def _once(groups: Mapping[str, Components], left: list[str]) -> dict[str, Compon
     unique = {}
     for record, group in groups.items():
         same = [(motion, first[motion.digest()]) for _, motion in group]
-        left += [f"{copy.label}: left out, same as {kept.label}" for copy, kept in same if copy is not kept]
-        unique[record] = [component for component, (copy, kept) in zip(group, same, strict=True) if copy is kept]
+        left += [f"{copy.label}: left out, same as {original.label}" for copy, original in same if copy is not original]
+        unique[record] = [part for part, (copy, original) in zip(group, same, strict=True) if copy is original]
     return {record: group for record, group in unique.items() if group}
 
 
 def _components(
     folder: Path, scene_motion: SampledMotion | None, stated: dict
 ) -> tuple[dict[str, Components], list[SampledMotion], list[str]]:
-    """{record: [(component, its horizontal motion)]}, the vertical motions, and sentences on what was left out."""
+    """Return {record: [(component, its horizontal motion)]}, the vertical motions, and what was left out."""
     groups: dict[str, Components] = {}
     uprights: list[SampledMotion] = []
     left = []
@@ -208,27 +212,33 @@ def _components(
 
 
 def _channels(path: Path, stated: dict) -> Sequence[Channel]:
-    """The channels of a file, with what is said of the records that do not state it."""
-    given: dict = {}
+    """Return the channels of a file; what is stated by the user is used only where the file does not state it."""
+    keywords: dict = {}
     while True:
         try:
-            return read_channels(path, **given)
+            return read_channels(path, **keywords)
         except SceneError as error:
             missing = error.key.removeprefix("motion.")
-            if error.value is not None or missing in given or stated.get(missing) is None:
+            if error.value is not None or missing in keywords or stated.get(missing) is None:
                 raise
-            given[missing] = stated[missing]
+            keywords[missing] = stated[missing]
 
 
 def is_pair(words: Sequence[str]) -> bool:
-    """Whether components called so are the two horizontal ones of a record: PAIRS, or azimuths at right angles."""
+    """Return whether components of these names are the two horizontal ones of a record.
+
+    They are E and N, EW and NS, X and Y, 1 and 2 (`PAIRS`), or azimuths at right angles.
+    """
     if len(words) == 2 and all(word.isdigit() and len(word) == 3 for word in words):
         return (int(words[0]) - int(words[1])) % 180 == 90
     return tuple(sorted(words)) in PAIRS
 
 
 def _named(path: Path) -> tuple[str, str]:
-    """(the name with its component replaced by *, the component in small letters, "" where the name holds none)."""
+    """Return (the name with its component replaced by *, the component in small letters).
+
+    The component is "" where the name holds none.
+    """
     name = path.name
     if fema.is_one(path):
         return str(path.parent), name

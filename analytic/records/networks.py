@@ -1,27 +1,28 @@
-"""Formats of databases and networks whose numbers blanks or commas part: PEER AT2, ESM/DYNA, K-NET.
+"""Formats of databases and networks: PEER AT2, ESM/DYNA, K-NET, CSMIP, COSMOS, SMC.
+
+Blanks or commas part the numbers of the first three.
 
 PEER AT2, the old and the new headers: values in columns of Fortran after a line with NPTS and DT. ESM/DYNA 1.2 ASCII,
 also as AFAD writes it: lines KEY: value, then one value a line. NIED's K-NET and KiK-net ASCII: 17 lines of header,
 then counts; acceleration = (count - mean of all) times scale factor. K-NET CSV: a header of lines that begin with #,
 then a time stamp, a time [s] and three components [gal] a line, whose offsets the header states.
 
-Formats whose numbers stand in columns of equal width, as a Fortran format prints them: CSMIP, COSMOS and SMC.
-
-They are cut by position, not by blanks: numbers that fill their columns touch each other. A missing or an additional
-character shifts all that follows, which is detected.
+The numbers of the others stand in columns of equal width, as a Fortran format prints them. They are cut by position,
+not by blanks: numbers that fill their columns touch each other. A missing or an additional character shifts all that
+follows, which is detected.
 
 CSMIP, CDMG and CGS volume 2: A. F. Shakal and M. J. Huang 1985, Standard tape format for CSMIP strong-motion data
-tapes, OSMS 85-03. Of each channel 25 lines of text, 100 integers in 16I5, 100 reals in 8F10, the data in 8F10 (velocity
-and displacement follow), and a line /&.
+tapes, OSMS 85-03. Each channel has 25 lines of text, 100 integers in 16I5, 100 reals in 8F10, the data in 8F10
+(velocity and displacement follow), and a line /&.
 
-COSMOS: Strong-Motion Programs Board 2001, COSMOS strong motion data format, version 1.20. Of each channel text, 100
-integers, 100 reals, comments and data. Of the integers the second says what is measured; of the reals the 62nd is the
-step of these data [ms] (the 34th is that of the raw record), the 63rd their length [s] and the 64th their peak.
+COSMOS: Strong-Motion Programs Board 2001, COSMOS strong motion data format, version 1.20. Each channel has text, 100
+integers, 100 reals, comments and data. The second integer says what is measured. The 62nd real is the step of these
+data [ms] (the 34th is that of the raw record), the 63rd their length [s] and the 64th their peak.
 
 USGS SMC: Open-File Report 92-296 and D. M. Boore's SMCWrite. 11 lines of text, 48 integers in 8I10, 50 reals in 5E15.7,
-comments, then cm/s2 in 8E10.4 or 5E14.7. Of the integers the 16th counts the comments, the 17th the samples, the 18th
-flags a problem and the 47th says 8 where the data have 7 decimals; of the reals the second is the sampling frequency,
-the 30th and the 32nd are maximum and minimum.
+comments, then cm/s2 in 8E10.4 or 5E14.7. The 16th integer counts the comments, the 17th the samples, the 18th flags a
+problem and the 47th is 8 where the data have 7 decimals. The second real is the sampling frequency, the 30th and the
+32nd are maximum and minimum.
 """
 
 import re
@@ -61,23 +62,23 @@ _OLD = re.compile(rf"\s*([0-9]+)[\s,]+({NUMBER})[\s,]+NPTS[\s,]+DT\b(?!\s*[=:])(
 
 
 def _is_peer(lines: Sequence[str]) -> bool:
-    """Whether the lines are a PEER AT2 file."""
+    """Return whether the lines are a PEER AT2 file."""
     return _peer_head(lines) is not None
 
 
 def _peer(lines: Sequence[str], given: Given) -> tuple[Content, ...]:
-    """The `Content` of a PEER AT2 file.
+    """Return the `Content` of a PEER AT2 file.
 
     Raises
     ------
     SceneError
         No acceleration, an unreadable number, or another count than stated.
     """
-    head, npts, old = _peer_head(lines)  # type: ignore[misc]  # `_is_peer` found it
+    head, npts, old_form = _peer_head(lines)  # type: ignore[misc]  # `_is_peer` found it
     where = f"line {head + 1}"
     numbered = [(at, line[:HEADER_WIDTH]) for at, line in enumerate(lines[: head + 1], 1)]
-    if old:
-        numbered[-1] = head + 1, f"dt = {old[2]} {old[3] or ''}"
+    if old_form:
+        numbered[-1] = head + 1, f"dt = {old_form[2]} {old_form[3] or ''}"
     statements = read_statements(numbered)
     marked = MARK.fullmatch("".join(lines[head + 1 : head + 2])[:HEADER_WIDTH])
     values = fortran_values(lines, head + (2 if marked else 1))
@@ -86,11 +87,11 @@ def _peer(lines: Sequence[str], given: Given) -> tuple[Content, ...]:
 
 
 def _peer_head(lines: Sequence[str]) -> tuple[int, str, re.Match[str] | None] | None:
-    """Index of the line with count and step, the count as printed, and the match of a line of the old form."""
+    """Return (index of the line with count and step, the count as printed, match of a line of the old form)."""
     for index, line in enumerate(lines[:_PEER_LINES]):
         line = line[:HEADER_WIDTH]
-        if old := _OLD.match(line):
-            return index, old[1], old
+        if old_form := _OLD.match(line):
+            return index, old_form[1], old_form
         npts = _NPTS.findall(line)
         if npts and _DT.search(line):
             if len(_DT.findall(line)) > 1 or len(npts) > 1:
@@ -106,12 +107,12 @@ _DYNA_REMEDY = "give a complete ESM/DYNA 1.2 ASCII file"
 
 
 def _is_dyna(lines: Sequence[str]) -> bool:
-    """Whether the lines are an ESM/DYNA file."""
+    """Return whether the lines are an ESM/DYNA file."""
     return bool(_DYNA_KEY.match(first_of(lines))) and any(line.startswith(_DYNA_SIGNS) for line in lines[:_DYNA_LINES])
 
 
 def _dyna(lines: Sequence[str], given: Given) -> tuple[Content, ...]:
-    """The `Content` of an ESM/DYNA file.
+    """Return the `Content` of an ESM/DYNA file.
 
     Raises
     ------
@@ -138,7 +139,7 @@ def _dyna(lines: Sequence[str], given: Given) -> tuple[Content, ...]:
 
 
 def _dyna_header(lines: Sequence[str]) -> tuple[dict[str, tuple[str, int]], int]:
-    """{key: (value, line number)} and the index of the first line after them."""
+    """Return {key: (value, line number)} and the index of the first line after them."""
     header: dict[str, tuple[str, int]] = {}
     begin = next((index for index, line in enumerate(lines) if line.strip()), 0)
     while begin < len(lines) and (match := _DYNA_KEY.match(lines[begin][:HEADER_WIDTH])):
@@ -163,12 +164,13 @@ _KNET_REMEDY = "give the file as the network sends it, in ASCII or CSV"
 
 
 def _knet(lines: Sequence[str], given: Given) -> tuple[Content, ...]:
-    """The `Content` of the one channel [gal], its mean removed.
+    """Return the `Content` of the one channel [gal], its mean removed.
 
     Raises
     ------
     SceneError
-        A line of the header is missing, what is no whole number, or another count than duration and frequency make.
+        A line of the header is missing, a count is no whole number, or there are not as many as duration and frequency
+        make.
     """
     end = next((index for index, line in enumerate(lines[:_KNET_LINES]) if line.lower().startswith("memo.")), None)
     if end is None:
@@ -204,12 +206,12 @@ _NUMBERS = {"Sampling Freq(Hz)": _FREQUENCY, "Duration Time(s)": _DURATION}
 
 
 def _only_match(header: Sequence[str], key: str, pattern: re.Pattern[str]) -> re.Match[str]:
-    """The only line of the header that `pattern` matches."""
+    """Return the match of the only line of the header that has the pattern."""
     return _only(key, [match for match in map(pattern.fullmatch, header) if match])
 
 
 def _only(key: str, matches: Sequence[Any]) -> Any:
-    """The only one found of a key of the header."""
+    """Return the only match of a key of the header."""
     if len(matches) != 1:
         raise SceneError(key, None, "stated twice" if matches else "missing from the header, or damaged", _KNET_REMEDY)
     return matches[0]
@@ -233,7 +235,7 @@ _COMPONENT = re.compile(r"([^,()]+)\(gal\)", re.I)
 
 
 def _knet_csv(lines: Sequence[str], given: Given) -> tuple[Content, ...]:
-    """The `Content` of each component [gal], its offset subtracted.
+    """Return the `Content` of each component [gal], its offset subtracted.
 
     Raises
     ------
@@ -262,8 +264,8 @@ def _knet_csv(lines: Sequence[str], given: Given) -> tuple[Content, ...]:
     step = uniform_step([fields[1] for _, fields in rows])
     if abs(step * frequency - 1) > SAME:
         raise SceneError("SamplingFrequency(Hz)", frequency, f"but the times have a step of {step:.9g} s", DAMAGED)
-    whole = f"the header states {duration:g} s, the data have {len(rows) / frequency:g} s: check that the file is whole"
-    warnings = () if len(rows) == round(duration * frequency) else (whole,)
+    lasts = f"the header states {duration:g} s, the data have {len(rows) / frequency:g} s"
+    warnings = () if len(rows) == round(duration * frequency) else (f"{lasts}: check that the file is whole",)
     return tuple(
         Content(
             usable("SamplingFrequency(Hz)", 1 / frequency),
@@ -280,7 +282,7 @@ def _knet_csv(lines: Sequence[str], given: Given) -> tuple[Content, ...]:
 
 
 def _below(header: Sequence[str], key: str) -> str:
-    """The line of the header below the only one that is the key."""
+    """Return the line of the header below the only one that is the key."""
     return _only(key, [after for line, after in zip(header, header[1:], strict=False) if line == key])
 
 
@@ -303,28 +305,28 @@ class Layout:
 
 
 def stated_layout(line: str) -> Layout | None:
-    """The `Layout` of the last Fortran format in brackets that a line holds, (8F10.5); None without one."""
+    """Return the `Layout` of the last Fortran format in brackets that a line holds, (8F10.5); None without one."""
     formats = _FORMAT.findall(line)
     return Layout(*(int(part) for part in formats[-1])) if formats else None
 
 
 def fixed_values(lines: Sequence[str], begin: int, count: int, layout: Layout) -> tuple[np.ndarray, int]:
-    """(`count` numbers from the line of index `begin` on, index of the next line that is not blank).
+    """Return (`count` numbers from the line of index `begin` on, index of the next line that is not blank).
 
     Raises
     ------
     SceneError
-        A line that is not full (the last one may hold fewer numbers), what is not a number that ends where its column
-        ends, or other digits after the point; names the line.
+        A line that is not full (the last one may hold fewer numbers), a field that is not a number ending where its
+        column ends, or other digits after the point; names the line.
     """
     values: list[float] = []
     usual, at = None, begin
     while len(values) < count:
-        wanted = min(layout.per_line, count - len(values))
+        expected = min(layout.per_line, count - len(values))
         text = lines[at].rstrip(" ") if at < len(lines) else ""
         where = f"line {at + 1}"
-        if len(text) != wanted * layout.width:
-            problem = f"not {wanted} numbers of {layout.width} characters; {count} samples are stated"
+        if len(text) != expected * layout.width:
+            problem = f"not {expected} numbers of {layout.width} characters; {count} samples are stated"
             raise SceneError(where, text, problem, DAMAGED)
         for left in range(0, len(text), layout.width):
             field = text[left : left + layout.width].lstrip(" ")
@@ -341,7 +343,7 @@ _END = re.compile(r"\s*(?:end-of-data\b|/&)", re.I)  # the last line of a channe
 
 
 def _by_channel(name: str, first: re.Pattern[str], channel: Callable[..., Content]) -> Format:
-    """The `Format` of files of several channels, each of which begins with a line of the pattern `first`."""
+    """Return the `Format` of files of several channels, each of which begins with a line of the pattern `first`."""
 
     def read(lines: Sequence[str], given: Given) -> tuple[Content, ...]:
         begins = [index for index, line in enumerate(lines) if first.match(line[:HEADER_WIDTH])]
@@ -354,8 +356,10 @@ def _by_channel(name: str, first: re.Pattern[str], channel: Callable[..., Conten
 def _data(
     lines: Sequence[str], at: int, end: int, count: int, layout: Layout, announced: re.Pattern[str]
 ) -> np.ndarray:
-    """The `count` numbers below the line of index `at`, of a channel that goes up to `end`: further data, which a line
-    of the pattern `announced` precedes, or the channel's last line follow."""
+    """Return the `count` numbers below the line of index `at`, in a channel that goes up to `end`.
+
+    The channel's last line follows them, or further data, which a line of the pattern `announced` precedes.
+    """
     values, behind = fixed_values(lines, at + 1, count, layout)
     if behind < end and not (announced.match(lines[behind][:HEADER_WIDTH]) or _END.match(lines[behind])):
         raise SceneError(f"line {at + 1}", count, "more numbers follow than these", DAMAGED)
@@ -374,7 +378,7 @@ _CSMIP_REMEDY = "give a CSMIP volume 2 file (.V2), or two columns, time [s] and 
 
 
 def _csmip_channel(lines: Sequence[str], begin: int, end: int, order: int) -> Content:
-    """The `Content` of the channel whose lines are those from index `begin` up to `end`.
+    """Return the `Content` of the channel whose lines are those from index `begin` up to `end`.
 
     Raises
     ------
@@ -403,7 +407,7 @@ def _csmip_channel(lines: Sequence[str], begin: int, end: int, order: int) -> Co
 
 
 def _csmip_step(lines: Sequence[str], begin: int, data: int, data_line: re.Match[str]) -> float:
-    """The sampling interval [s]: the line before the data rounds to 3 decimals what the reals give to 7."""
+    """Return the sampling interval [s]: the line before the data rounds to 3 decimals what the reals give to 7."""
     where = f"line {data + 1}, step"
     rounded = interval(where, data_line[3], data_line[4])
     row, columns = _CSMIP_STEP
@@ -436,7 +440,7 @@ _COSMOS_REMEDY = "give a COSMOS file of corrected accelerations (.V2c), or two c
 
 
 def _cosmos_channel(lines: Sequence[str], begin: int, end: int, order: int) -> Content:
-    """The `Content` of the channel whose lines go from index `begin` up to `end`; `order` counts the channels.
+    """Return the `Content` of the channel whose lines go from index `begin` up to `end`; `order` counts the channels.
 
     Raises
     ------
@@ -471,15 +475,15 @@ def _cosmos_channel(lines: Sequence[str], begin: int, end: int, order: int) -> C
     )
 
 
-def _match(pattern: re.Pattern[str], lines: Sequence[str], at: int, wanted: str) -> re.Match[str]:
+def _match(pattern: re.Pattern[str], lines: Sequence[str], at: int, expected: str) -> re.Match[str]:
     match = pattern.match(lines[at][:HEADER_WIDTH]) if at < len(lines) else None
     if not match:
-        raise SceneError(f"line {at + 1}", lines[at].strip() if at < len(lines) else None, f"not {wanted}", DAMAGED)
+        raise SceneError(f"line {at + 1}", lines[at].strip() if at < len(lines) else None, f"not {expected}", DAMAGED)
     return match
 
 
 def _header(lines: Sequence[str], at: int, pattern: re.Pattern[str]) -> tuple[Callable[[int], float], int]:
-    """(function that gives the number of an index, index of the line behind) of the header at the line of index `at`.
+    """Return (function that gives the number of an index, index of the line behind) of the header at the line `at`.
 
     Only the numbers asked for are read: networks fill in what they have.
     """
@@ -499,7 +503,7 @@ def _header(lines: Sequence[str], at: int, pattern: re.Pattern[str]) -> tuple[Ca
 
 
 def _unit(data: re.Match[str], at: int) -> Unit:
-    """The `Unit` that the line before the data names, with its code in brackets."""
+    """Return the `Unit` that the line before the data names, with its code in brackets."""
     factor = factor_of(data[3])
     if factor is None:
         raise SceneError(f"line {at + 1}, units", data[3], "not an acceleration", _COSMOS_REMEDY)
@@ -509,7 +513,7 @@ def _unit(data: re.Match[str], at: int) -> Unit:
 
 
 def _cosmos_step(milliseconds: float, length: float, count: int, where: str) -> float | None:
-    """The sampling interval [s], None where the reals give none; `length` [s] of the record checks it."""
+    """Return the sampling interval [s], None where the reals give none; `length` [s] of the record checks it."""
     if milliseconds <= 0:  # 0 and -999 stand for an unknown one
         return None
     dt = usable(f"{where}, step", milliseconds / 1000)
@@ -528,7 +532,7 @@ _LARGEST = 1e30  # 1.7e38 stands for an unknown real
 
 
 def _smc(lines: Sequence[str], given: Given) -> tuple[Content, ...]:
-    """The `Content` of the one channel.
+    """Return the `Content` of the one channel.
 
     Raises
     ------
@@ -571,7 +575,7 @@ def _whole(value: float) -> int:
 
 
 def _table(lines: Sequence[str], at: int, rows: int, per_row: int) -> tuple[list[float], int]:
-    """(numbers of a header, index of the line behind)."""
+    """Return (numbers of a header, index of the line behind)."""
     numbers: list[float] = []
     for index in range(at, at + rows):
         tokens = lines[index].split() if index < len(lines) else []

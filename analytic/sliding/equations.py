@@ -1,5 +1,6 @@
-"""Motion of a block with Coulomb friction in each mode, coefficient by coefficient; its ends, and the mode that follows
-where they are no impact (compiled).
+"""Equations of a block with Coulomb friction in each mode, the ends of a mode, and the next mode (compiled).
+
+The series are filled coefficient by coefficient. Ends that are impacts are in `march`.
 
 Corner s = +1 or -1 lies at (n, -c) from the centre of mass, c = R cos(s gamma - phi), n = R sin(s gamma - phi).
 G = g + a_v, X = a_g + x'', x: base to ground; u: slip of the corner along the base, eta: its gap; H, N: force of the
@@ -53,7 +54,7 @@ GRAZE = 1e-6
 
 @inner
 def accelerations(par, contact, block, start):
-    """(phi'', u'', eta'', H, N) at an instant, by (S1) to (S4); start: what acts on block and base then."""
+    """Return (phi'', u'', eta'', H, N) at an instant, by (S1) to (S4); start: what acts on block and base then."""
     mode, s, sigma, tilt, rate = block.mode, block.s, block.sigma, block.tilt, block.rate
     gravity, ground, force = start
     m, mu, R = par.m, contact.mu, par.R
@@ -83,7 +84,7 @@ def accelerations(par, contact, block, start):
 
 @inner
 def weight_term(par, upright, k, highest, G):
-    """Term k of the series of g + a_v."""
+    """Return term k of the series of g + a_v."""
     if upright is None:
         return par.g if k == 0 else 0.0
     return G[k] if k <= max(highest, 0) else 0.0
@@ -153,7 +154,7 @@ def mode_series(order, par, contact, block, factors, highest, upright, P):
 
 @inner
 def _corner_series(order, par, block, P):
-    """Slip and gap of the corner: u' = drift - c phi', eta' = climb - n phi', velocities of the centre of mass."""
+    """Fill slip and gap of the corner: u' = drift - c phi', eta' = climb - n phi', velocities of the centre of mass."""
     w, S, C = P[L.W], P[L.S], P[L.C]
     for k in range(1, order + 1):
         across, up = 0.0, 0.0
@@ -186,10 +187,10 @@ def _admissible(par, contact, block, start, level):
 
 @inner
 def choose(par, contact, block, start):
-    """(block in its next mode, number of admissible modes), by the accelerations; one that slides goes on to slide.
+    """Return (block in its next mode, number of admissible modes), by the accelerations.
 
-    block.s : 0 for a block that lies level, with tilt rate 0. Without an admissible mode the friction is above the
-    bound of Painleve (`run.paradoxical_friction`).
+    A block that slides goes on to slide. block.s : 0 for a block that lies level, with tilt rate 0. Without an
+    admissible mode the friction is above the bound of Painleve (`run.paradoxical_friction`).
     """
     level, first, count = block.s == 0, block, math.floor(0.0)
     for which in range(10):  # in full contact, about its left corner, about its right one, in flight
@@ -210,7 +211,7 @@ def choose(par, contact, block, start):
 
 @inner
 def crossing(limit, side, refused, order, h, P, work):
-    """First time at which limit N + side H falls below 0 in the step, or -1."""
+    """Return the first time at which limit N + side H falls below 0 in the step, or -1."""
     event, across, normal = P[L.EVENT], P[L.H], P[L.N]
     for k in range(order + 1):
         event[k] = limit * normal[k] + side * across[k]
@@ -223,7 +224,10 @@ def crossing(limit, side, refused, order, h, P, work):
 
 @inner
 def tilt_event(par, block, step, P, work):
-    """(kind, time) of the first event of the tilt, which passes 0, the slenderness or pi/2; NONE and the step's end."""
+    """Return (kind, time) of the first event of the tilt: it passes 0, the slenderness or pi/2.
+
+    Without one NONE and the step's end.
+    """
     kind, h, order, s = L.NONE, step.h, step.order, block.s
     root = find_fall(P[L.PHI], s, 0.0, order, h, P[L.EVENT], work)
     if root >= 0 and not (block.mode == FLIGHT and root == 0):
@@ -233,7 +237,7 @@ def tilt_event(par, block, step, P, work):
 
 @inner
 def contact_event(par, contact, block, refused, sooner, order, P, work):
-    """(kind, time, side) of the first event of the contact; sooner : (kind, time) of another one, else returned."""
+    """Return (kind, time, side) of the first event of the contact, or else `sooner`, (kind, time) of another event."""
     (first, h), side, event = sooner, 0.0, P[L.EVENT]
     if block.mode == FLIGHT:
         root = find_fall(P[L.GAP], 1.0, 0.0, order, h, event, work)
@@ -258,7 +262,7 @@ def contact_event(par, contact, block, refused, sooner, order, P, work):
 
 @inner
 def next_event(par, contact, block, refused, direction, step, P, work):
-    """(kind of the first event in the step, its time since the start, side)."""
+    """Return (kind of the first event in the step, its time since the start, side)."""
     kind, h, order = L.NONE, step.h, step.order
     if block.s != 0:
         kind, h = tilt_event(par, block, step, P, work)
@@ -269,7 +273,7 @@ def next_event(par, contact, block, refused, direction, step, P, work):
 
 @inner
 def impossible(par, contact, block, start):
-    """Whether the mode no longer holds at the start of a step, as after a jump of the ground's acceleration."""
+    """Return whether the mode no longer holds at the start of a step, as after a jump of the ground's acceleration."""
     mode = block.mode
     if mode == FLIGHT:
         return False
@@ -284,7 +288,7 @@ def impossible(par, contact, block, start):
 
 @inner
 def fresh_series(fresh, block, P):
-    """Sets to 0 what is 0 at an onset that was just located; returns whether it is no onset, but a graze."""
+    """Set to 0 what is 0 at an onset that was just located; return whether it is no onset, but a graze."""
     if fresh == CONE:
         P[L.SPEED, 0], P[L.SPEED, 1], P[L.SLIP, 1], P[L.SLIP, 2] = 0.0, 0.0, 0.0, 0.0
         return not block.sigma * P[L.SPEED, 2] > 0
@@ -299,7 +303,7 @@ def fresh_series(fresh, block, P):
 
 @inner
 def after_event(par, contact, block, kind, side, start):
-    """(block in its mode after an event that is no impact, number of modes that were admissible)."""
+    """Return (block in its mode after an event that is no impact, number of modes that were admissible)."""
     _, s, sigma, tilt, rate, slip, speed, gap, rise = block
     weak = 1e-9 * par.m * par.g
     if kind == CONE or kind == L.UPLIFT:

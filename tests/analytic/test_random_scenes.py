@@ -39,9 +39,9 @@ def assert_sound(scene):
     assert np.isfinite([*peaks, *astuple(response.end), *astuple(ledger)]).all()
     scale = max(_energy_scale(scene, response), *map(abs, astuple(ledger)))
     assert abs(ledger.imbalance) <= IMBALANCE_LIMIT * scale
-    for one in response.impacts:  # they never add energy: test_rocking
-        expected = pytest.approx(model.impact(one.rate_before), rel=1e-9, abs=1e-15)
-        assert (one.rate_after, one.base_velocity_jump) == expected
+    for impact in response.impacts:  # they never add energy: test_rocking
+        expected = pytest.approx(model.impact(impact.rate_before), rel=1e-9, abs=1e-15)
+        assert (impact.rate_after, impact.base_velocity_jump) == expected
 
 
 def _energy_scale(scene, response):
@@ -141,8 +141,8 @@ def test_every_crossing_within_a_step_is_found_and_not_the_trivial_root(lowest, 
         shape = np.polynomial.polynomial.polyfromroots(left if roots else [0.5, 0.5])
         power = lowest or min(k, 1)
         f[power : power + len(shape)] = shape * np.sign(shape[0])
-        found = first(f, power + len(shape) - 1, 1.0 - start, work)
-        assert found == pytest.approx(left[0] if roots else -1.0, rel=accuracy)
+        root = first(f, power + len(shape) - 1, 1.0 - start, work)
+        assert root == pytest.approx(left[0] if roots else -1.0, rel=accuracy)
 
 
 @SOLVERS
@@ -286,7 +286,7 @@ def test_a_constant_vertical_acceleration_is_another_gravity(scene, change):
     other = simulate(scene.with_(motion=still, gravity=GRAVITY + change))
     assert held.outcome == other.outcome == "rocks"
     # the rate below which impacts are summed goes with the scene's own gravity
-    times = [impact_times(one, 1e-6) for one in (held, other)]
+    times = [impact_times(response, 1e-6) for response in (held, other)]
     assert len(times[0]) > 2 and times[0] == pytest.approx(times[1], rel=1e-12)
     np.testing.assert_allclose(state(held), state(other), rtol=1e-11, atol=1e-13)
     assert held.uplifts == pytest.approx(other.uplifts, rel=1e-12)
@@ -316,15 +316,15 @@ def test_a_block_that_would_jump_is_said():
 def test_a_weight_that_vanishes_while_the_block_stands_lifts_it_once():
     # nothing pushes a base that slides freely: the threshold of uplift passes through 0 with the weight
     motions = [pulse("one-sine", 0.5, 3.0 + 0.01 * k, 1.5 * GRAVITY, 0.02 * k) for k in range(300)]
-    found = simulate_many([SLIDING.with_(motion=motion, duration=1.5) for motion in motions], workers=1)
-    assert found.lifted.all() and not found.failed.any()
+    outcomes = simulate_many([SLIDING.with_(motion=motion, duration=1.5) for motion in motions], workers=1)
+    assert outcomes.lifted.all() and not outcomes.failed.any()
 
 
 def test_bearings_that_carry_it_are_said():
     scene = SCENES["sine, on bearings"]
     level = scene.with_(motion=replace(scene.motion, vertical=None))
-    for one, told in ((scene, True), (level, False), (scene.with_(bearings=None), False)):
-        assert (Caution("model", RIGID_BEARINGS) in simulate(one).warnings) == told
+    for shaken, warned in ((scene, True), (level, False), (scene.with_(bearings=None), False)):
+        assert (Caution("model", RIGID_BEARINGS) in simulate(shaken).warnings) == warned
 
 
 def test_it_is_over_before_a_run_may_end():

@@ -77,8 +77,8 @@ def test_impact_follows_from_momentum(slenderness, base):
 
 
 @given(st.floats(0.02, 1.5), st.floats(1e-3, 1e6), st.floats(0.0, 1.0) | st.none())
-def test_impact_never_adds_energy(slenderness, base, own):
-    case = scene(slenderness, base, restitution=own)
+def test_impact_never_adds_energy(slenderness, base, restitution):
+    case = scene(slenderness, base, restitution=restitution)
     model, w = RockingModel.of(case), -0.8
     after, jump = model.impact(w)
     h = case.block.half_height

@@ -309,9 +309,9 @@ def test_without_slip_it_tends_to_the_model(law):
     for step in (1e-4, 1e-5):
         run = slid(scene, step=step)
         assert (run.outcome, len(run.impacts)) == ("rocks", 1) and run.sliding.path < G * scene.duration * step
-        found = run.peak_tilt, run.peak_base_displacement, run.end.tilt, run.end.base_displacement
+        values = run.peak_tilt, run.peak_base_displacement, run.end.tilt, run.end.base_displacement
         exact = model.peak_tilt, model.peak_base_displacement, model.end.tilt, model.end.base_displacement
-        assert found == pytest.approx(exact, abs=2 * step)
+        assert values == pytest.approx(exact, abs=2 * step)
 
 
 def test_its_impacts_and_its_history_are_those_of_the_model():
@@ -319,8 +319,8 @@ def test_its_impacts_and_its_history_are_those_of_the_model():
     scene = problem_a(7.0).with_(friction=5.0)
     model, run = simulate(scene, output_step=1e-4), simulate_time_stepping(scene, step=1e-4)
     assert len(run.impacts) == len(model.impacts) == 10
-    for one, other in zip(run.impacts[:5], model.impacts, strict=False):
-        assert (one.time, one.rate_before, one.rate_after) == pytest.approx(
+    for impact, other in zip(run.impacts[:5], model.impacts, strict=False):
+        assert (impact.time, impact.rate_before, impact.rate_after) == pytest.approx(
             (other.time, other.rate_before, other.rate_after), abs=2e-3
         )
     for name in ("time", "tilt", "base_displacement", "bearing_force", "ground_acceleration"):

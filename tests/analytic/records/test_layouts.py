@@ -205,9 +205,9 @@ CSMIP = {
 }
 
 
-@pytest.mark.parametrize("said, old, new, message", CSMIP.values(), ids=CSMIP)
-def test_csmip_refused(tmp_path, said, old, new, message):
-    assert_refused(write(tmp_path, csmip(VALUES).replace(old, new) if old else csmip(VALUES)), message, **said)
+@pytest.mark.parametrize("options, old, new, message", CSMIP.values(), ids=CSMIP)
+def test_csmip_refused(tmp_path, options, old, new, message):
+    assert_refused(write(tmp_path, csmip(VALUES).replace(old, new) if old else csmip(VALUES)), message, **options)
 
 
 def test_a_file_of_one_channel_has_none_to_choose(tmp_path):
@@ -290,11 +290,11 @@ def zipped(files, method=zipfile.ZIP_DEFLATED):
 SOUND = [record[:3] for record in records() if "refused" not in record[0]]
 
 
-@pytest.mark.parametrize("name, text, said", SOUND, ids=[name for name, *_ in SOUND])
-def test_packed_is_read_as_plain(tmp_path, name, text, said):
-    plain = read_record(write(tmp_path, text.encode(), "plain"), **said)
+@pytest.mark.parametrize("name, text, options", SOUND, ids=[name for name, *_ in SOUND])
+def test_packed_is_read_as_plain(tmp_path, name, text, options):
+    plain = read_record(write(tmp_path, text.encode(), "plain"), **options)
     for packed in (gzip.compress(text.encode()), zipped({"folder/": "", "folder/x.dat": text, "__MACOSX/x": "-"})):
-        motion = read_record(write(tmp_path, packed), **said)
+        motion = read_record(write(tmp_path, packed), **options)
         np.testing.assert_array_equal(motion.samples, plain.samples)
         assert motion.dt == plain.dt and motion.label.startswith("record")
 
@@ -338,8 +338,8 @@ def test_no_more_is_unpacked_than_a_record_can_hold(tmp_path, monkeypatch, pack)
 
 
 PACKED = [
-    (pack(text.encode()), said)
-    for text, said in ((AT2, {}), (csmip(VALUES), {"channel": 2}), (cosmos(VALUES), {"channel": 1}))
+    (pack(text.encode()), options)
+    for text, options in ((AT2, {}), (csmip(VALUES), {"channel": 2}), (cosmos(VALUES), {"channel": 1}))
     for pack in (gzip.compress, lambda text: zipped({"a": text}), lambda text: zipped({"a": text}, zipfile.ZIP_STORED))
 ]
 
@@ -347,12 +347,12 @@ PACKED = [
 @pytest.mark.slow
 def test_damaged_packed_files_are_refused_or_read_the_same(tmp_path):
     chance, read = random.Random(0), 0
-    for packed, said in PACKED:
-        whole = read_record(write(tmp_path, packed), **said)
+    for packed, options in PACKED:
+        whole = read_record(write(tmp_path, packed), **options)
         for _ in range(100):
             path = write(tmp_path, damaged_bytes(packed, chance))
             try:
-                motion = read_record(path, "g" if chance.random() < 0.1 else None, **said)
+                motion = read_record(path, "g" if chance.random() < 0.1 else None, **options)
             except SceneError as error:
                 assert str(error).isprintable() and error.remedy
                 continue
@@ -450,9 +450,9 @@ READ = {
 }
 
 
-@pytest.mark.parametrize("text, said", READ.values(), ids=READ)
-def test_a_layout_is_read(tmp_path, text, said):
-    (channel,) = read_channels(write(tmp_path, text), **said)
+@pytest.mark.parametrize("text, options", READ.values(), ids=READ)
+def test_a_layout_is_read(tmp_path, text, options):
+    (channel,) = read_channels(write(tmp_path, text), **options)
     motion = channel.motion
     assert (len(motion.samples), motion.dt, motion.peak_time, motion.warnings) == (36, DT, pytest.approx(0.32), ())
     assert motion.samples.tolist() == pytest.approx(METRES, abs=1e-5)
@@ -656,9 +656,9 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("text, said, message, mended, then", REFUSED.values(), ids=REFUSED)
-def test_a_layout_is_refused_and_its_remedy_works(tmp_path, text, said, message, mended, then):
-    assert_refused(write(tmp_path, text), message, **said)
+@pytest.mark.parametrize("text, options, message, mended, then", REFUSED.values(), ids=REFUSED)
+def test_a_layout_is_refused_and_its_remedy_works(tmp_path, text, options, message, mended, then):
+    assert_refused(write(tmp_path, text), message, **options)
     if mended:
         motion = read_record(write(tmp_path, mended), **then)
         assert len(motion.samples) in (35, 36, 37) and motion.dt in (DT, 0.05)
@@ -699,7 +699,7 @@ def test_knet_csv(tmp_path):
     """Its offsets are subtracted: one of 16.5 gal would be a constant acceleration."""
     path = write(tmp_path, knet_csv(GAL))
     channels = read_channels(path)
-    assert [(one.number, one.direction, one.note) for one in channels] == [
+    assert [(channel.number, channel.direction, channel.note) for channel in channels] == [
         (number, name, "offset subtracted") for number, name in (("1", "N-S"), ("2", "E-W"), ("3", "U-D"))
     ]
     for channel, times in zip(channels, (1, -2, 3), strict=True):
@@ -773,9 +773,9 @@ REST = [*(2e-6 * i for i in range(10)), *(0.1 * value for value in NOISE[10:])]
 @pytest.mark.parametrize("given", [DT, 0.005])
 def test_numbers_above_a_list_are_never_taken_for_accelerations(tmp_path, above, form, zeros, given):
     """They are refused, or read as what they are; a step given wrongly does not help them."""
-    for own in (form, "{}", "{:g}"):
+    for head_form in (form, "{}", "{:g}"):
         for header in ("", "# made up\n"):
-            text = header + one_a_line(own, above) + "0\n" * zeros + one_a_line(form, REST)
+            text = header + one_a_line(head_form, above) + "0\n" * zeros + one_a_line(form, REST)
             try:
                 motion = read_record(write(tmp_path, text), "g", dt=given)
             except SceneError as error:

@@ -127,13 +127,14 @@ def test_friction_that_is_never_used_is_the_kernels_run():
             continue
         compared += 1
         totals, impacts, _ = march_of(scene.with_(friction=50.0))
-        expected = [(one.time, one.rate_after, one.base_velocity_jump) for one in model.impacts[: len(impacts)][:8]]
+        first = model.impacts[: len(impacts)][:8]
+        expected = [(impact.time, impact.rate_after, impact.base_velocity_jump) for impact in first]
         np.testing.assert_allclose(impacts[:8][:, [0, 2, 3]], np.reshape(expected, (-1, 3)), rtol=0, atol=1e-9)
         falls = model.outcome == "overturns"
         assert falls or len(impacts) == len(model.impacts)
-        found = totals[[S.PEAK_TILT, S.FALL_TIME if falls else S.PEAK_X]]
-        own = model.peak_tilt, model.fall_time if falls else model.peak_base_displacement
-        assert found == pytest.approx(own, abs=1e-9)
+        peaks = totals[[S.PEAK_TILT, S.FALL_TIME if falls else S.PEAK_X]]
+        expected_peaks = model.peak_tilt, model.fall_time if falls else model.peak_base_displacement
+        assert peaks == pytest.approx(expected_peaks, abs=1e-9)
 
 
 def test_the_history_is_the_trajectory():
@@ -201,16 +202,16 @@ CASES = {
 @pytest.mark.parametrize("name", CASES)
 def test_cases(name):
     scene, outcome, over, tilt, largest, end = CASES[name]
-    found = simulate(scene, history=False)
-    assert found.outcome == outcome and found.failure is None
-    assert found.overturning_time == (over and pytest.approx(over, abs=1e-8))
-    assert found.peak_tilt == pytest.approx(tilt, abs=1e-8)
+    response = simulate(scene, history=False)
+    assert response.outcome == outcome and response.failure is None
+    assert response.overturning_time == (over and pytest.approx(over, abs=1e-8))
+    assert response.peak_tilt == pytest.approx(tilt, abs=1e-8)
     # slipping impacts accumulate there, and the slip is sure to 1e-5 m
     close = 1e-5 if "impacts" in name else 1e-8
     if largest is not None:
-        assert found.sliding.peak == pytest.approx(largest, abs=close)
-        assert found.sliding.end == pytest.approx(end, abs=close)
-    assert found.sliding.modes[0][0] == 0 and Response.from_json(found.to_json()).sliding == found.sliding
+        assert response.sliding.peak == pytest.approx(largest, abs=close)
+        assert response.sliding.end == pytest.approx(end, abs=close)
+    assert response.sliding.modes[0][0] == 0 and Response.from_json(response.to_json()).sliding == response.sliding
 
 
 @pytest.mark.parametrize(
@@ -320,27 +321,27 @@ def test_a_refusal_names_what_fails_and_a_remedy_that_works():
             simulate(scene, history=False)
             continue
         except SceneError as error:
-            said = error
-        ((which, found),) = [(k, re.fullmatch(k, said.problem)) for k in FAILS if re.fullmatch(k, said.problem)]
-        numbers = [float(text) for text in found.groups()]
-        assert FAILS[which](*numbers, *([scene.friction] if said.key == "friction" else [])), said
-        for words in said.remedy.split(", or "):
-            simulate(followed(scene, said.key, words), history=False)  # else it raises
-            seen.append((which, said.key, re.sub(r"\d\S*", "#", words)))
+            refusal = error
+        ((which, match),) = [(k, re.fullmatch(k, refusal.problem)) for k in FAILS if re.fullmatch(k, refusal.problem)]
+        numbers = [float(text) for text in match.groups()]
+        assert FAILS[which](*numbers, *([scene.friction] if refusal.key == "friction" else [])), refusal
+        for words in refusal.remedy.split(", or "):
+            simulate(followed(scene, refusal.key, words), history=False)  # else it raises
+            seen.append((which, refusal.key, re.sub(r"\d\S*", "#", words)))
     assert {which for which, *_ in seen} == set(FAILS) and len(set(seen)) >= 9, set(seen)
 
 
 def test_many_runs_are_the_single_ones():
     scenes = [case[0].with_(duration=None) for case in CASES.values()]
-    found = simulate_many(scenes)
+    outcomes = simulate_many(scenes)
     for i, scene in enumerate(scenes):
-        one = simulate(scene, history=False)
-        assert (found.names[i], found.decided[i]) == (one.outcome, one.decided)
-        assert found.peak_slip[i] == pytest.approx(one.sliding.peak, abs=1e-9)
-    assert (simulate_many(scenes, workers=1).peak_slip == found.peak_slip).all()
+        response = simulate(scene, history=False)
+        assert (outcomes.names[i], outcomes.decided[i]) == (response.outcome, response.decided)
+        assert outcomes.peak_slip[i] == pytest.approx(response.sliding.peak, abs=1e-9)
+    assert (simulate_many(scenes, workers=1).peak_slip == outcomes.peak_slip).all()
 
 
 def test_a_map_slides():
     scene = scene_of(0.2, 0.4)
-    found = overturning_map(scene, "one-sine", [2.0, 4.0], [0.3, 1.5, 3.0])
-    assert (found.names == np.array([["stands", "stands"], ["slides", "slides"], ["slides", "slides"]])).all()
+    outcomes = overturning_map(scene, "one-sine", [2.0, 4.0], [0.3, 1.5, 3.0])
+    assert (outcomes.names == np.array([["stands", "stands"], ["slides", "slides"], ["slides", "slides"]])).all()
