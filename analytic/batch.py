@@ -63,6 +63,8 @@ class Outcomes:
 
     @classmethod
     def of(cls, totals: np.ndarray, shape: tuple[int, ...], contact: bool = False) -> Self:
+        """Return the outcomes of runs with these totals, shape (n, TOTALS). contact : whether it was recorded."""
+
         def column(slot):
             return totals[:, slot].reshape(shape)
 
@@ -228,11 +230,9 @@ def overturning_map(
     rows = np.full(len(pulses), np.array(row_of(parameters(scene)), dtype=ROW))
     if scene.duration is None:
         rows["duration"] = pulses[:, Shaking._fields.index("end")] + longest_duration(scene.with_(motion=None))
-    contacts, rubbing = [sliding.contact_of(scene)] * len(rows), []
-    if scene.friction is not None:
-        slowest = PulseMotion(shape, 1.0, float(frequencies.min()))
-        rubbing = [scene.with_(motion=slowest)]
-    chosen = _outcome_options(tolerance, REST_RATE, STEPS, rubbing=rubbing)
+    contacts = [sliding.contact_of(scene)] * len(rows)
+    slowest = scene.with_(motion=PulseMotion(shape, 1.0, float(frequencies.min())))
+    chosen = _outcome_options(tolerance, REST_RATE, STEPS, rubbing=[] if scene.friction is None else [slowest])
     totals = run_rows(rows, pulses, pulse(frequencies[0]), chosen, workers, contacts)
     return Outcomes.of(totals, (len(amplitudes), len(frequencies)))
 

@@ -39,9 +39,9 @@ SPAN, STEP = 0.2, 5e-4
 LARGEST_SPAN = 9.0  # ten times the motion: a record of 0.1 g then has 1 g
 MOST_STEPS = 2e9  # of all runs, some twenty minutes on two cores
 BISECTIONS = 14  # boundaries are located to 6e-5 of a step
-FINER = 20
-# of `nearby`: the motion is one of many possible ones, and its scale is known to a few per cent at best
-SHARE = 0.05  # of the motion, up and down: the scale of a recorded motion is seldom known better
+FINER = 20  # factor between the steps of the two scans of an interleaved margin
+# Limits of `nearby`: the motion is one of many that are possible, and its scale is known to a few per cent at best.
+SHARE = 0.05  # largest change of the motion, up and down
 FOLD = 5.0  # a peak tilt is sensitive if it changes by this factor within SHARE ...
 SEEN = 0.01  # ... and exceeds this share of the slenderness, below which engines are not tested either
 NEARBY_STEPS = 1e8  # of all its runs: a minute on two cores
@@ -61,7 +61,7 @@ class Band:
 
     @property
     def outcome(self) -> str:
-        """See `Response.outcome`."""
+        """Return the outcome, as `Response.outcome`."""
         if "overturns" in self.reached:
             return "overturns"
         if "lifts" in self.reached:
@@ -216,7 +216,7 @@ QUANTITIES = {
     "friction": Quantity(
         "-",
         lambda scene: scene.friction,
-        lambda scene, factor: scene.with_(friction=factor * scene.friction),  # type: ignore[operator]  # asked where there is one
+        lambda scene, factor: scene.with_(friction=factor * scene.friction),  # type: ignore[operator]  # only called where there is one
     ),
     # the batch scales the motion without a copy of its samples
     "motion": Quantity("m/s2", lambda scene: scene.motion and scene.motion.peak, lambda scene, factor: scene),  # type: ignore[arg-type, return-value]  # a motion or None is the number or None
@@ -230,7 +230,7 @@ QUANTITIES = {
     "base mass": Quantity(
         "kg",
         lambda scene: scene.base and scene.base.mass,  # type: ignore[arg-type, return-value]  # a base or None, likewise
-        lambda scene, factor: scene.with_(base={"mass": factor * scene.base.mass}),  # type: ignore[union-attr]  # asked where there is one
+        lambda scene, factor: scene.with_(base={"mass": factor * scene.base.mass}),  # type: ignore[union-attr]  # only called where there is one
     ),
     # not delta_k, which defines the limit force and is negligible beside the stiffnesses
     **{name.replace("_", " "): _bearing(name) for name in ("ka", *KEYS) if name != "delta_k"},
@@ -421,7 +421,7 @@ def _states(scene, name, changes, scenes, tilt, workers):
     outcomes = simulate_many(scenes, scales=scales, contact=True, workers=workers)
     slenderness = np.array([each.block.slenderness for each in scenes])
     farthest = scene.bearings.x_max if "stroke" in limit_states(scene) else math.inf
-    states = np.column_stack(
+    reached = np.column_stack(
         [
             outcomes.slid,
             outcomes.lifted | outcomes.overturns,
@@ -431,7 +431,7 @@ def _states(scene, name, changes, scenes, tilt, workers):
             (outcomes.min_normal_ratio > 0) | (scene.friction is not None),
         ]
     )
-    return states, outcomes.failed
+    return reached, outcomes.failed
 
 
 def nearby(scene: Scene, *, workers: int | None = None) -> tuple[np.ndarray, Outcomes]:

@@ -244,7 +244,7 @@ class SampledMotion:
 
 @dataclass(frozen=True)
 class PulseMotion:
-    """A pulse given by a formula; with u = frequency (t - start):
+    """A pulse given by a formula in u = frequency (t - start).
 
     one-sine: a sin u, 0 <= u <= 2 pi; one-cosine: a cos u, 0 <= u <= 2 pi; half-sine: a sin u, 0 <= u <= pi;
     rectangular: a, 0 <= u <= pi; ricker: a (1 - 2 b) exp(-b), b = (u - 4 pi)^2/4, 0 <= u <= 8 pi.

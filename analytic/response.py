@@ -239,7 +239,7 @@ class Response:
     peak_tilt: float  # rad
     peak_tilt_ratio: float  # peak tilt / slenderness
     # if the block overturns, base peaks and contact forces are taken up to the last passage of the slenderness; after
-    # it the model's block falls about its corner, where a real one would slide and jump
+    # it the model's block falls about its corner, where a real block would slide and jump
     peak_base_displacement: float  # m
     peak_base_acceleration: float  # m/s2, absolute
     impacts: tuple[Impact, ...]
@@ -356,11 +356,11 @@ def scene_warnings(scene: "Scene") -> tuple[Caution, ...]:
     """Return the warnings that precede any outcome of a scene: a base that nothing holds, a start beyond balance."""
     warnings, tilt, gamma = [], scene.start.tilt, scene.block.slenderness
     if scene.base is not None and scene.bearings is None:
-        words = (
+        text = (
             "No friction is modelled under the base, and it has no bearings: such a base exists in thought experiments "
             "only. Leave it out if the pedestal is fixed to the ground."
         )
-        warnings.append(Caution("model", words))
+        warnings.append(Caution("model", text))
     if abs(tilt) >= gamma:
         words = (
             f"The block starts at a tilt of {tilt:.4g} rad, past its balance at {gamma:.4g} rad: it falls unless "

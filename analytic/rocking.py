@@ -156,6 +156,7 @@ class RockingModel:
 
     @classmethod
     def of(cls, scene: Scene) -> Self:
+        """Return the equations of a scene."""
         block = scene.block
         return cls(
             block.mass,

@@ -92,6 +92,7 @@ from .scene import (
 )
 
 LARGEST, DEEPEST = 100_000, 100  # bytes of a scene file and dots in a line, far more than its keys need
+FLAT = "write the tables of a scene file, one level"
 SHIPPED = Path(__file__).parent / "scenes"
 
 MOTIONS = {
@@ -172,23 +173,21 @@ class _Motion(Part):
         level = PulseMotion(self.pulse, self.amplitude, self.frequency, self.start or 0.0)  # type: ignore[arg-type]  # checked above
         if not self.vertical_ratio:
             return level
+        amplitude, phase = level.amplitude * self.vertical_ratio, self.vertical_phase or 0.0
         try:
-            phase = self.vertical_phase or 0.0
-            return replace(level, vertical=replace(level, amplitude=level.amplitude * self.vertical_ratio, phase=phase))
+            return replace(level, vertical=replace(level, amplitude=amplitude, phase=phase))
         except SceneError as error:
             raise SceneError("motion.vertical_phase", error.value, error.problem, error.remedy) from None
 
     def _read(self, path: Path, key: Literal["record", "vertical"]) -> SampledMotion:
-        if key == "record":
-            choice: dict[str, Any] = {"column": self.column, "channel": self.channel}
-            return read_record(path, self.units, self.scale, dt=self.dt, **choice)
-        choice = {"column": self.vertical_column, "channel": self.vertical_channel}
+        prefix = "" if key == "record" else "vertical_"
+        choice: dict[str, Any] = {name: getattr(self, prefix + name) for name in ("column", "channel")}
         try:
-            return read_record(path, None, self.scale, dt=self.dt, **choice)
+            return read_record(path, self.units if key == "record" else None, self.scale, dt=self.dt, **choice)
         except SceneError as error:
-            if error.key != "motion.units":
+            if key == "record" or error.key != "motion.units":
                 raise
-        return read_record(path, self.units, self.scale, dt=self.dt, **choice)  # it does not say its unit
+        return read_record(path, self.units, self.scale, dt=self.dt, **choice)  # it does not state its unit
 
     def _recorded(self, folder: Path, key: Literal["record", "vertical"]) -> SampledMotion:
         """Return the component that `key` names; a vertical one without a file is another channel of the record."""
@@ -257,9 +256,7 @@ def _parse(path: Path) -> dict[str, Any]:
         text = read_plain(path, LARGEST).decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
         for number, line in enumerate(text.split("\n"), 1):
             if line.split("#")[0].count(".") > DEEPEST:  # the parser takes quadratic time in the parts of a key
-                raise SceneError(
-                    "scene", None, f"line {number} is nested too deeply", "write the tables of a scene file, one level"
-                )
+                raise SceneError("scene", None, f"line {number} is nested too deeply", FLAT)
         return tomllib.loads(text)
     except OSError as error:
         raise SceneError(
@@ -269,7 +266,7 @@ def _parse(path: Path) -> dict[str, Any]:
             "give a scene file or one of " + ", ".join(shipped_scenes()),
         ) from error
     except RecursionError:
-        raise SceneError("scene", None, "is nested too deeply", "write the tables of a scene file, one level") from None
+        raise SceneError("scene", None, "is nested too deeply", FLAT) from None
     except SceneError:
         raise
     except ValueError as error:  # TOML and its encoding, and integers of thousands of digits
@@ -395,8 +392,7 @@ def derived(scene: Scene) -> list[tuple[str, float, str]]:
                 period = 2 * math.pi * math.sqrt(scene.total_mass / (law.count * stiffness))
                 rows.append((f"isolation period {name}", period, "s"))
         if law.f0 > 0:
-            force = law.count * law.f0 / scene.total_mass
-            rows.append((YIELD, force, "m/s2"))
+            rows.append((YIELD, law.count * law.f0 / scene.total_mass, "m/s2"))
     return rows
 
 

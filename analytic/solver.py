@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 # Steps of a run until its outcome is decided, some seconds of CPU time: both Caryatid scenes take 6000, bearings of ten
 # thousand rocking frequencies five million. A longer given duration may take more, up to a minute or two.
 STEPS, MOST_STEPS = 5_000_000, 100_000_000
-STEPS_PER_SAMPLE = 10  # further steps for each sample of a record; one or two are usual
+STEPS_PER_SAMPLE = 10  # further steps for each sample of a record; one or two of them are usual
 EVENTS = 1_000_000  # impacts, uplifts or rests of a response
 ROWS, MOST_ROWS = 1_000_000, 10_000_000  # of a history: by default, and with a given interval
 USUAL_EXPONENT = 100.0  # of a bearing law: up to it, the yielding is no stiffer than the rest
@@ -109,7 +109,7 @@ def _bearing_parts(scene, model):
 # Chosen by measurement (`rocking study speed-error`): where CPU against error is least.
 ORDER = 18  # free flight and pulses: long steps
 TOLERANCE = 1e-11
-# Impacts are followed down to this fraction of omega_r, then summed to their limit; see kernel.remaining_hops.
+# Impacts are followed down to this fraction of omega_r, then summed to their limit; see `events.remaining_hops`.
 REST_RATE = 1e-8
 # History points where the motion has no sampling interval of its own.
 HISTORY_POINTS = 2000

@@ -335,13 +335,13 @@ def _start(par):
 
 @inner
 def _force(par, x, z, v):
-    """Of all bearings [N]."""
+    """Return the force of all bearings [N]."""
     return par.count * (par.kb * x + z + par.damping * v)
 
 
 @njit(cache=True, nogil=True)
 def _slide(body, par, h, ground, gravity, rows):
-    """All steps of a block that may slide, under the mean a_g and g + a_v [m/s2] in each; returns as `_march`."""
+    """Take all steps of a block that may slide, under the mean a_g and g + a_v [m/s2] in each; return as `_march`."""
     (q, v), z, pivot, taken, impacts, never = _start(par), par.z, NEITHER, 0.0, [(0.0, 0.0, 0.0, 0.0)], [0.0]
     impacts.pop(), never.pop()
     lifted, unstable, slip, path = q.tilt != 0 or v.tilt != 0, -1.0, _slip(par, q), 0.0

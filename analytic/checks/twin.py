@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from ..scene import Scene
 
 METHODS = ("DOP853", "RK45", "LSODA", "Radau")
-IMPACT_LIMIT = 50_000  # more impacts in one run never accumulate (restitution of 1)
+IMPACT_LIMIT = 50_000  # impacts of a run; more of them never accumulate (restitution of 1)
 STALL_LIMIT = 50  # guard against an endless loop of events at one time
 STAND_POINTS = 33  # points of a segment at which uplift is checked under two motions
 REST_HORIZON = 0.1  # a block rests only if its impacts end within this share of 1/omega_r
@@ -207,7 +207,10 @@ class Extremes:
 
 @dataclass(frozen=True)
 class Event:
-    """An event of `solve_ivp`, a root of function(t, y). terminal: ends the interval. direction: sign of the slope."""
+    """An event of `solve_ivp`: a root of function(t, y).
+
+    terminal: whether it ends the interval. direction: sign of the slope.
+    """
 
     function: Callable[..., float]
     terminal: bool = True
@@ -257,6 +260,7 @@ class Equations:
         return self.model.contact_acceleration(self.bearing_force(y))
 
     def derivative(self, ground: GroundFunction, direction: float) -> Callable[[float, np.ndarray], np.ndarray]:
+        """Return y'(t, y) over an interval. direction: sign of the base velocity."""
         model, law, side, energy, vertical = self.model, self.law, self.side, self.energy, self.vertical
         branch = law.unit.branch and law.unit.branch(self.hysteretic_force(self.y), direction, law.constants)
         if not model.on_base:
@@ -295,6 +299,7 @@ class Equations:
         return float(y[4]) if self.law.unit.branch else self.law.hysteretic(self.z_c, float(y[2]) - self.x_c)
 
     def bearing_force(self, y: np.ndarray) -> float:
+        """Return the force of all bearings [N], 0 on rigid ground."""
         return self.law.force(float(y[2]), self.hysteretic_force(y), float(y[3])) if self.model.on_base else 0.0
 
     def fix_history(self) -> None:
@@ -309,6 +314,7 @@ class Equations:
         return model.kinetic_energy(self.side, tilt, rate, v), model.potential_energy(self.side, tilt, x)
 
     def state(self) -> State:
+        """Return the current `State`."""
         x, v = (float(self.y[2]), float(self.y[3])) if self.model.on_base else (0.0, 0.0)
         return State(self.t, float(self.y[0]), float(self.y[1]), x, v, self.bearing_force(self.y))
 
@@ -319,7 +325,7 @@ class Run(Equations):
     def __init__(self, scene: Scene, settings: Mapping[str, Any], history: bool, energy: bool) -> None:
         super().__init__(scene, energy)
         self.settings, start = settings, scene.start
-        if isinstance(scene.motion, SampledMotion):  # two steps a sample, as one could skip a hop
+        if isinstance(scene.motion, SampledMotion):  # two steps a sample, as a single step could skip a hop
             self.max_step = min(self.max_step, 0.5 * scene.motion.dt)
         self.max_step = settings["max_step"] or self.max_step
         self.atol = settings["atol"] * self.scale
@@ -544,7 +550,7 @@ class Run(Equations):
                 self.rests.append(float(self.t + remaining))
         self.impact_loss += kinetic - self.energies()[0]
 
-    # what is kept
+    # results
 
     def record(self, t: float, y: np.ndarray, ground: float) -> None:
         """Keep one step."""
@@ -564,11 +570,13 @@ class Run(Equations):
         )
 
     def ledger(self) -> Energy:
+        """Return the energy balance from the start to now."""
         kinetic, potential = (after - before for after, before in zip(self.energies(), self.stored, strict=True))
         work = self.y[-3:].tolist() if self.model.on_base else [float(self.y[-1]), 0.0, 0.0]
         return Energy(*[kinetic, potential, *work, float(self.impact_loss)])
 
     def response(self, cpu_seconds: float, failure: Failure | None) -> Response:
+        """Return the `Response` of the run."""
         outcome = "rocks" if self.rocked else "stands"
         outcome = "failed" if failure else "overturns" if self.overturning is not None else outcome
         extremes = self.extremes

@@ -97,7 +97,10 @@ def largest_force(par: Parameters, energy: float) -> float:
 
 @entry
 def will_not_overturn(par: Parameters, body: Body, base: Base, lifted: bool) -> bool:
-    """Whether, after the motion, "stands" or "rocks" is certain, by rules (a) and (b). lifted : before, or now."""
+    """Return whether, after the motion, "stands" or "rocks" is certain, by rules (a) and (b).
+
+    lifted : whether the block has lifted, before or now.
+    """
     rocking = body.s != 0
     if not (rocking or par.on_base):
         return True
@@ -109,7 +112,7 @@ def will_not_overturn(par: Parameters, body: Body, base: Base, lifted: bool) -> 
 
 @entry
 def peaks_are_final(par: Parameters, body: Body, base: Base, peaks: tuple[float, float, float]) -> bool:
-    """Whether, after a decision, no reported peak can grow by more than `PEAK_TOLERANCE`.
+    """Return whether, after a decision, no reported peak can grow by more than `PEAK_TOLERANCE`.
 
     peaks : of tilt, base displacement and absolute base acceleration; a negative one is ignored. A base without
     bearings slides for ever, so that its displacement has no peak.

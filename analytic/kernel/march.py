@@ -40,7 +40,7 @@ ELASTIC_REST_RATE = 1e-4
 ONSET = 1e-9
 
 
-# The parameters of a run as one entry of an array, by name.
+# The parameters of a run, by name, as one entry of an array.
 ROW = np.dtype([(name, float) for name in (*L.Parameters._fields[:-1], *Constants._fields)])
 OWN, SIZE, SHAKING = len(L.Parameters._fields) - 1, len(ROW.descr), len(L.Shaking._fields)
 tuple_of: Any = to_fixed_tuple
@@ -243,7 +243,7 @@ def _conclude(par, end_of_motion, body, base, totals):
     totals[L.LIFTED], totals[L.CERTAIN] = lifted, certain
 
 
-# Below all that it calls: at this point its key is taken, see _cache.py.
+# It stands below all that it calls, as the key of its compiled form is taken here, see `cache`.
 @entry
 def _run_rows(rows, pulses, ground, upright, options, into):
     """Run the rows. upright : an argument of its own, see `steps`."""

@@ -40,7 +40,7 @@ MOST_SHRINK = 1e-3
 _bearing_term = law_function("term")
 USUAL_LAW = NUMBERS["algebraic"]  # its series is unrolled
 
-# Kinds of ground motion within a segment: none, linear, and from PULSE on the series of `pulses.SERIES`.
+# Kinds of ground motion within a segment: none, linear, and from PULSE on the series of `motion.SERIES`.
 QUIET, LINEAR_GROUND, PULSE = range(3)
 _pulse_series = chosen(SERIES)
 
@@ -206,7 +206,7 @@ def base_series(order, par, factors, highest, P, G):
 # First trial length of a step of a rocking block [1/omega_r]: no step is longer at a useful tolerance.
 FARTHEST = 4.0
 
-# Guard against an endless loop of events at one time; never seen.
+# Events at one time before a run gives up, so that no loop is endless; never seen.
 PATIENCE = 1000
 # Steps shorter than this fraction of the time are below its rounding.
 ROUNDING = 4e-16

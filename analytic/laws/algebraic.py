@@ -75,14 +75,14 @@ def recoverable(z: float, c: Constants) -> float:
 
 @inner
 def begin(s: float, z: float, travel: float, c: Constants) -> tuple[float, tuple[float, float, float], float]:
-    """q is y^(1 - alpha) with y = D_c + s (x - x_c), the `travel`."""
+    """Return the start of a step; q is y^(1 - alpha) with y = D_c + s (x - x_c), the `travel`."""
     power = travel ** (1 - c.alpha) if s != 0 else 0.0
     return power, (s * (1.0 / travel), 2 - c.alpha, s * c.dk / (1 - c.alpha)), math.inf
 
 
 @inlined
 def term(k: int, factors: tuple[float, float, float], x: np.ndarray, v: np.ndarray, q: np.ndarray) -> float:
-    """y q' = (1 - alpha) y' q with y' = s v: k y_0 q_k = s sum((2 - alpha) v q - k x q)."""
+    """Return term k by y q' = (1 - alpha) y' q with y' = s v: k y_0 q_k = s sum((2 - alpha) v q - k x q)."""
     speed, travel = 0.0, 0.0
     for j in range(k):
         speed += v[j] * q[k - 1 - j]

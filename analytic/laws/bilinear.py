@@ -46,7 +46,7 @@ def begin(s: float, z: float, travel: float, c: Constants) -> tuple[float, tuple
 
 @inlined
 def term(k: int, factors: tuple[float, float, float], x: np.ndarray, v: np.ndarray, q: np.ndarray) -> float:
-    """q is z."""
+    """Return term k; q is z."""
     q[k] = factors[0] * x[k]
     return q[k]
 

@@ -14,12 +14,13 @@ from ..solver import MOST_STEPS
 from . import Channel, read_channels
 from . import content as fema
 
-VERTICAL = ("up", "u-d", "ud", "vertical", "vert", "dwn", "ver", "v", "z", "u")  # how files call it
-# and the two horizontal components
+# Names of the vertical component in files.
+VERTICAL = ("up", "u-d", "ud", "vertical", "vert", "dwn", "ver", "v", "z", "u")
+# Names of the two horizontal components.
 PAIRS = (("e", "n"), ("ew", "ns"), ("e-w", "n-s"), ("x", "y"), ("1", "2"), ("a", "b"))
-CURE = "a scene whose [motion] names it as vertical beside its record runs it"  # of a vertical motion left out
-Components = list[tuple[str, SampledMotion]]  # of a record: what each is called, and its motion
-RUN_STEPS = 5000  # what a run costs beside a step for each sample, in steps: .3 ms
+CURE = "a scene whose [motion] names it as vertical beside its record runs it"  # remedy for a vertical motion left out
+Components = list[tuple[str, SampledMotion]]  # of one record: the name of each component, and its motion
+RUN_STEPS = 5000  # cost of a run in steps, beside one for each sample: .3 ms
 # The component in a file's name: a separate word, letters after those of an instrument (HNE), a number after such
 # letters (H1, HN2; a number alone counts files), or an azimuth.
 _WORD = re.compile(

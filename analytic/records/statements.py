@@ -184,7 +184,7 @@ def fortran_values(lines: Sequence[str], begin: int) -> np.ndarray:
     rows = [(f"line {at}", line.rstrip()) for at, line in enumerate(lines[begin:], begin + 1) if line.strip()]
     tokens = [(where, token) for where, line in rows for part in line.split() for token in _parted(where, part)]
     values = np.array([number(where, token) for where, token in tokens])
-    # The last line may be shorter; lines of one number are as long as that is.
+    # The last line may be shorter; a line of one number is as long as the number.
     widths = Counter(len(line) for _, line in rows[:-1] if len(line.split()) > 1)
     ((usual, _),) = Counter(form_of(token) for _, token in tokens).most_common(1) or [(None, 0)]
     for where, token in tokens:
@@ -276,7 +276,7 @@ _MILLISECONDS = (
 PER_SECOND = dict.fromkeys(("", *_SECONDS.split()), 1) | dict.fromkeys(_MILLISECONDS.split(), 1000)
 OTHER_TIMES = set("us µs usec ns min mins minute minutes h hr hrs hour hours day days samples".split())
 USABLE = (1e-7, 1e3)  # s: range of the step of a ground motion
-SAME = 1e-6  # of a step: two that differ by less are one, printed twice
+SAME = 1e-6  # relative difference of two steps below which they are one step, printed twice
 JITTER = 0.01  # of the step: clocks and single precision
 _WRITTEN_STEP = re.compile(rf"({NUMBER})([A-Za-zµ]*)")
 # A time stamp, 2030-01-02T03:04:15.020; a comma is a decimal sign unless it separates the fields.
@@ -423,7 +423,7 @@ def _fit(times: np.ndarray, unit: np.ndarray, step: float) -> float | None:
     count = np.arange(len(times))
 
     def excess(h):
-        """By how much a line of slope h misses the intervals time +- unit/2; convex in h."""
+        """Return by how much a line of slope h misses the intervals time +- unit/2; convex in h."""
         off = times - h * count
         return (off - unit / 2).max() - (off + unit / 2).min()
 
@@ -438,7 +438,7 @@ def _fit(times: np.ndarray, unit: np.ndarray, step: float) -> float | None:
     round_steps = (
         step for digits in range(1, 13) for step in (float(f"{best:.{digits}g}"), 1 / float(f"{1 / best:.{digits}g}"))
     )
-    # Where times lie half a unit off, as those of 800 Hz in six digits, one line alone passes: best comes near to it.
+    # Where times lie half a unit off, as those of 800 Hz in six digits, only one line passes, and best is near it.
     return next((step for step in (1 / frequency, *round_steps, best) if excess(step) <= allowed), None)
 
 

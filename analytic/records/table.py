@@ -46,7 +46,7 @@ QUOTED = re.compile(r'(?:(?:[^"]*[,;\s])?"[^"]*"(?=[,;\s]|$))+(?:[,;\s][^"]*)?')
 
 LEADING = 6  # numbers of a list that may be no accelerations: its step, its number, a factor, zeros between them
 USUAL = 0.99  # share of the numbers of a list that are printed in one form, where there is one
-FAR = 10  # times as large as what follows it, a number is no part of the motion
+FAR = 10  # a number this many times as large as all that follow it is no part of the motion
 SAY_WHICH = "and say which: # dt = .01 s"
 OR_HOW_MANY = f"{SAY_WHICH}; or, if it is an acceleration, say above how many there are: # samples: 300"
 

@@ -288,7 +288,7 @@ def impossible(par, contact, block, start):
 
 @inner
 def fresh_series(fresh, block, P):
-    """Set to 0 what is 0 at an onset that was just located; return whether it is no onset, but a graze."""
+    """Set to 0 what vanishes at an onset that was just located; return whether it is only a graze."""
     if fresh == CONE:
         P[L.SPEED, 0], P[L.SPEED, 1], P[L.SLIP, 1], P[L.SLIP, 2] = 0.0, 0.0, 0.0, 0.0
         return not block.sigma * P[L.SPEED, 2] > 0

@@ -110,6 +110,7 @@ def both_corners(par, contact, c, sigma, drift, climb):
 
 @inner
 def within(across, up, mu):
+    """Return whether the impulses lie inside Coulomb's cone."""
     return up >= 0 and abs(across) <= mu * up * (1 + EDGE)
 
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 # share of the friction the march decides, at 3 to 12 times the kernel's CPU time.
 NEAR = 0.9
 GIVEN = "block.restitution"
-ABOVE = 1.0006  # factor of a limit that is told in four digits, so that what is told is beyond it
+ABOVE = 1.0006  # factor by which a limit is exceeded, so that the four digits in a message lie beyond it
 
 
 def contact_of(scene: Scene) -> L.Contact | None:

@@ -38,7 +38,7 @@ def bearing(ka, kb, alpha):
 
 
 def rate(law, z, s):
-    """dz/dx of the algebraic law in direction s, with the D0-small term in full."""
+    """Return dz/dx of the algebraic law in direction s, with the term of D0 in full."""
     c = law.constants
     y = c.d0 + (1 - c.alpha) * (s * z - c.f0) / c.dk
     return c.dk * max(y, 0.0) ** (c.alpha / (c.alpha - 1))
@@ -111,13 +111,13 @@ POINTS = 400
 
 @pytest.fixture
 def coarse(monkeypatch):
-    """Scans of few bearings."""
+    """Make scans of few bearings."""
     monkeypatch.setattr(bearing_scan, "PERIOD_STEP", 0.06)
     monkeypatch.setattr(bearing_scan, "DAMPING_STEP", 0.02)
 
 
 def held(scene, motions, points, stroke, tilt=0.0):
-    """Whether bearings designed anew for each (period, damping) hold under all motions."""
+    """Return whether bearings designed anew for each (period, damping) hold under all motions."""
     holds = np.ones(len(points), dtype=bool)
     designs = [design_bearings(scene.total_mass, period, damping, stroke) for period, damping in points]
     for motion in motions:
@@ -151,7 +151,7 @@ def test_the_region_is_that_of_single_runs_but_within_one_per_cent_of_its_edge(s
 
 @pytest.fixture(scope="module")
 def scanned():
-    """(scan, [(runs done, runs known)] as told)."""
+    """Return (scan, [(runs done, all runs)] as reported)."""
     progress = []
     scan = scan_bearings(SCENE, [PULSE], 0.3, progress=lambda done, known: progress.append((done, known)))
     return scan, progress
@@ -179,7 +179,7 @@ def test_least_stroke_is_the_least_and_softest_the_longest_and_progress_ends_at_
 
 
 def test_the_mass_of_the_base_does_not_matter_where_the_block_does_not_lift(coarse):
-    """Block and base then move as one: period and damping that hold are the same, the constants go with the mass."""
+    """Block and base move as one: the same periods and dampings hold; the constants are proportional to the mass."""
     light, heavy = (
         scan_bearings(SCENE.with_(base={"mass": share * SCENE.block.mass}), [PULSE], 0.25) for share in (0.1, 3.0)
     )
@@ -396,7 +396,7 @@ def test_work_is_the_integral_of_the_force(rule, share, dx):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_start_in_mid_path_is_continued_as_the_law_says(name):
-    """`begin`, `term` and `reached` of the kernel's step, against `after_travel`, on a base that is released."""
+    """`begin`, `term` and `reached` of the kernel's step agree with `after_travel` on a base that is released."""
     scene = contact(law=name, start=Start(base_displacement=0.5 * YIELD, base_velocity=0.2), duration=0.02)
     end, rule = simulate(scene).end, BearingLaw.of(scene.bearings)
     z = rule.hysteretic(0.0, end.base_displacement)  # still on its way out
@@ -424,7 +424,7 @@ RELEASED = contact(start=Start(base_velocity=0.9), duration=1.2)
 
 
 def swing(stiffness, mass, centre, x, v):
-    """Of mass x'' = -stiffness (x - centre): its frequency, amplitude, phase and the motion (x, v) at a time."""
+    """Return frequency, amplitude, phase and motion (x, v) of mass x'' = -stiffness (x - centre)."""
     w = math.sqrt(stiffness / mass)
     amplitude, angle = math.hypot(x - centre, v / w), math.atan2(-v / w, x - centre)
     return (
@@ -435,7 +435,7 @@ def swing(stiffness, mass, centre, x, v):
 
 
 def exact_free_vibration(scene):
-    """(x, v) in closed form from x = 0 on the virgin bearing: to yield, to the turn, to yield again, and on."""
+    """Return (x, v) in closed form from x = 0 on the virgin bearing: to yield, to the turn, to yield again, and on."""
     n, mass, v = scene.bearings.count, scene.total_mass, scene.start.base_velocity
     w, amplitude, elastic = swing(n * KA, mass, 0.0, 0.0, v)
     first = math.asin(YIELD / amplitude) / w

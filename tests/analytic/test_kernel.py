@@ -58,7 +58,7 @@ def end_state(scene, tolerance):
 
 
 def impacts_until(response, rate):
-    """Number and time of the first impact that leaves less than `rate` [rad/s]."""
+    """Return number and time of the first impact that leaves less than `rate` [rad/s]."""
     return next((n, impact.time) for n, impact in enumerate(response.impacts, 1) if abs(impact.rate_after) < rate)
 
 
@@ -114,7 +114,7 @@ def test_boundaries(table, slenderness, ratio):
 
 @pytest.mark.parametrize("amplitude", [1.2, 2.0, 5.0])
 def test_the_shortest_rectangular_pulse_that_overturns_a_slender_block(amplitude):
-    """Without an impact: log(a/(a - 1))/p (Housner 1963), a over g gamma."""
+    """Without an impact its length is log(a/(a - 1))/p (Housner 1963), a over g gamma."""
     shortest = math.log(amplitude / (amplitude - 1)) / 2.14
     for factor in (1 - 1e-4, 1 + 1e-4):
         scene = under_a_pulse(amplitude, math.pi / (factor * shortest * 2.14), 1e-4, "rectangular")
@@ -294,7 +294,7 @@ SLENDER = caryatid_block(0.18)
 
 
 def mixed_scenes():
-    """Rigid and isolated, pulses, two records and free motion, with and without vertical motion, in no order."""
+    """Return rigid and isolated scenes in no order: pulses, records, no motion, with and without vertical motion."""
     pulses = PulseMotion("ricker", 4.0, 5.0), PulseMotion("one-cosine", 5.0, 7.0), PulseMotion("rectangular", 4.0, 3.0)
     rigid = [Scene(block=SLENDER, motion=motion, duration=12.0) for motion in (rough(1, 4.0), *pulses, rough(2, 6.0))]
     rigid[2:2] = [Scene(block=SLENDER, start=Start(tilt=0.02 * k), duration=12.0) for k in range(5)]
@@ -378,7 +378,7 @@ def test_a_rocking_spectrum_runs_until_decided_and_is_that_of_full_runs():
 
 
 def native(function):
-    """Machine code of a compiled function itself, without its wrappers."""
+    """Return the machine code of a compiled function itself, without its wrappers."""
     (text,) = function.inspect_llvm().values()
     bodies = [part.partition("\n}")[0] for part in text.split("\ndefine ")[1:]]
     return "".join(
@@ -387,7 +387,7 @@ def native(function):
 
 
 def test_no_reference_is_counted_in_what_is_compiled_without():
-    """Where an array is handed on and kept, numba counts a reference, an atomic operation; not here."""
+    """Where an array is passed on and kept, numba counts a reference, an atomic operation; here it does not."""
 
     def hand_on(array, other, first):
         kept = array if first else other
@@ -424,7 +424,7 @@ def test_the_collector_is_as_before_after_compiling(switch, enabled):
 
 
 def test_an_inner_function_is_no_machine_code_but_in_its_entry():
-    """numba would optimise and emit it at every level of calls, for some half of the time."""
+    """numba would optimise and emit it at every level of calls, which takes about half of the time."""
 
     @inner
     def twice(x):
@@ -481,7 +481,7 @@ def test_a_module_that_is_moved_or_renamed_counts(monkeypatch):
 
 
 def test_an_entry_stands_below_what_it_calls():
-    """Its key is taken where it stands: what comes later would not count, and a stale kernel would run."""
+    """Its key is taken where it stands: a function below would not count, and a stale kernel would run."""
     with pytest.raises(NameError, match="inner, read by .*outer, stands below the entry: move the entry down"):
         key_of(PLAIN, without="inner")
     assert kernel._run_rows._cache._impl.locator.get_source_stamp() == digest(kernel._run_rows)
@@ -511,7 +511,7 @@ def test_constants_operations_defaults_closures_and_what_is_called_count(before,
 
 
 def test_the_peak_of_tiny_swings_is_that_of_the_history():
-    """Found by an invariant on drawn scenes: 2.7 % of a peak of 8e-4 of the slenderness, at the default tolerance."""
+    """An invariant on drawn scenes found this: a peak of 8e-4 of the slenderness was 2.7 % too small."""
     block = Block(mass=1000.0, radius=0.3, slenderness=0.1759013689508464)
     motion = PulseMotion("one-cosine", 1.8307934873923872, 17.87122919784876)
     response = simulate(Scene(block=block, motion=motion, duration=0.8563998150923371))

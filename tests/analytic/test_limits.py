@@ -1,4 +1,4 @@
-"""A run that does not get on ends with an error that names the part of the scene to blame."""
+"""A run that does not end is refused with an error that names the part of the scene to blame."""
 
 import math
 import re
@@ -54,7 +54,7 @@ STIFF = {
 
 @pytest.fixture
 def small(monkeypatch):
-    """A hundredth of the steps: what is refused is not less stiff for that."""
+    """Allow a hundredth of the steps: the scene that is refused need not be as stiff."""
     monkeypatch.setattr(budget, "STEPS", budget.STEPS // 100)
     monkeypatch.setattr(budget, "MOST_STEPS", budget.MOST_STEPS // 100)
 
@@ -71,7 +71,7 @@ def test_what_does_not_get_on_is_named(small, scene, words):
 
 
 def test_the_frequency_named_is_that_of_the_base_under_a_block_that_follows_it(small):
-    """Of its mass what does not rock with it: M - (m R cos(gamma))^2/J."""
+    """The mass that counts does not rock with the block: M - (m R cos(gamma))^2/J."""
     scene = isolated(law="linear", count=4, ka=1e19)
     block = scene.block
     free = scene.total_mass - (block.mass * block.radius * math.cos(block.slenderness)) ** 2 / block.inertia
@@ -169,7 +169,7 @@ SLIDER = Scene(
 
 @pytest.mark.parametrize("solver", ["kernel", "exudyn", "pybullet", "mujoco"])
 def test_a_block_that_slips_beyond_its_half_width_is_said_by_every_solver(solver):
-    """A slip of 2.9 m of a block .3 m wide; not one of .06 m under a short pulse."""
+    """A block .3 m wide slips by 2.9 m; under a short pulse by .06 m only."""
     response = answer(solver, SLIDER)
     half = SLIDER.block.half_width
     (warning,) = [caution for caution in response.warnings if caution.quantity == "peak_slip"]
@@ -224,7 +224,7 @@ FALLING = Scene(block=caryatid_block(0.2), base=BASE, bearings=BEARINGS, motion=
 
 
 def test_a_swing_within_one_step_has_its_peak():
-    """Review A4: 9.0e-5 was reported."""
+    """A peak of 9.0e-5 was once reported."""
     scene = Scene(block=caryatid_block(0.28), motion=PulseMotion("one-sine", 2.8711, 4.0))
     response = simulate(scene, output_step=1e-4)
     assert response.peak_tilt == pytest.approx(np.abs(response.history.tilt).max(), rel=1e-6)
@@ -259,7 +259,7 @@ def test_acceleration_and_contact_forces_are_those_of_a_fine_history(motion):
 
 
 def contact(scene, history):
-    """(|absolute acceleration|, |H|/N, N/(m g)) at the rows of a history."""
+    """Return (|absolute acceleration|, |H|/N, N/(m g)) at the rows of a history."""
     model, forces = RockingModel.of(scene), []
     for tilt, rate, force, ground in zip(
         history.tilt, history.tilt_rate, history.bearing_force, history.ground_acceleration, strict=True
@@ -276,7 +276,7 @@ def contact(scene, history):
 
 @pytest.mark.parametrize("scale", [0.7, 1.0, -1.3])
 def test_peaks_of_the_base_end_at_the_last_passage_of_the_slenderness(scale):
-    """Review A5: the fall from there to pi/2, where a block would slide, is not the base's."""
+    """The fall from there to pi/2, in which a block would slide, does not count for the base."""
     scene = FALLING.with_(motion=FALLING.motion.scaled(scale))
     response = simulate(scene, output_step=1e-4)
     beyond = np.abs(response.history.tilt) > scene.block.slenderness

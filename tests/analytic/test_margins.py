@@ -63,7 +63,7 @@ def test_a_standing_block_rocks_from_its_uplift_acceleration_on():
 
 
 def test_a_standing_block_slides_where_the_ground_exceeds_its_friction():
-    """Its friction demand is a/g; below a friction of tan(slenderness) it slides and never lifts."""
+    """The friction demand is a/g; below a friction of tan(slenderness) the block slides and never lifts."""
     a, friction = 2.5, 0.26
     changes = by_name(block_scene(motion=PulseMotion("rectangular", a, 12.0), friction=friction))
     assert changes["motion"].change("slides") == changes["motion"].up == pytest.approx(friction * G / a - 1, abs=1e-7)
@@ -103,7 +103,7 @@ def test_no_quantity_comes_to_nothing(span, step):
 
 
 def reached(scene, tilt):
-    """The limit states that a run of its own reaches."""
+    """Return the limit states that a run of the scene reaches."""
     response = simulate(scene, history=False)
     states = {
         "slides": response.sliding is not None and response.sliding.path > 0,
@@ -162,7 +162,7 @@ def test_settings_out_of_range_are_refused(keywords):
 
 
 def test_a_narrow_band_frays_the_boundary():
-    """Between overturning after an impact and without one lies a narrow band of standing amplitudes (Zhang, Makris)."""
+    """Between overturning with and without an impact lies a narrow band of standing amplitudes (Zhang, Makris)."""
     scene = Scene(block=BLOCK, motion=PulseMotion("one-sine", 1.1 * GAP * THRESHOLD, 7.8))
     fine = by_name(scene, span=0.16)["motion"]
     coarse = by_name(scene, span=0.16, step=0.04)["motion"]
@@ -175,7 +175,7 @@ STANDS, ROCKS, TILTS, OVERTURNS = (), ("lifts",), ("lifts", "tilt"), ("lifts", "
 
 
 def banded(*bands):
-    """A margin with bands of (low, reached), the last up to 0.2."""
+    """Return a margin with bands of (low, reached), the last up to 0.2."""
     ends = [low for low, _ in bands[1:]] + [0.2]
     parts = (Band(low, high, reached, holds=True) for (low, reached), high in zip(bands, ends, strict=True))
     return Margin("size", 1.0, "m", tuple(parts))
@@ -216,7 +216,7 @@ def test_before_a_frayed_boundary_the_scan_is_finer():
 
 
 def test_a_range_ends_where_the_model_refuses_the_changed_scene_and_says_why():
-    """Released beyond its balance the block falls; from 6.7 % less it lands, where its friction is below (8)'s."""
+    """Released beyond its balance the block falls; from 6.7 % less it lands, where its friction is below mu_c."""
     changes = by_name(block_scene(start=Start(tilt=0.3), friction=0.2), step=1e-3)
     start, slenderness = changes["start"], changes["slenderness"]
     assert start.outcome == "overturns" and "friction = 0.2: below 0.2113" in start.ends_down and not start.ends_up
@@ -229,7 +229,7 @@ def test_a_range_ends_where_the_model_refuses_the_changed_scene_and_says_why():
 
 @pytest.mark.parametrize("restitution, last", [(0.9, 0.111), (0.95, 0.0525)])
 def test_a_range_ends_at_the_last_whole_step_that_is_a_scene_and_says_why(restitution, last):
-    """e of (7) is at most 1."""
+    """The restitution of eq. (7) is at most 1."""
     margin = by_name(block_scene(restitution=restitution, start=Start(tilt=0.1)))["restitution"]
     assert margin.ends_up.startswith("block.restitution = 1.") and not margin.ends_down
     assert (margin.bands[0].low, margin.bands[-1].high) == (-0.2, pytest.approx(last, abs=1e-9))
@@ -303,7 +303,7 @@ def test_a_scene_that_costs_too_much_is_refused(monkeypatch):
     [(0.02, 0.098, False), (0.02, 0.102, True), (0.102, 0.02, True), (0.0015, 0.0098, False), (0.0015, 0.0102, True)],
 )
 def test_a_peak_tilt_five_times_as_large_is_told_unless_it_is_small(tilt_here, other, warned):
-    """Tilts over the slenderness; below a hundredth of it nothing is promised."""
+    """The tilts are over the slenderness; below a hundredth of it engines are not tested."""
     what = shaken(1.5 * UPLIFT)
     changes, outcomes = nearby(what)
     tilts = np.full(len(changes), tilt_here * GAMMA)

@@ -140,7 +140,7 @@ FIRST_SHIPPED = [-0.096058605, 5.05215, 0.513379882]  # m/s2, of the default see
 
 
 def velocity(motion):
-    """Ground velocity [m/s] at the samples, shape (n,): exact for a piecewise linear acceleration."""
+    """Return the ground velocity [m/s] at the samples, shape (n,): exact for a piecewise linear acceleration."""
     steps = 0.5 * (motion.samples[1:] + motion.samples[:-1]) * motion.dt
     return np.concatenate([[0.0], np.cumsum(steps)])
 

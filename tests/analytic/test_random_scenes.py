@@ -31,7 +31,7 @@ ROUND_OFF = 1e-9
 
 
 def assert_sound(scene):
-    """The kernel's run of `scene` ends, with finite numbers, the model's impacts and an energy balance."""
+    """Assert that the kernel's run of `scene` ends with finite numbers, the model's impacts and an energy balance."""
     response = simulate(scene, history=False)
     ledger, model = response.energy, RockingModel.of(scene)
     assert response.failure is None and (response.outcome == "overturns" or response.end.time == scene.duration)
@@ -45,7 +45,7 @@ def assert_sound(scene):
 
 
 def _energy_scale(scene, response):
-    """Energies that came and went within the run without a trace in the ledger's final sums [J]."""
+    """Return the energies that came and went within the run and leave no trace in the ledger's final sums [J]."""
     block, bearings, start = scene.block, scene.bearings, scene.start
     scale = 0.5 * block.inertia * start.tilt_rate**2 + 0.5 * scene.total_mass * start.base_velocity**2
     if bearings:
@@ -94,7 +94,7 @@ def sampled(values, dt=0.01):
 
 
 def sound(response):
-    """Finite, not failed, and energy neither made nor lost unaccounted."""
+    """Return the response: finite, not failed, and without energy gained or lost unaccounted for."""
     assert response.outcome != "failed", response.failure
     energy = response.energy
     assert np.isfinite([*astuple(response.end), *astuple(energy)]).all()
@@ -114,7 +114,7 @@ def test_rest_inside_a_motion_lifts_again(solve):
 @SOLVERS
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_third_order_onset_takes_its_side_from_the_acceleration(solve, sign):
-    """phi = -s p^2 cos(gamma) a' t^3/(6 g) after the uplift: against the acceleration, with the third power of time."""
+    """After the uplift phi = -s p^2 cos(gamma) a' t^3/(6 g): against the acceleration, with the third power of time."""
     ramp = SampledMotion(0.01, sign * np.linspace(0.9, 1.2, 101) * THRESHOLD)
     for after in (0.01, 0.02):
         response = sound(solve(Scene(block=BLOCK, motion=ramp, duration=1 / 3 + after)))
@@ -200,7 +200,7 @@ CARRIED = SLIDING.with_(bearings=LRB, block={"slenderness": 0.15})
 
 
 def shaken(seed, peak=4.0):
-    """Rough motions, the vertical one with more of high frequency."""
+    """Return rough motions; the vertical one has more of high frequency."""
     return replace(rough(seed, peak, 4.0), vertical=rough(seed + 100, 0.7 * peak, 4.0, frequency=3.0))
 
 
@@ -210,7 +210,7 @@ def pulse(shape, amplitude, frequency, vertical, phase=0.0):
 
 
 def heaving(amplitude, frequency, duration=4.0, dt=0.005):
-    """No horizontal motion, a vertical sine."""
+    """Return a motion that is horizontally 0 and vertically a sine."""
     t = np.arange(0, duration, dt)
     return SampledMotion(dt, 0 * t, vertical=SampledMotion(dt, amplitude * np.sin(frequency * t)))
 
@@ -242,12 +242,12 @@ def state(response):
 
 
 def impact_times(response, rate=0.0):
-    """Of the impacts that leave more than a rate."""
+    """Return the times of the impacts that leave more than a rate."""
     return [impact.time for impact in response.impacts if abs(impact.rate_after) > rate]
 
 
 def kernel_and_twin(scene):
-    """Their responses, which agree."""
+    """Return the responses of both, which agree."""
     run = simulate(scene, history=False, tolerance=1e-15)
     twin = simulate_twin(scene, rtol=1e-12, history=False)
     assert (run.outcome, run.impact_count) == (twin.outcome, twin.impact_count)
@@ -257,7 +257,7 @@ def kernel_and_twin(scene):
 
 
 def scale_of(scene, response):
-    """Energy [J] that an imbalance is measured against."""
+    """Return the energy [J] that an imbalance is measured against."""
     block = scene.block
     tipping = block.mass * GRAVITY * block.radius * (1 - math.cos(block.slenderness))
     return max(abs(response.energy.input), tipping)

@@ -1,4 +1,4 @@
-"""Scene files: what they give, and one clear message for every mistake."""
+"""Scene files: the scenes that they give, and one clear message for every mistake."""
 
 import math
 import pickle
@@ -78,12 +78,12 @@ def test_least_file(tmp_path):
 
 
 def with_motion(folder, lines):
-    """The motion of a scene whose [motion] holds these lines."""
+    """Return the motion of a scene whose [motion] holds these lines."""
     return load_scene(write_scene(folder, SCENE.replace('synthetic = "duzce-like"', lines))).motion
 
 
 def refusal(folder, text):
-    """The error that a scene file of this text gives."""
+    """Return the error that a scene file of this text gives."""
     with pytest.raises(SceneError) as caught:
         load_scene(write_scene(folder, text))
     return caught.value

@@ -1,5 +1,6 @@
-"""Damaged files are refused in one message, or read as what they were made of but for what the damage itself changed:
-records by their numbers, scenes by a strict reader of their own. And the kept files that once broke something.
+"""Damaged files are refused in one message, or read as the undamaged file, but for what the damage itself changed.
+
+Records are judged by their numbers, scenes by a strict reader of their own. Files that once broke something are kept.
 """
 
 import difflib
@@ -60,7 +61,7 @@ duration = 20.0
 
 
 def scenes():
-    """(name, text) of undamaged scene files."""
+    """Return (name, text) of undamaged scene files."""
     return [
         ("pulse", SCENE.format(motion='pulse = "one-cosine"\namplitude = -2.0\nfrequency = 3')),
         ("synthetic", SCENE.format(motion='synthetic = "duzce-like"\nseed = 5')),
@@ -82,7 +83,7 @@ DEFAULTS = {
 
 
 def read(path, content, reader, **options):
-    """What the project's reader makes of the content; None where it refuses it, in one message. Soon, either way."""
+    """Return what the project's reader makes of the content, soon; None where it refuses it in one message."""
     path.write_bytes(content)
     begin = time.process_time()
     try:
@@ -97,8 +98,10 @@ def read(path, content, reader, **options):
 
 
 def changed(text, damaged):
-    """(lines that damage took away, lines that it put in), but for case and the letter of exponents; each with its
-    neighbours, with which it may have changed places."""
+    """Return (lines that damage took away, lines that it put in), but for case and the letter of exponents.
+
+    Each stands with its neighbours, with which it may have changed places.
+    """
     before, after = (re.split("[\r\n]+", content.upper().replace("D", "E")) for content in (text, damaged))
     pieces = difflib.SequenceMatcher(None, before, after, autojunk=False).get_opcodes()
     other = [piece[1:] for piece in pieces if piece[0] != "equal"]
@@ -107,19 +110,21 @@ def changed(text, damaged):
 
 
 def numbers_in(lines):
-    """The numbers of lines, and those of decimal commas."""
+    """Return the numbers of lines, and those of decimal commas."""
     text = "\n".join(lines)
     return [float(word) for sign in ",." for word in NUMBERS.findall(text.replace(",", sign)) if len(word) < 300]
 
 
 def tally(numbers):
-    """How often each number is there, to eleven digits."""
+    """Return how often each number occurs, to eleven digits."""
     return Counter(float(f"{number:.10e}") + 0.0 for number in numbers)
 
 
 def explained(motion, truth, text, damaged):
-    """Whether a record is the one it was made as, but for numbers in lines that damage took away or put in: a law of
-    conservation, which knows no rule of any format."""
+    """Return whether a record is the undamaged one, but for numbers in lines that damage took away or put in.
+
+    This is a law of conservation, which knows no rule of any format.
+    """
     numbers, unit, step = truth
     lines = changed(text, damaged)
     gone, come = map(numbers_in, lines)
@@ -175,7 +180,7 @@ def test_undamaged_scenes_are_judged_the_same(tmp_path, scene):
 
 
 def judged_record(path, record, content):
-    """Whether the project refuses a damaged record, or reads what it was made as, or differs from that."""
+    """Return whether the project refuses a damaged record, reads what it was made as, or differs from that."""
     _, text, options, truth = record
     motion = read(path, content, read_record, **options)
     if motion is None:
@@ -184,7 +189,7 @@ def judged_record(path, record, content):
 
 
 def judged_scene(path, scene, content):
-    """How the project's reader and the strict one judge a damaged scene file."""
+    """Return how the project's reader and the strict one judge a damaged scene file."""
     loaded = read(path, content, load_scene)
     try:
         expected = strict_scenes.read(content)
@@ -196,7 +201,7 @@ def judged_scene(path, scene, content):
 
 
 def judgements(folder, number, seed, undamaged, judged):
-    """{judgement: count} of `number` damaged files; none on which the readers differ."""
+    """Return {judgement: count} of `number` damaged files; on none do the readers differ."""
     counts = Counter()
     for damage, content in cases(undamaged, number, seed):
         judgement = judged(folder / "file", damage, content)

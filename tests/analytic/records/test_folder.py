@@ -1,4 +1,4 @@
-"""The motions of a folder: which files make a pair, what is left out, and turned components."""
+"""The motions of a folder: which files make a pair, what is left out, and rotated components."""
 
 import importlib.util
 import math
@@ -17,7 +17,7 @@ FIRST, SECOND = np.array([0.0, 1.0, -2.0, 0.5]), np.array([0.0, 0.5, 1.5, -1.0])
 
 
 def listed(values, title="a [m/s2]"):
-    """Times and values, a line each."""
+    """Return times and values as text, a line each."""
     return f"t [s],{title}\n" + "".join(f"{0.01 * k:.2f},{a}\n" for k, a in enumerate(values))
 
 
@@ -57,7 +57,7 @@ def test_two_files_that_differ_in_the_component_are_a_pair_and_others_are_not_wh
 
 
 def test_more_directions_than_can_be_run_are_refused_before_they_are_made(tmp_path):
-    """Of a pair of 4 samples 1e8 steps hold 1e8/(5000 + 4) runs; single components are not turned."""
+    """1e8 steps are enough for 1e8/(5000 + 4) runs of a pair of 4 samples; single components are not rotated."""
     for factor, name in enumerate(("A_E.csv", "A_N.csv", "single.csv"), 1):
         write(tmp_path, name, factor * FIRST)
     for count in (19_985, 10**9, 10**400):
@@ -175,7 +175,7 @@ def test_what_a_folder_gives_and_what_is_left_out_of_it_is_said(tmp_path, files,
 
 @pytest.mark.parametrize("vertical", ["a.csv", "b.csv", "longer.csv", "finer.csv"])
 def test_a_scenes_motion_with_its_vertical_one_is_the_records_of_the_folder_whose_place_it_takes(tmp_path, vertical):
-    """The vertical one is left out only where it is not that of the scene."""
+    """A vertical component is left out only where it is not that of the scene."""
     (tmp_path / "a.csv").write_text(THREE)
     write(tmp_path, "b.csv", 0.2 * FIRST)
     write(tmp_path, "longer.csv", [*0.2 * FIRST, 0.1, -0.1])

@@ -1,4 +1,4 @@
-"""CSMIP volume 2, COSMOS, K-NET, KiK-net and USGS SMC: files made up here, and the real ones where they are."""
+"""CSMIP volume 2, COSMOS, K-NET, KiK-net and USGS SMC: made-up files, and real ones where they are present."""
 
 import gzip
 import io
@@ -243,7 +243,7 @@ def test_what_is_odd_is_said(tmp_path, text, old, new, words):
     ],
 )
 def test_real_files(name, dt, count, peak, within, at):
-    """Against the figures that the files' own headers state [cm/s2, s]."""
+    """The figures [cm/s2, s] are those that the files' own headers state."""
     motion = read_record(FORMATS / name)
     assert (motion.dt, len(motion.samples), motion.warnings) == (dt, count, ())
     largest = motion.samples[int(np.abs(motion.samples).argmax())]
@@ -262,7 +262,7 @@ def test_real_files(name, dt, count, peak, within, at):
     ],
 )
 def test_real_csmip_files(name, dt, counts, directions):
-    """Against the peak and its time, which each channel's header states."""
+    """Each channel's header states its peak and the time of the peak."""
     lines = (FORMATS / name).read_text().splitlines()
     stated = [line.split() for line in lines if line.lower().startswith("peak acceleration")]
     for channel, (count, direction) in enumerate(zip(counts, directions, strict=True), 1):
@@ -279,7 +279,7 @@ AT2 = "a\nb\nACCELERATION IN UNITS OF G\nNPTS= 4, DT= .01 SEC\n.1 .2 -.3 .4\n"
 
 
 def zipped(files, method=zipfile.ZIP_DEFLATED):
-    """A zip file of {name: text}; a name that ends in / is a folder."""
+    """Return a zip file of {name: text}; a name that ends in / is a folder."""
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", method) as archive:
         for file in files.items():
@@ -300,7 +300,7 @@ def test_packed_is_read_as_plain(tmp_path, name, text, options):
 
 
 def locked():
-    """A zip file that says that it has a password."""
+    """Return a zip file that says that it has a password."""
     packed = bytearray(zipped({"a": AT2}))
     for magic, place in ((b"PK\x03\x04", 6), (b"PK\x01\x02", 8)):
         packed[packed.index(magic) + place] |= 1
@@ -371,7 +371,7 @@ PEAK = -1.062929  # m/s2
 
 
 def rows(form, values=IN_G, begin="2030-01-02T03:04:15"):
-    """A line for each value a of number n, at time t or stamp s."""
+    """Return a line for each value a with its number n, at time t or stamp s."""
     stamps = [datetime.fromisoformat(begin) + timedelta(milliseconds=20 * i) for i in range(len(values))]
     return "".join(
         form.format(t=DT * i, a=value, n=i + 1, s=stamps[i].isoformat(timespec="milliseconds")) + "\n"
@@ -380,7 +380,7 @@ def rows(form, values=IN_G, begin="2030-01-02T03:04:15"):
 
 
 def lines(form, per_line, values=IN_G):
-    """So many values a line, with their times t."""
+    """Return lines of so many values each, with their times t."""
     words = [form.format(t=DT * i, a=value) for i, value in enumerate(values)]
     return "".join("".join(words[i : i + per_line]) + "\n" for i in range(0, len(words), per_line))
 
@@ -675,7 +675,7 @@ def test_columns_that_are_no_accelerations_are_not_offered(tmp_path):
 
 @pytest.mark.parametrize("titles", ["Time_A A_g Time_B B_g", "T_A A_g T_B A_g", "T A_g T B_g"])
 def test_pairs_under_titles_that_differ_are_columns(tmp_path, titles):
-    """Of two instruments that are sampled in turn."""
+    """Two instruments are sampled in turn."""
     text = "".join(f"{DT * i:.3f} {a:.7f} {DT * i + 0.01:.3f} {a:.7f}\n" for i, a in enumerate(IN_G))
     first, second = read_channels(write(tmp_path, f"{titles}\n{text}"))
     assert (len(first.motion.samples), first.motion.dt, second.number) == (36, DT, "4")
@@ -683,7 +683,7 @@ def test_pairs_under_titles_that_differ_are_columns(tmp_path, titles):
 
 
 def test_rows_whose_times_rise_are_not_counted_by_the_first_one(tmp_path):
-    """The first one would count them; and their number may be stated as that of all numbers."""
+    """The first number would count the rows; and their number may be stated as that of all numbers."""
     assert len(read_record(write(tmp_path, "3 0.5\n4 -.1\n5 .2\n6 .3\n"), "m/s2").samples) == 4
     motion = read_record(write(tmp_path, "# number of data: 72\n" + rows("{t:.2f} {a:.7f}")), "g")
     assert len(motion.samples) == 36 and "states 72 samples, the data have 36" in motion.warnings[0]
@@ -696,7 +696,7 @@ def test_each_of_several_columns_has_the_times_before_it(tmp_path):
 
 
 def test_knet_csv(tmp_path):
-    """Its offsets are subtracted: one of 16.5 gal would be a constant acceleration."""
+    """The offsets are subtracted: one of 16.5 gal would be a constant acceleration."""
     path = write(tmp_path, knet_csv(GAL))
     channels = read_channels(path)
     assert [(channel.number, channel.direction, channel.note) for channel in channels] == [

@@ -1,4 +1,4 @@
-"""What headers say of step and unit in other words, formats by networks, and files that are refused by their names."""
+"""Step and unit stated in other words, formats by networks, and files that are refused by name."""
 
 import numpy as np
 import pytest
@@ -688,7 +688,7 @@ def test_one_column_at_the_step_given_or_stated(tmp_path, header, given, row):
 @pytest.mark.parametrize("per_line", [1, 2, 5, 8, 46, 50])
 @pytest.mark.parametrize("by", [" ", "\t", ", "])
 def test_values_one_after_the_other(tmp_path, per_line, by):
-    """As OpenSees reads them; the last line may be shorter."""
+    """OpenSees reads such files; the last line may be shorter."""
     words = [f"{value:.6f}" for value in SMOOTH]
     text = "".join(by.join(words[i : i + per_line]) + "\n" for i in range(0, len(words), per_line))
     motion = read_record(write(tmp_path, text), "m/s2", dt=0.01)
@@ -756,6 +756,6 @@ def test_channels_side_by_side_are_read_when_one_is_chosen(tmp_path, text, colum
 
 @pytest.mark.parametrize("samples", [17_000, 39_996])
 def test_times_of_six_digits_that_are_half_a_unit_off_are_those_of_a_whole_frequency(tmp_path, samples):
-    """As LabVIEW writes 800 Hz: 16.03125 s stands there as 16.0312, and one step alone fits them all."""
+    """LabVIEW writes 800 Hz so: 16.03125 s stands there as 16.0312, and one step alone fits all times."""
     text = "Time [s]\tAmplitude\n" + "".join(f"{k / 800:.6g}\t{(-1) ** k * 0.1}\n" for k in range(samples))
     assert read_record(write(tmp_path, text), "g").dt == 1 / 800

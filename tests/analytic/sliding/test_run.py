@@ -21,7 +21,7 @@ from analytic.solver import ground, options, parameters
 
 
 def march_of(scene, **settings):
-    """(totals, impacts, changes) of a march, without asking the kernel first."""
+    """Return (totals, impacts, changes) of a march, without asking the kernel first."""
     shaking = ground(scene.motion)
     totals, impacts, changes, _ = marched(parameters(scene), contact_of(scene), shaking, options(**settings))
     return totals, impacts, changes
@@ -31,7 +31,7 @@ RECTANGLE, BELL = PulseMotion("rectangular", 4.0, 2 * math.pi), PulseMotion("hal
 
 
 def newmarks(friction, pulse):
-    """(way, speed, time of the stop, how much of it a step h may add, over h^2) of a block under the ground's pulse.
+    """Return (path, speed, time of the stop, what a step h may add to it over h^2) of a block under the ground's pulse.
 
     It slides at mu g from where the ground exceeds that; under a half-sine the speed is off by up to a'_g h^2/8.
     """
@@ -62,7 +62,7 @@ def test_a_sliding_block_is_newmarks(friction, pulse):
 
 
 def shentons_mode(slenderness, a, friction):
-    """Of a rectangular block at rest when the ground's acceleration jumps to a g (Shenton 1996)."""
+    """Return the mode of a rectangular block at rest when the ground's acceleration jumps to a g (Shenton 1996)."""
     sine, cosine, tangent, q = math.sin(slenderness), math.cos(slenderness), math.tan(slenderness), 0.75
     if a <= min(friction, tangent):
         return S.STICK
@@ -102,7 +102,7 @@ def test_a_first_impact_is_equation_7_or_slips(base, share):
 
 @pytest.mark.parametrize("seed", [*range(3), *(pytest.param(seed, marks=pytest.mark.long) for seed in range(3, 10))])
 def test_energy_is_conserved_with_exactly_one_mode(seed):
-    """100 scenes: no march ends for want of one mode of contact or for a second one; no impact gains energy."""
+    """In 100 scenes no march ends because no mode or a second one is admissible, and no impact gains energy."""
     rng = np.random.default_rng([55, seed])
     for number in range(100):
         scene = random_slider(rng, number)
@@ -118,7 +118,7 @@ def test_energy_is_conserved_with_exactly_one_mode(seed):
 
 
 def test_friction_that_is_never_used_is_the_kernels_run():
-    """The march called directly: times, rates, jumps and peaks as the kernel's, up to the fall, which slides."""
+    """Times, rates, jumps and peaks of the march are the kernel's, up to the fall, in which the block slides."""
     rng, compared = np.random.default_rng(50), 0
     while compared < 20:
         scene = random_slider(rng, 6 * compared + 1 + compared % 2).with_(friction=None)
@@ -219,7 +219,7 @@ def test_cases(name):
     [("caryatid-isolated", None), ("caryatid-rigid", None), ("free-rocking-rigid", 1.05), ("free-rocking-rigid", 0.95)],
 )
 def test_a_friction_that_is_not_given_or_not_exceeded_leaves_the_kernels_answer(name, share, monkeypatch):
-    """Near the demand, which may exceed it between the points at which it is read, the march decides; else none is."""
+    """Near the demand, which may exceed the friction between the points at which it is read, the march decides."""
     scene = load_scene(name)
     plain = simulate(scene)
     tight = scene.with_(friction=share and share * plain.friction_demand / sliding.NEAR)
@@ -269,7 +269,10 @@ def test_a_friction_above_painleves_bound_is_refused_only_where_it_is_used():
 
 
 def refused_scene(rng, number):
-    """A slider with a restitution, or released by hand, or both; every fourth all but a point mass."""
+    """Return a scene whose block slides and has a restitution, or is released by hand, or both.
+
+    Every fourth block is almost a point mass.
+    """
     scene = random_slider(rng, number) if number % 2 else slider_of("flight", rng)
     share, tilt, near, mu = (
         rng.uniform(0.5, 1.05),
@@ -295,7 +298,7 @@ REMEDIES = {
 
 
 def followed(scene, key, words):
-    """The scene as a remedy says."""
+    """Return the scene changed as a remedy says."""
     if number := re.search(r"give (?:a friction of )?(\S+) or (more|less)$", words):
         mu = float(number[1])
         assert mu > scene.friction if number[2] == "more" else mu < scene.friction
