@@ -17,6 +17,7 @@ import itertools
 import math
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
+from operator import attrgetter
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
@@ -39,6 +40,7 @@ SPAN, STEP = 0.2, 5e-4
 LARGEST_SPAN = 9.0  # ten times the motion: a record of 0.1 g then has 1 g
 MOST_STEPS = 2e9  # of all runs, some twenty minutes on two cores
 BISECTIONS = 14  # boundaries are located to 6e-5 of a step
+_outcome = attrgetter("outcome")
 FINER = 20  # factor between the steps of the two scans of an interleaved margin
 # Limits of `nearby`: the motion is one of many that are possible, and its scale is known to a few per cent at best.
 SHARE = 0.05  # largest change of the motion, up and down
@@ -152,10 +154,6 @@ class Margin:
             max((band.high for band in different if band.high <= 0), default=None),
             min((band.low for band in different if band.low >= 0), default=None),
         )
-
-
-def _outcome(band):
-    return band.outcome
 
 
 def _nearer(edges):

@@ -422,18 +422,22 @@ def scene_text(
     about : sequence of str
         Comment lines at the top.
     """
-    lines = [*(f"# {line}" for line in about), f"name = {_toml(name)}"]
+    slides = "# friction = 0.6  # of the block on its support; without it the block does not slide"
     if friction is not None:
-        lines.append(
-            f"friction = {_toml(friction)}  # of the block on its support: it slides when friction is exhausted"
-        )
-    else:
-        lines.append("# friction = 0.6  # of the block on its support; without it the block does not slide")
-    lines += ["", "[block]"]
-    lines += _rows({"mass": (block.mass, "kg"), "radius": (block.radius, "m; base corner to centre of mass")})
-    degrees = math.degrees(block.slenderness)
-    lines += _rows({"slenderness": (block.slenderness, f"rad, {degrees:.4g} degrees; atan(width/height)")})
-    lines += [
+        slides = f"friction = {_toml(friction)}  # of the block on its support: it slides when friction is exhausted"
+    degrees = f"{math.degrees(block.slenderness):.4g} degrees"
+    rows = {
+        "mass": (block.mass, "kg"),
+        "radius": (block.radius, "m; base corner to centre of mass"),
+        "slenderness": (block.slenderness, f"rad, {degrees}; atan(width/height)"),
+    }
+    lines = [
+        *(f"# {line}" for line in about),
+        f"name = {_toml(name)}",
+        slides,
+        "",
+        "[block]",
+        *_rows(rows),
         f"# corner_inertia = {block.inertia:.6g}  # kg m2; 4/3 m R^2 of a homogeneous rectangle, unless given",
         "# restitution = 0.9  # default: eq. (7); give a measured one",
     ]

@@ -56,7 +56,7 @@ class Locator(UserProvidedCacheLocator):
 
 @contextmanager
 def kernel_cache() -> Iterator[None]:
-    """Cache the functions decorated inside by `Locator`, in one folder per version of the source.
+    """Cache the functions decorated inside by `Locator`, in files of their own for each version of the source.
 
     NUMBA_CACHE_DIR, if set, wins.
     """

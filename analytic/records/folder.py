@@ -27,7 +27,7 @@ _WORD = re.compile(
     r"(?<![A-Za-z])(?:(?:[BEHS][HNLG])?(E-?W|N-?S|U-?D|UP|VERT|VER|DWN|[ENZXYUV])|[BEHS][HNLG]?([12]))(?![A-Za-z0-9])",
     re.I,
 )
-_AZIMUTH = re.compile(r"(?<!\d)(\d{3})(?=(\.\w+)*$)")
+_AZIMUTH = re.compile(r"(?<!\d)(\d{3})(?=(?:\.\w+)*$)")
 
 
 def turned(first: SampledMotion, second: SampledMotion, angle: float, name: str) -> SampledMotion:
@@ -246,6 +246,5 @@ def _named(path: Path) -> tuple[str, str]:
     words = list(_WORD.finditer(name)) or list(_AZIMUTH.finditer(name))
     if not words:
         return name, ""
-    group = 1 if words[-1][1] else 2
-    start, end = words[-1].span(group)
-    return f"{name[:start]}*{name[end:]}", words[-1][group].casefold()
+    start, end = words[-1].span(words[-1].lastindex or 0)
+    return f"{name[:start]}*{name[end:]}", name[start:end].casefold()

@@ -251,8 +251,7 @@ def test_where_all_hold_or_none_the_second_scan_has_no_runs(coarse, amplitude, h
     assert not scan.holds(99.0, 0.1)
     period, damping = scan.nearest
     scene = SCENE.with_(bearings=scan.bearings(period, damping), motion=motion, duration=None)
-    response = simulate(scene, history=False)
-    assert (response.outcome == "stands") == holds
+    assert (simulate(scene, history=False).outcome == "stands") == holds
 
 
 # Bearing design: Table 1(a) to Table 1(b) and back, and targets that cannot be met.

@@ -206,8 +206,7 @@ def test_a_start_beyond_the_balance_is_said_of_the_scene_and_falls(tilt, over):
     scene = Scene(block=SCENE.block, start=Start(tilt=1.001 * tilt if over else tilt))
     assert (simulate(scene).outcome == "overturns") == over
     warnings = scene_warnings(scene.with_(start={"tilt": tilt}))
-    limits = [(caution.quantity, caution.value, caution.limit) for caution in warnings]
-    assert limits == [("start.tilt", tilt, 0.28)] * over
+    assert [(each.quantity, each.value, each.limit) for each in warnings] == [("start.tilt", tilt, 0.28)] * over
 
 
 def test_a_base_that_nothing_holds_is_said_of_the_scene():

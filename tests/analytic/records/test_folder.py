@@ -168,8 +168,9 @@ def test_what_a_folder_gives_and_what_is_left_out_of_it_is_said(tmp_path, files,
     assert len(left) == len(lines) and all(map(str.startswith, left, lines))
     steps = {name: of[0].dt for name, of in records.items()}
     assert steps == {name: 0.02 if name == "b.txt" else 0.01 for name in motions}
-    motions = [motion for group in records.values() for motion in group]
-    counted = {"states 9 samples, the data have 4" in " ".join(motion.warnings) for motion in motions}
+    counted = {
+        "states 9 samples, the data have 4" in " ".join(of.warnings) for group in records.values() for of in group
+    }
     assert counted == {"# number" in files.get("a.csv", "")}
 
 

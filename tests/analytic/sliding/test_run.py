@@ -127,8 +127,7 @@ def test_friction_that_is_never_used_is_the_kernels_run():
             continue
         compared += 1
         totals, impacts, _ = march_of(scene.with_(friction=50.0))
-        first = model.impacts[: len(impacts)][:8]
-        expected = [(impact.time, impact.rate_after, impact.base_velocity_jump) for impact in first]
+        expected = [(hit.time, hit.rate_after, hit.base_velocity_jump) for hit in model.impacts[: len(impacts)][:8]]
         np.testing.assert_allclose(impacts[:8][:, [0, 2, 3]], np.reshape(expected, (-1, 3)), rtol=0, atol=1e-9)
         falls = model.outcome == "overturns"
         assert falls or len(impacts) == len(model.impacts)
