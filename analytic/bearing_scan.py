@@ -27,7 +27,7 @@ from numba import njit
 from scipy.interpolate import RegularGridInterpolator
 
 from .batch import Outcomes, simulate_many
-from .errors import SceneError, SettingError
+from .errors import SceneError, SettingError, require
 from .kernel.compiled import inlined, inner
 from .motion import SampledMotion
 from .rocking import design_bearings
@@ -71,10 +71,11 @@ def displacement_spectrum(
     """
     periods = np.atleast_1d(np.asarray(periods, dtype=float))
     ratios = np.atleast_1d(np.asarray(damping_ratios, dtype=float))
-    if not (np.isfinite(periods).all() and (periods > 0).all()):
-        raise SettingError("periods must be finite and above 0 s")
-    if not ((ratios >= 0) & (ratios < 1)).all():
-        raise SettingError("damping ratios must be in [0, 1): only oscillators that oscillate are covered")
+    require(np.isfinite(periods).all() and (periods > 0).all(), "periods must be finite and above 0 s")
+    require(
+        ((ratios >= 0) & (ratios < 1)).all(),
+        "damping ratios must be in [0, 1): only oscillators that oscillate are covered",
+    )
     if isinstance(motion, SampledMotion):
         dt, samples = motion.dt, motion.samples
     else:
@@ -372,11 +373,9 @@ def _designs(mass: float, stroke: float, design: Mapping[str, Any]) -> tuple[np.
 def _check(scene, motions, stroke, tilt, periods):
     if scene.base is None:
         raise SceneError("base", None, "missing; bearings need a base", "add a table [base] with its mass")
-    if not motions:
-        raise SettingError("no motion: give the scene one, or a folder of records")
-    if not (stroke > 0 and math.isfinite(stroke)):
-        raise SettingError(f"stroke = {stroke!r}: give metres above 0")
-    if not 0 <= tilt <= 1:
-        raise SettingError(f"tilt = {tilt!r}: give a share of the slenderness, 0 (no lift) to 1")
-    if not 0 < periods[0] < periods[1] < math.inf:
-        raise SettingError(f"periods = {periods!r}: give two periods in s, the shorter one first")
+    require(motions, "no motion: give the scene one, or a folder of records")
+    require(stroke > 0 and math.isfinite(stroke), f"stroke = {stroke!r}: give metres above 0")
+    require(0 <= tilt <= 1, f"tilt = {tilt!r}: give a share of the slenderness, 0 (no lift) to 1")
+    require(
+        0 < periods[0] < periods[1] < math.inf, f"periods = {periods!r}: give two periods in s, the shorter one first"
+    )

@@ -121,6 +121,12 @@ class SettingError(ValueError):
     """A solver setting that does not exist or is out of range."""
 
 
+def require(holds: object, refusal: str) -> None:
+    """Raise `SettingError` with the words of the refusal unless the condition holds."""
+    if not holds:
+        raise SettingError(refusal)
+
+
 KINDS = ((stat.S_ISFIFO, "a pipe"), (stat.S_ISSOCK, "a socket"), (stat.S_ISCHR, "a device"), (stat.S_ISBLK, "a device"))
 
 

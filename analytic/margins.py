@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 
 from .batch import Outcomes, simulate_many
-from .errors import SceneError, SettingError
+from .errors import SceneError, require
 from .laws import LAWS, NUMBERS
 from .motion import SampledMotion
 from .response import Caution
@@ -277,14 +277,15 @@ def margins(
     SceneError
         The scene cannot be run, or is too stiff or too long for so many runs; the message names the part.
     """
-    if not 0 < tilt <= 1:
-        raise SettingError(f"tilt = {tilt!r}: give a share of the slenderness, above 0 and up to 1")
-    if not 0 < span <= LARGEST_SPAN:
-        raise SettingError(f"span = {span!r}: give the largest relative change, above 0 and up to {LARGEST_SPAN:g}")
-    if not 1e-6 <= step <= span:
-        raise SettingError(
-            f"step = {step!r}: give the relative distance of two changes, from 1e-6 to the span {span:g}"
-        )
+    require(0 < tilt <= 1, f"tilt = {tilt!r}: give a share of the slenderness, above 0 and up to 1")
+    require(
+        0 < span <= LARGEST_SPAN,
+        f"span = {span!r}: give the largest relative change, above 0 and up to {LARGEST_SPAN:g}",
+    )
+    require(
+        1e-6 <= step <= span,
+        f"step = {step!r}: give the relative distance of two changes, from 1e-6 to the span {span:g}",
+    )
     scene = scene.with_(duration=None)
     count = math.floor(span / step * (1 + 1e-12))
     changes = step * np.arange(-count, count + 1)

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
-from .errors import SettingError
+from .errors import SettingError, require
 from .kernel.compiled import entry, inner
 from .laws import LAWS, NUMBERS, Constants, law_function
 from .scene import LEAST, MOST, Bearings
@@ -444,16 +444,15 @@ def design_bearings(
 def _check(targets, count, stiffness_ratio, definition):
     """Refuse what is out of range."""
     for name, number in targets.items():
-        if not (math.isfinite(number) and number > 0):
-            raise SettingError(f"{name} = {number!r}: give a finite number above 0")
-        if name != "delta_k" and not LEAST <= number <= MOST:  # so that products do not overflow
-            raise SettingError(f"{name} = {number!r}: give a number from {LEAST:g} to {MOST:g}")
-    if not 1 < stiffness_ratio <= MOST:
-        raise SettingError(f"stiffness_ratio = {stiffness_ratio!r}: ka/kb must be above 1, and at most {MOST:g}")
-    if count < 1:
-        raise SettingError(f"count = {count!r}: give at least one bearing")
-    if definition not in DEFINITIONS:
-        raise SettingError(f"definition = {definition!r}: choose one of {', '.join(DEFINITIONS)}")
+        require(math.isfinite(number) and number > 0, f"{name} = {number!r}: give a finite number above 0")
+        fits = name == "delta_k" or LEAST <= number <= MOST  # so that products do not overflow
+        require(fits, f"{name} = {number!r}: give a number from {LEAST:g} to {MOST:g}")
+    require(
+        1 < stiffness_ratio <= MOST,
+        f"stiffness_ratio = {stiffness_ratio!r}: ka/kb must be above 1, and at most {MOST:g}",
+    )
+    require(count >= 1, f"count = {count!r}: give at least one bearing")
+    require(definition in DEFINITIONS, f"definition = {definition!r}: choose one of {', '.join(DEFINITIONS)}")
 
 
 def _exponent(damping, definition, divisor, secant, x_max, ratio):

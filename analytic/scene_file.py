@@ -70,7 +70,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, ValidationError
 
-from .errors import SceneError, SettingError, read_plain
+from .errors import SceneError, SettingError, read_plain, require
 from .motion import PULSES, PulseMotion, SampledMotion, paired
 from .records import UNITS, read_record
 from .records import content as fema
@@ -356,8 +356,7 @@ def block_from(
     """
     given = {"height": height, "width": width, "depth": depth, "density": density, "mass": mass}
     for name, value in given.items():
-        if value is not None and not (value > 0 and math.isfinite(value)):
-            raise SettingError(f"{name} = {value!r}: give a number above 0")
+        require(value is None or (value > 0 and math.isfinite(value)), f"{name} = {value!r}: give a number above 0")
     if density is not None and mass is None:
         mass = density * height * width * (depth or width)
     elif mass is None or density is not None:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .errors import SceneError, SettingError
+from .errors import SceneError, SettingError, require
 from .kernel import layout
 from .kernel import march as kernel
 from .kernel.compiled import compiling
@@ -185,10 +185,8 @@ def options(
     SettingError
         A setting is out of range.
     """
-    if not 1e-17 <= tolerance <= 1e-2:
-        raise SettingError(f"tolerance = {tolerance!r}: give a value from 1e-17 to 1e-2")
-    if not 0 < rest_rate <= 1e-2:
-        raise SettingError(f"rest_rate = {rest_rate!r}: give a value above 0, up to 1e-2")
+    require(1e-17 <= tolerance <= 1e-2, f"tolerance = {tolerance!r}: give a value from 1e-17 to 1e-2")
+    require(0 < rest_rate <= 1e-2, f"rest_rate = {rest_rate!r}: give a value above 0, up to 1e-2")
     if shortest is None:
         shortest = 0.0 if decide else math.inf
     return Options(
@@ -277,8 +275,7 @@ def _output_step(scene, step, history):
         span = shortest_duration(scene) if scene.duration is None else scene.duration
         step = scene.motion.dt if isinstance(scene.motion, SampledMotion) else span / HISTORY_POINTS
         return step * max(1, math.ceil(longest / step / ROWS))
-    if step <= 0 or not math.isfinite(step):
-        raise SettingError(f"output_step = {step!r}: give a time above 0 [s]")
+    require(step > 0 and math.isfinite(step), f"output_step = {step!r}: give a time above 0 [s]")
     if history and longest / step > MOST_ROWS:
         least = longest / MOST_ROWS
         raise SettingError(

@@ -28,7 +28,7 @@ import numba
 import numpy as np
 from numba import njit
 
-from ..errors import SceneError, SettingError
+from ..errors import SceneError, SettingError, require
 from ..kernel.compiled import inner
 from ..kernel.layout import Body
 from ..motion import SampledMotion
@@ -76,8 +76,7 @@ def simulate_time_stepping(scene: Scene, *, step: float, history: bool = True) -
     SettingError
         The step is not positive, or too short for the run.
     """
-    if not (step > 0 and math.isfinite(step)):
-        raise SettingError(f"step = {step!r} is not positive: give a finite value above 0 [s]")
+    require(step > 0 and math.isfinite(step), f"step = {step!r} is not positive: give a finite value above 0 [s]")
     if scene.duration is None:
         return until_decided(lambda cut: simulate_time_stepping(cut, step=step, history=history), scene)
     most = MOST_ROWS if history else MOST_STEPS

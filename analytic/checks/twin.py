@@ -21,7 +21,7 @@ import scipy
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from ..errors import SettingError
+from ..errors import SettingError, require
 from ..kernel.decision import model_warnings
 from ..motion import PulseMotion, SampledMotion
 from ..response import Energy, Failure, History, Impact, Response, State, limit_warnings
@@ -115,11 +115,12 @@ def _check_cost(run: Run, max_step: float | None) -> None:
 
 def _check(settings: Mapping[str, Any]) -> None:
     """Refuse a method that is unknown, or a number that is not positive."""
-    if settings["method"] not in METHODS:
-        raise SettingError(f"method {settings['method']!r} is unknown: choose one of {', '.join(METHODS)}")
+    require(
+        settings["method"] in METHODS, f"method {settings['method']!r} is unknown: choose one of {', '.join(METHODS)}"
+    )
     for name, value in settings.items():
-        if name != "method" and value is not None and not (value > 0 and math.isfinite(value)):
-            raise SettingError(f"{name} = {value!r} is not positive: give a finite value above 0")
+        positive = name == "method" or value is None or (value > 0 and math.isfinite(value))
+        require(positive, f"{name} = {value!r} is not positive: give a finite value above 0")
 
 
 def shared_segments(

@@ -7,7 +7,7 @@ from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 
-from ..errors import SceneError, SettingError
+from ..errors import SceneError, SettingError, require
 from ..motion import Motion, SampledMotion, paired
 from ..scene import Scene
 from ..solver import MOST_STEPS
@@ -51,8 +51,7 @@ def directions_of(first: SampledMotion, second: SampledMotion, count: int, name:
     SettingError
         count is below 1.
     """
-    if count < 1:
-        raise SettingError(f"directions = {count!r}: give 1 or more")
+    require(count >= 1, f"directions = {count!r}: give 1 or more")
     return [turned(first, second, math.pi * step / count, name) for step in range(count)]
 
 
@@ -103,8 +102,7 @@ def folder_motions(
         There is no such folder or no horizontal motion in it, or too many directions; or no such set of FEMA P695.
     """
     folder = Path(folder)
-    if not folder.is_dir() and not fema.is_one(folder):
-        raise SettingError(f"--records {folder}: no folder; give one with record files")
+    require(folder.is_dir() or fema.is_one(folder), f"--records {folder}: no folder; give one with record files")
     scene_motion = scene_motion if isinstance(scene_motion, SampledMotion) else None  # no pulse lies in a folder
     groups, uprights, left = _components(folder, scene_motion, {"units": units, "dt": dt})
     groups = _once(groups, left)
@@ -122,10 +120,7 @@ def folder_motions(
         record = record if record in by_record else mine.label
         further = [motion for motion in by_record.pop(record) if motion.digest() != mine.digest()]
         by_record = {record: [mine if scene_motion.vertical is None else scene_motion, *further], **by_record}
-    if not by_record:
-        raise SettingError(
-            f"--records {folder}: no horizontal ground motion in it; " + "; ".join(left[:3] or ["empty"])
-        )
+    require(by_record, f"--records {folder}: no horizontal ground motion in it; " + "; ".join(left[:3] or ["empty"]))
     return by_record, left
 
 
