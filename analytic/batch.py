@@ -36,10 +36,10 @@ CHUNKS_PER_WORKER = 8
 class Outcomes:
     """Outcomes of many runs, arrays of one common shape.
 
-    overturns, lifted, slid : bool. failed : bool, the model failed, exceeded its budget, or does not determine how the
-    block slides. peak_tilt [rad]; peak_slip [m], 0 without a friction;
-    peak_base_displacement [m], up to the last passage of |tilt| = slenderness where it overturns.
-    impacts : int, until the outcome was certain. decided : bool, False where the duration ended before it was certain.
+    overturns, lifted, slid : bool. failed : bool: the model failed, exceeded its budget, or does not determine how the
+    block slides. decided : bool: False where the duration ended before the outcome was certain.
+    peak_tilt [rad]; peak_slip [m], 0 without a friction; peak_base_displacement [m], up to the last passage of
+    |tilt| = slenderness where the block overturns. impacts : int, until the outcome was certain.
     friction_demand [-], min_normal_ratio [-]: as in `Response`, if they were asked for, else NaN.
     """
 
@@ -57,12 +57,14 @@ class Outcomes:
 
     @property
     def names(self) -> np.ndarray:
-        """The outcomes as `Response.outcome` names them, array of str."""
+        """Return the outcomes as `Response.outcome` names them, array of str."""
         rest = np.where(self.lifted, "rocks", np.where(self.slid, "slides", "stands"))
         return np.where(self.failed, "failed", np.where(self.overturns, "overturns", rest))
 
     @classmethod
     def of(cls, totals: np.ndarray, shape: tuple[int, ...], contact: bool = False) -> Self:
+        """Return the outcomes of runs with these totals, shape (n, TOTALS). contact : whether it was recorded."""
+
         def column(slot):
             return totals[:, slot].reshape(shape)
 
@@ -90,7 +92,7 @@ def run_rows(
     workers: int | None = None,
     contacts: Sequence[Contact | None] = (),
 ) -> np.ndarray:
-    """Totals, shape (n, TOTALS), of n runs that share the kind and samples of one ground motion.
+    """Return the totals, shape (n, TOTALS), of n runs that share the kind and samples of one ground motion.
 
     rows : (n,), of dtype `ROW`, see `row_of`. pulses : (n, fields of Shaking). contacts : n, of blocks that may slide.
     The result does not depend on the number of workers (threads; the kernel holds no lock).
@@ -127,8 +129,10 @@ def run_rows(
 def _outcome_options(
     tolerance: float, rest_rate: float, steps: int, contact: bool = False, rubbing: Sequence[Scene] = ()
 ) -> Options:
-    """rubbing : scenes with a friction; they are followed as a single run is, as their demand decides whether they
-    slide."""
+    """Return the `Options` of runs of which only the outcome counts.
+
+    rubbing : scenes with a friction. They are followed as a single run is, as their demand decides whether they slide.
+    """
     shortest = max(map(shortest_duration, rubbing), default=0.0)
     record = contact or bool(rubbing)
     return options(
@@ -145,7 +149,7 @@ def simulate_many(
     rest_rate: float = REST_RATE,
     workers: int | None = None,
 ) -> Outcomes:
-    """Outcomes of a sequence of scenes, in its order, shape (n,).
+    """Return the outcomes of a sequence of scenes, in its order, shape (n,).
 
     Scenes are grouped by their ground motion (the same object or equal content), so ensembles of many scenes under
     few records are fastest. scales : (n,) factors on the scenes' motions, 1 without it. contact : also determine
@@ -158,8 +162,8 @@ def simulate_many(
     >>> import numpy as np
     >>> from analytic import load_scene
     >>> scene = load_scene("caryatid-rigid")
-    >>> found = simulate_many([scene.with_(block={"restitution": e}) for e in np.linspace(0.87, 0.89, 5)])
-    >>> found.overturns.shape, int(found.failed.sum())
+    >>> outcomes = simulate_many([scene.with_(block={"restitution": e}) for e in np.linspace(0.87, 0.89, 5)])
+    >>> outcomes.overturns.shape, int(outcomes.failed.sum())
     ((5,), 0)
     """
     scenes = list(scenes)
@@ -194,7 +198,7 @@ def overturning_map(
     tolerance: float = TOLERANCE,
     workers: int | None = None,
 ) -> Outcomes:
-    """Outcomes over pulse frequency and amplitude, shape (len(amplitude_ratios), len(frequency_ratios)).
+    """Return the outcomes over pulse frequency and amplitude, shape (len(amplitude_ratios), len(frequency_ratios)).
 
     Parameters
     ----------
@@ -226,11 +230,9 @@ def overturning_map(
     rows = np.full(len(pulses), np.array(row_of(parameters(scene)), dtype=ROW))
     if scene.duration is None:
         rows["duration"] = pulses[:, Shaking._fields.index("end")] + longest_duration(scene.with_(motion=None))
-    contacts, rubbing = [sliding.contact_of(scene)] * len(rows), []
-    if scene.friction is not None:
-        slowest = PulseMotion(shape, 1.0, float(frequencies.min()))
-        rubbing = [scene.with_(motion=slowest)]
-    chosen = _outcome_options(tolerance, REST_RATE, STEPS, rubbing=rubbing)
+    contacts = [sliding.contact_of(scene)] * len(rows)
+    slowest = scene.with_(motion=PulseMotion(shape, 1.0, float(frequencies.min())))
+    chosen = _outcome_options(tolerance, REST_RATE, STEPS, rubbing=[] if scene.friction is None else [slowest])
     totals = run_rows(rows, pulses, pulse(frequencies[0]), chosen, workers, contacts)
     return Outcomes.of(totals, (len(amplitudes), len(frequencies)))
 
@@ -246,9 +248,9 @@ def rocking_spectrum(
     tolerance: float = TOLERANCE,
     workers: int | None = None,
 ) -> Outcomes:
-    """Outcomes of rectangular blocks on rigid ground against their rocking period T_r = 2 pi/omega_r, shape (n,).
+    """Return the outcomes of rectangular blocks on rigid ground over their rocking period 2 pi/omega_r, shape (n,).
 
-    Fig. 5(a) of the Caryatid paper is peak_tilt against `periods` [s]. The radius follows from T_r and eq. (1);
+    Fig. 5(a) of the Caryatid paper is peak_tilt against `periods` [s]. The radius follows from the period and eq. (1);
     the mass does not matter. Without a duration each run goes on until its outcome is decided.
     """
     periods = np.asarray(periods, dtype=float)

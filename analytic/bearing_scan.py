@@ -2,11 +2,16 @@
 
 Bearings are suitable if the block does not lift (or its tilt stays below a limit), if it does not slide where the scene
 gives a friction, and if the base stays within the stroke. Their demand is 1 at the limit. It is the largest of these
-ratios: friction demand/tan(gamma), that is, base acceleration over uplift acceleration (or peak tilt over its limit);
-friction demand over the friction; and peak base displacement over the stroke. The friction demand is that of a block
-that does not slide.
+ratios:
 
-The linear oscillator x'' + 2 zeta omega x' + omega^2 x = -a_g under a record, and its displacement spectrum.
+- friction demand/tan(gamma), that is, base acceleration over uplift acceleration; or peak tilt over its limit;
+- friction demand over the friction, where one is given;
+- peak base displacement over the stroke.
+
+The friction demand is that of a block that does not slide.
+
+A first stroke is estimated by the displacement spectrum of the linear oscillator x'' + 2 zeta omega x' + omega^2 x
+= -a_g.
 """
 
 from __future__ import annotations
@@ -22,7 +27,7 @@ from numba import njit
 from scipy.interpolate import RegularGridInterpolator
 
 from .batch import Outcomes, simulate_many
-from .errors import SceneError, SettingError
+from .errors import SceneError, SettingError, require
 from .kernel.compiled import inlined, inner
 from .motion import SampledMotion
 from .rocking import design_bearings
@@ -39,7 +44,7 @@ PULSE_INTERVALS = 4000  # of a pulse; its interpolation error is then below 1e-6
 def displacement_spectrum(
     motion: Motion, periods: npt.ArrayLike, damping_ratios: npt.ArrayLike, *, scale: float = 1.0
 ) -> np.ndarray:
-    """Largest |x| [m] of linear oscillators that start at rest, including the free vibration after the motion.
+    """Return the largest |x| [m] of linear oscillators that start at rest, with the free vibration after the motion.
 
     Exact for acceleration that is linear between samples (N. C. Nigam and P. C. Jennings 1969, Bull. Seismol. Soc.
     Am. 59(2), 909-922); maxima between samples are located. A pulse is sampled at `PULSE_INTERVALS` intervals.
@@ -66,10 +71,11 @@ def displacement_spectrum(
     """
     periods = np.atleast_1d(np.asarray(periods, dtype=float))
     ratios = np.atleast_1d(np.asarray(damping_ratios, dtype=float))
-    if not (np.isfinite(periods).all() and (periods > 0).all()):
-        raise SettingError("periods must be finite and above 0 s")
-    if not ((ratios >= 0) & (ratios < 1)).all():
-        raise SettingError("damping ratios must be in [0, 1): only oscillators that oscillate are covered")
+    require(np.isfinite(periods).all() and (periods > 0).all(), "periods must be finite and above 0 s")
+    require(
+        ((ratios >= 0) & (ratios < 1)).all(),
+        "damping ratios must be in [0, 1): only oscillators that oscillate are covered",
+    )
     if isinstance(motion, SampledMotion):
         dt, samples = motion.dt, motion.samples
     else:
@@ -81,7 +87,10 @@ def displacement_spectrum(
 
 @inlined
 def _advance(state, load, oscillator, over):
-    """State (x, v) after h under the acceleration a + slope tau. over : exp(-zeta w h), cos and sin of wd h, h."""
+    """Return the state (x, v) after h under the acceleration a + slope tau.
+
+    over : exp(-zeta w h), cos and sin of wd h, h.
+    """
     (x, v), (a, slope), (w, zeta, wd), (decay, c, s, h) = state, load, oscillator, over
     drift = -slope / (w * w)  # particular solution: offset + drift tau
     offset = -a / (w * w) + 2 * zeta * slope / (w * w * w)
@@ -94,18 +103,18 @@ def _advance(state, load, oscillator, over):
 
 @inner
 def _largest_inside(state, load, oscillator, h):
-    """|x| where the velocity changes sign between 0 and h, by bisection of the exact solution."""
+    """Return |x| where the velocity changes sign between 0 and h, by bisection of the exact solution."""
     w, zeta, wd = oscillator
-    low, high, found = 0.0, h, state[0]
+    low, high, displacement = 0.0, h, state[0]
     for _ in range(50):
         middle = 0.5 * (low + high)
         over = math.exp(-zeta * w * middle), math.cos(wd * middle), math.sin(wd * middle), middle
-        found, speed = _advance(state, load, oscillator, over)
+        displacement, speed = _advance(state, load, oscillator, over)
         if speed * state[1] > 0:
             low = middle
         else:
             high = middle
-    return abs(found)
+    return abs(displacement)
 
 
 @inner
@@ -134,9 +143,6 @@ def _spectrum(dt: float, samples: np.ndarray, frequencies: np.ndarray, ratios: n
     return peaks
 
 
-if TYPE_CHECKING:
-    from .motion import Motion
-
 PERIODS = (0.3, 5.0)  # s, secant at the stroke: the range for statues
 DAMPINGS = (0.02, 0.5)  # equivalent damping at the stroke, over critical: rubber only, to more than lead provides
 PERIOD_STEP, DAMPING_STEP = 0.01, 0.005  # relative, absolute: properties of bearings are not known better
@@ -163,30 +169,33 @@ class BearingScan:
     designs: list[Bearings]
 
     def holds(self, period: float, damping: float) -> bool:
-        """Whether bearings of this period [s] and damping [-] are suitable; False outside the range scanned."""
+        """Return whether bearings of this period [s] and damping [-] are suitable; False outside the range scanned."""
         axes = self.dampings, np.log(self.periods)
-        found = RegularGridInterpolator(axes, self.demand, bounds_error=False, fill_value=math.inf)
-        return bool(found((damping, math.log(period))) <= 1)
+        interpolated = RegularGridInterpolator(axes, self.demand, bounds_error=False, fill_value=math.inf)
+        return bool(interpolated((damping, math.log(period))) <= 1)
 
     def bearings(self, period: float, damping: float) -> Bearings:
-        """The bearings of a period [s] and one of the dampings scanned [-]."""
+        """Return the bearings of a period [s] and one of the dampings scanned [-]."""
         return softened(self.designs[int(np.abs(self.dampings - damping).argmin())], period)
 
     @property
     def least_stroke(self) -> tuple[float, float] | None:
-        """(period, damping) of the suitable bearings with the least stroke; None without any."""
+        """Return (period, damping) of the suitable bearings with the least stroke; None without any."""
         return self._least(np.where(self.demand <= 1, self.stroke, np.nan))
 
     @property
     def softest(self) -> tuple[float, float] | None:
-        """(period, damping) of the suitable bearings with the longest period, then least stroke; None without any."""
+        """Return (period, damping) of the suitable bearings with the longest period; of several those of least stroke.
+
+        None without any.
+        """
         held = np.where(self.demand <= 1, self.stroke, np.nan)
         longest = self.periods[~np.isnan(held).all(axis=0)].max(initial=0.0)
         return self._least(np.where(self.periods == longest, held, np.nan))
 
     @property
     def nearest(self) -> tuple[float, float]:
-        """(period, damping) of the bearings with the least demand, suitable or not."""
+        """Return (period, damping) of the bearings with the least demand, suitable or not."""
         point = self._least(np.where(np.isnan(self.stroke), np.nan, self.demand))
         assert point is not None  # the first scan ran some
         return point
@@ -199,7 +208,7 @@ class BearingScan:
 
 
 def first_stroke(scene: Scene, motions: Sequence[Motion]) -> float | None:
-    """First stroke [m] of a search, to two digits; None if suitable bearings are unlikely at any stroke.
+    """Return the first stroke [m] of a search, to two digits; None if suitable bearings are unlikely at any stroke.
 
     It is `ROOM` times the least displacement of linear bearings on which the block neither lifts nor, with a friction,
     slides under any motion.
@@ -212,7 +221,10 @@ def first_stroke(scene: Scene, motions: Sequence[Motion]) -> float | None:
 
 
 def softened(design: Bearings, period: float) -> Bearings:
-    """Bearings designed for 1 s, scaled to another period [s]: at a given displacement forces scale with stiffness."""
+    """Return bearings designed for 1 s, scaled to another period [s].
+
+    At a given displacement forces scale with stiffness.
+    """
     return design.model_copy(update={"ka": design.ka / period**2, "kb": design.given("kb") / period**2})
 
 
@@ -260,9 +272,9 @@ def scan_bearings(
     shape = len(dampings), len(columns)
     scan = BearingScan(columns, dampings, np.full(shape, np.nan), np.full(shape, np.nan), designs)
 
-    def run(wanted):
-        at = [scene.with_(bearings=softened(designs[i], columns[k]), duration=None) for i, k in np.argwhere(wanted)]
-        scan.demand[wanted], scan.stroke[wanted] = _worst(scene, at, motions, stroke, tilt, workers, progress)
+    def run(nodes):
+        at = [scene.with_(bearings=softened(designs[i], columns[k]), duration=None) for i, k in np.argwhere(nodes)]
+        scan.demand[nodes], scan.stroke[nodes] = _worst(scene, at, motions, stroke, tilt, workers, progress)
 
     coarse = np.zeros(shape, dtype=bool)
     coarse[::COARSE, ::COARSE] = True
@@ -274,58 +286,64 @@ def scan_bearings(
 def hardest(
     scene: Scene, bearings: Bearings, motions: Sequence[Motion], stroke: float, tilt: float
 ) -> tuple[str, Motion, float]:
-    """(limit of LIMITS, motion, demand) of the largest demand on these bearings; the rest as in `scan_bearings`."""
+    """Return (limit of LIMITS, motion, demand) of the largest demand on these bearings; see `scan_bearings`."""
     demands = []
     for motion in motions:
         run = simulate_many([scene.with_(bearings=bearings, motion=motion, duration=None)], contact=True)
-        found = _demands(run, scene, stroke, tilt)
-        demands += [(limit, motion, float(demand[0])) for limit, demand in found.items()]
-    return max(demands, key=lambda one: one[2])
+        demand_by_limit = _demands(run, scene, stroke, tilt)
+        demands += [(limit, motion, float(demand[0])) for limit, demand in demand_by_limit.items()]
+    return max(demands, key=lambda row: row[2])
 
 
 def _worst(scene, scenes, motions, stroke, tilt, workers, progress):
-    """(demand, peak base displacement [m]) of each of the scenes, copies of `scene`, under its worst motion."""
+    """Return (demand, peak base displacement [m]) of each of the scenes, copies of `scene`, under its worst motion."""
     demand, moved, done = np.zeros(len(scenes)), np.zeros(len(scenes)), 0
     for motion in motions:
         for part in np.array_split(np.arange(len(scenes)), 1 + len(scenes) // CHUNK):
-            found = simulate_many([scenes[j].with_(motion=motion) for j in part], contact=True, workers=workers)
-            moved[part] = np.maximum(moved[part], found.peak_base_displacement)
-            demand[part] = np.maximum.reduce([demand[part], *_demands(found, scene, stroke, tilt).values()])
+            outcomes = simulate_many([scenes[j].with_(motion=motion) for j in part], contact=True, workers=workers)
+            moved[part] = np.maximum(moved[part], outcomes.peak_base_displacement)
+            demand[part] = np.maximum.reduce([demand[part], *_demands(outcomes, scene, stroke, tilt).values()])
             done += len(part)
             if progress:
                 progress(done, len(scenes) * len(motions))
     return demand, moved
 
 
-def _demands(found: Outcomes, scene: Scene, stroke: float, tilt: float) -> dict[str, np.ndarray]:
-    """{name of LIMITS: demand of each run}; where the block lifts or slides, that on this limit is above 1."""
+def _demands(outcomes: Outcomes, scene: Scene, stroke: float, tilt: float) -> dict[str, np.ndarray]:
+    """Return {name of LIMITS: demand of each run}; above 1 for "uplift" or "slip" where the block lifts or slides."""
     beyond = np.nextafter(1.0, 2.0)
-    lost = found.failed | found.overturns if tilt else found.failed
-    demands = {"model": np.where(lost, math.inf, 0.0), "stroke": found.peak_base_displacement / stroke}
+    lost = outcomes.failed | outcomes.overturns if tilt else outcomes.failed
+    demands = {"model": np.where(lost, math.inf, 0.0), "stroke": outcomes.peak_base_displacement / stroke}
     if scene.friction is not None:
-        rubs = found.friction_demand / scene.friction
-        demands["slip"] = np.maximum(rubs, np.where(found.slid, beyond, 0.0))
+        rubs = outcomes.friction_demand / scene.friction
+        demands["slip"] = np.maximum(rubs, np.where(outcomes.slid, beyond, 0.0))
     if tilt:
-        return {**demands, "tilt": found.peak_tilt / scene.block.slenderness / tilt}
-    uplift = found.friction_demand / math.tan(scene.block.slenderness)
-    return {**demands, "uplift": np.maximum(uplift, np.where(found.lifted, beyond, 0.0))}
+        return {**demands, "tilt": outcomes.peak_tilt / scene.block.slenderness / tilt}
+    uplift = outcomes.friction_demand / math.tan(scene.block.slenderness)
+    return {**demands, "uplift": np.maximum(uplift, np.where(outcomes.lifted, beyond, 0.0))}
 
 
 def _crossed(coarse: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
-    """The nodes of cells in which the demand may be 1, within the range of the corners widened by its width."""
+    """Return the nodes of the cells in which the demand may be 1.
+
+    That is within the range of the demands at the corners, widened by its width on both sides.
+    """
     corners = np.stack([coarse[:-1, :-1], coarse[1:, :-1], coarse[:-1, 1:], coarse[1:, 1:]])
     low, high = corners.min(axis=0), corners.max(axis=0)
     with np.errstate(invalid="ignore"):  # infinite at all corners: no limit in the cell
         spread = high - low
         crossed = (low - spread <= 1) & (high + spread >= 1)
-    wanted = np.zeros(shape, dtype=bool)
+    nodes = np.zeros(shape, dtype=bool)
     for i, k in np.argwhere(crossed):
-        wanted[COARSE * i : COARSE * (i + 1) + 1, COARSE * k : COARSE * (k + 1) + 1] = True
-    return wanted
+        nodes[COARSE * i : COARSE * (i + 1) + 1, COARSE * k : COARSE * (k + 1) + 1] = True
+    return nodes
 
 
 def _between(demand: np.ndarray) -> np.ndarray:
-    """The demand interpolated to every node from the first scan; an infinite one counts as the largest finite one."""
+    """Return the demand interpolated to every node from the first scan.
+
+    An infinite one counts as the largest finite one.
+    """
     coarse = demand[::COARSE, ::COARSE]
     finite = np.where(np.isinf(coarse), np.max(coarse, where=np.isfinite(coarse), initial=2.0), coarse)
     axes = tuple(np.arange(0, length, COARSE) for length in demand.shape)
@@ -333,15 +351,15 @@ def _between(demand: np.ndarray) -> np.ndarray:
 
 
 def _designs(mass: float, stroke: float, design: Mapping[str, Any]) -> tuple[np.ndarray, list[Bearings]]:
-    """(evenly spaced dampings for which bearings exist, their designs for 1 s)."""
+    """Return (evenly spaced dampings for which bearings exist, their designs for 1 s)."""
 
-    def made(damping):
+    def designed(damping):
         return design_bearings(mass, 1.0, float(damping), stroke, **design)
 
     possible = []
     for damping in np.arange(DAMPINGS[0], DAMPINGS[1], DAMPING_STEP):
         try:
-            made(damping)
+            designed(damping)
             possible.append(damping)
         except SettingError as error:
             problem = error
@@ -349,17 +367,15 @@ def _designs(mass: float, stroke: float, design: Mapping[str, Any]) -> tuple[np.
         raise SettingError(f"no bearings of {DAMPINGS[0]:g} to {DAMPINGS[1]:g} of critical damping: {problem}")
     number = COARSE * math.ceil((possible[-1] - possible[0]) / DAMPING_STEP / COARSE)
     dampings = np.linspace(possible[0], possible[-1], number + 1)
-    return dampings, [made(damping) for damping in dampings]
+    return dampings, [designed(damping) for damping in dampings]
 
 
 def _check(scene, motions, stroke, tilt, periods):
     if scene.base is None:
         raise SceneError("base", None, "missing; bearings need a base", "add a table [base] with its mass")
-    if not motions:
-        raise SettingError("no motion: give the scene one, or a folder of records")
-    if not (stroke > 0 and math.isfinite(stroke)):
-        raise SettingError(f"stroke = {stroke!r}: give metres above 0")
-    if not 0 <= tilt <= 1:
-        raise SettingError(f"tilt = {tilt!r}: give a share of the slenderness, 0 (no lift) to 1")
-    if not 0 < periods[0] < periods[1] < math.inf:
-        raise SettingError(f"periods = {periods!r}: give two periods in s, the shorter one first")
+    require(motions, "no motion: give the scene one, or a folder of records")
+    require(stroke > 0 and math.isfinite(stroke), f"stroke = {stroke!r}: give metres above 0")
+    require(0 <= tilt <= 1, f"tilt = {tilt!r}: give a share of the slenderness, 0 (no lift) to 1")
+    require(
+        0 < periods[0] < periods[1] < math.inf, f"periods = {periods!r}: give two periods in s, the shorter one first"
+    )

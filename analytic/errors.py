@@ -1,8 +1,6 @@
-"""Errors that a user can correct; each message names place, value and remedy.
+"""Errors that a user can correct, limited reading of files that users name, and types used in signatures.
 
-Reading files named by users: only plain files of limited size, so that no read blocks.
-
-Types used in signatures, for a type checker.
+Each message names place, value and remedy. Only plain files of limited size are read, so that no read blocks.
 """
 
 from __future__ import annotations
@@ -21,7 +19,7 @@ MOST_LINES = 20  # mistakes listed in one message, so that it fits on a screen; 
 
 
 def cut(text: object, length: int) -> str:
-    """The text on one line, printable; the middle of a text longer than `length` characters is left out."""
+    """Return the text on one line, printable; of a longer text than `length` characters the middle is left out."""
     text = str(text)
     if len(text) > length:
         text = f"{text[: length * 2 // 3]} ... {text[-(length // 6) :]} ({len(text)} characters)"
@@ -29,7 +27,7 @@ def cut(text: object, length: int) -> str:
 
 
 def _shown(value: object) -> str:
-    """The value as Python writes it, of readable length."""
+    """Return the value as Python writes it, of readable length."""
     if isinstance(value, int) and value.bit_length() > 4 * VALUE_LENGTH:
         return f"an integer of {value.bit_length()} bits"
     if isinstance(value, str) and len(value) > VALUE_LENGTH:
@@ -48,7 +46,7 @@ class SceneError(ValueError):
     key : str
         Dotted name of the field, as in a scene file (``block.mass``).
     value : object
-        What was found there.
+        The value of that field.
     problem, remedy : str
         What is wrong with it, and what to write instead.
     file : str or None
@@ -75,24 +73,24 @@ class SceneError(ValueError):
 
     @property
     def lines(self) -> list[str]:
-        """The message: a line of readable length for each mistake, whatever was found."""
+        """Return the message: one line of readable length for each mistake."""
         lines = [mistake._line() for mistake in (self, *self.others)[:MOST_LINES]]
         left = len(self.others) + 1 - len(lines)
         return [*lines, f"and {left} more"] if left else lines
 
     def _line(self) -> str:
         where = f"{cut(self.file, FILE_LENGTH)}: " if self.file else ""
-        found = "" if self.value is None else f" = {_shown(self.value)}"
+        value_text = "" if self.value is None else f" = {_shown(self.value)}"
         problem, remedy = cut(self.problem, TEXT_LENGTH), cut(self.remedy, TEXT_LENGTH)
-        return f"{where}{cut(self.key, KEY_LENGTH)}{found}: {problem}; {remedy}"
+        return f"{where}{cut(self.key, KEY_LENGTH)}{value_text}: {problem}; {remedy}"
 
     def with_others(self, *mistakes: SceneError) -> SceneError:
-        """The same error with further mistakes, and those that they carry, added."""
-        others = (*self.others, *(one for mistake in mistakes for one in (mistake, *mistake.others)))
+        """Return the same error with further mistakes, and those that they carry, added."""
+        others = (*self.others, *(error for mistake in mistakes for error in (mistake, *mistake.others)))
         return SceneError(self.key, self.value, self.problem, self.remedy, self.file, others)
 
     def in_file(self, file: str | PathLike[str]) -> SceneError:
-        """The same error with the name of the file."""
+        """Return the same error with the name of the file."""
         others = tuple(other.in_file(file) for other in self.others)
         return SceneError(self.key, self.value, self.problem, self.remedy, str(file), others)
 
@@ -123,11 +121,17 @@ class SettingError(ValueError):
     """A solver setting that does not exist or is out of range."""
 
 
+def require(holds: object, refusal: str) -> None:
+    """Raise `SettingError` with the words of the refusal unless the condition holds."""
+    if not holds:
+        raise SettingError(refusal)
+
+
 KINDS = ((stat.S_ISFIFO, "a pipe"), (stat.S_ISSOCK, "a socket"), (stat.S_ISCHR, "a device"), (stat.S_ISBLK, "a device"))
 
 
 def read_plain(path: str | PathLike[str], limit: int) -> bytes:
-    """The bytes of the plain file at `path`.
+    """Return the bytes of the plain file at `path`.
 
     Parameters
     ----------

@@ -1,14 +1,14 @@
-"""Margins: the change of a quantity at which a scene reaches another limit state, or its outcome changes.
+"""Margins: the change of a quantity at which the outcome of a scene, or a limit state, changes.
 
 A limit state is reached if the block slides (where the scene gives a friction), if it lifts, if its peak tilt exceeds a
 share of the slenderness, if the base exceeds the x_max of its bearings, or if the block overturns.
 
-The outcome may change more than once: resonances cause narrow bands of another outcome far from the first boundary, and
+The outcome may change more than once. Resonances cause narrow bands of another outcome far from the first boundary, and
 safe gaps beyond it. Each quantity is therefore scanned, one at a time, at equidistant relative changes, and every
 boundary between two changes is bisected. A band narrower than the `step` of the scan may be missed; a band of twice the
 step is always found. Where narrow bands of outcomes alternate, the boundary is interleaved (fractal). The safe gap
-about the scene is then scanned again in steps `FINER` times smaller, and the margin says so, as it may contain still
-narrower bands.
+about the scene is then scanned again in steps `FINER` times smaller, and the margin says so, as the gap may contain
+still narrower bands.
 """
 
 from __future__ import annotations
@@ -17,12 +17,13 @@ import itertools
 import math
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
+from operator import attrgetter
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
 from .batch import Outcomes, simulate_many
-from .errors import SceneError, SettingError
+from .errors import SceneError, require
 from .laws import LAWS, NUMBERS
 from .motion import SampledMotion
 from .response import Caution
@@ -39,9 +40,10 @@ SPAN, STEP = 0.2, 5e-4
 LARGEST_SPAN = 9.0  # ten times the motion: a record of 0.1 g then has 1 g
 MOST_STEPS = 2e9  # of all runs, some twenty minutes on two cores
 BISECTIONS = 14  # boundaries are located to 6e-5 of a step
-FINER = 20
-# of `nearby`: the motion is one of many possible ones, and its scale is known to a few per cent at best
-SHARE = 0.05  # of the motion, up and down: the scale of a recorded motion is seldom known better
+_outcome = attrgetter("outcome")
+FINER = 20  # factor between the steps of the two scans of an interleaved margin
+# Limits of `nearby`: the motion is one of many that are possible, and its scale is known to a few per cent at best.
+SHARE = 0.05  # largest change of the motion, up and down
 FOLD = 5.0  # a peak tilt is sensitive if it changes by this factor within SHARE ...
 SEEN = 0.01  # ... and exceeds this share of the slenderness, below which engines are not tested either
 NEARBY_STEPS = 1e8  # of all its runs: a minute on two cores
@@ -49,9 +51,9 @@ NEARBY_STEPS = 1e8  # of all its runs: a minute on two cores
 
 @dataclass(frozen=True)
 class Band:
-    """Relative changes from `low` to `high` of a quantity that reach the same of LIMIT_STATES.
+    """A range of relative changes, from `low` to `high`, that reach the same of LIMIT_STATES.
 
-    holds: the model is valid: N > 0, or a friction is given, with which a block that flies is modelled.
+    holds: whether the model is valid: N > 0, or a friction is given, with which a block that flies is modelled.
     """
 
     low: float
@@ -61,7 +63,7 @@ class Band:
 
     @property
     def outcome(self) -> str:
-        """See `Response.outcome`."""
+        """Return the outcome, as `Response.outcome`."""
         if "overturns" in self.reached:
             return "overturns"
         if "lifts" in self.reached:
@@ -73,8 +75,8 @@ class Band:
 class Margin:
     """Effects of relative changes of one quantity.
 
-    value: that of the scene. bands: from low to high. step: of the scan. ends_down, ends_up: why the range ends at the
-    first and at the last band, where no scene or no run lies beyond; "" where it is the whole span.
+    value: the quantity in the scene. bands: from low to high. step: of the scan. ends_down, ends_up: why no scene or no
+    run lies beyond the first and beyond the last band; "" where the whole span was scanned.
     """
 
     quantity: str
@@ -87,57 +89,57 @@ class Margin:
 
     @property
     def outcome(self) -> str:
-        """The outcome of the unchanged scene."""
+        """Return the outcome of the unchanged scene."""
         return self._own.outcome
 
     @property
     def down(self) -> float | None:
-        """The nearest change below 0 with another outcome, None if there is none in the range scanned."""
+        """Return the nearest change below 0 with another outcome; None if there is none in the range scanned."""
         return self._edges(_outcome)[0]
 
     @property
     def up(self) -> float | None:
-        """The nearest change above 0 with another outcome, None if there is none in the range scanned."""
+        """Return the nearest change above 0 with another outcome; None if there is none in the range scanned."""
         return self._edges(_outcome)[1]
 
     @property
     def nearest(self) -> float | None:
-        """The nearer of `down` and `up`."""
+        """Return the nearer of `down` and `up`."""
         return _nearer(self._edges(_outcome))
 
     def reached(self, state: str) -> bool:
-        """Whether the unchanged scene reaches one of LIMIT_STATES."""
+        """Return whether the unchanged scene reaches one of LIMIT_STATES."""
         return state in self._own.reached
 
     def change(self, state: str) -> float | None:
-        """The smallest change at which one of LIMIT_STATES is reached, or no longer reached; None as in `down`."""
+        """Return the smallest change at which one of LIMIT_STATES is reached or left; None as in `down`."""
         return _nearer(self._edges(lambda band: state in band.reached))
 
     @property
     def leaves_model(self) -> float | None:
-        """The smallest change at which the model is not valid (N <= 0); 0 if it is not valid now."""
+        """Return the smallest change at which the model is not valid (N <= 0); 0 if it is not for the scene itself."""
         return _nearer(self._edges(lambda band: band.holds)) if self._own.holds else 0.0
 
     @property
     def outcomes(self) -> list[tuple[float, float, str]]:
-        """[(low, high, outcome)]: the bands, adjacent ones of the same outcome joined."""
+        """Return [(low, high, outcome)]: the bands, adjacent ones of the same outcome joined."""
         grouped = [(outcome, list(group)) for outcome, group in itertools.groupby(self.bands, _outcome)]
         return [(group[0].low, group[-1].high, outcome) for outcome, group in grouped]
 
     @property
     def interleaved(self) -> bool:
-        """Whether the outcome changes and changes back within two steps, so that it may change closer than `nearest`.
+        """Return whether the outcome changes and changes back within two steps.
 
-        A short band of rocking between standing and overturning does not count.
+        It may then change closer than `nearest`. A short band of rocking between standing and overturning is no change.
         """
-        found = self.outcomes
+        bands = self.outcomes
         return any(
             high - low < 2 * self.step and not (outcome == "rocks" and before != after)
-            for (_, _, before), (low, high, outcome), (_, _, after) in zip(found, found[1:], found[2:], strict=False)
+            for (_, _, before), (low, high, outcome), (_, _, after) in zip(bands, bands[1:], bands[2:], strict=False)
         )
 
     def beyond(self, change: float) -> str:
-        """The outcome on the far side of a boundary."""
+        """Return the outcome on the far side of a boundary."""
         edge = next(b for b in self.bands if b.outcome != self.outcome and change == (b.low if change > 0 else b.high))
         return edge.outcome
 
@@ -146,16 +148,12 @@ class Margin:
         return next(band for band in self.bands if band.low <= 0 <= band.high)
 
     def _edges(self, kind):
-        """The nearest changes below and above 0 at which `kind` of a band differs from that of the scene, or None."""
-        others = [band for band in self.bands if kind(band) != kind(self._own)]
+        """Return the nearest changes below and above 0 at which `kind` of a band changes, or None."""
+        different = [band for band in self.bands if kind(band) != kind(self._own)]
         return (
-            max((band.high for band in others if band.high <= 0), default=None),
-            min((band.low for band in others if band.low >= 0), default=None),
+            max((band.high for band in different if band.high <= 0), default=None),
+            min((band.low for band in different if band.low >= 0), default=None),
         )
-
-
-def _outcome(band):
-    return band.outcome
 
 
 def _nearer(edges):
@@ -181,12 +179,12 @@ def _bearing(name):
 
 
 def _slenderness(scene, factor):
-    """Another slenderness at the same R, mass and J_O: half width and half height change."""
+    """Return the scene with another slenderness at the same R, mass and J_O: half width and half height change."""
     return scene.with_(block={"slenderness": factor * scene.block.slenderness})
 
 
 def _size(scene, factor):
-    """Another R at the same mass and shape."""
+    """Return the scene with another R at the same mass and shape."""
     inertia = scene.block.corner_inertia
     return scene.with_(
         block={
@@ -216,7 +214,7 @@ QUANTITIES = {
     "friction": Quantity(
         "-",
         lambda scene: scene.friction,
-        lambda scene, factor: scene.with_(friction=factor * scene.friction),  # type: ignore[operator]  # asked where there is one
+        lambda scene, factor: scene.with_(friction=factor * scene.friction),  # type: ignore[operator]  # only called where there is one
     ),
     # the batch scales the motion without a copy of its samples
     "motion": Quantity("m/s2", lambda scene: scene.motion and scene.motion.peak, lambda scene, factor: scene),  # type: ignore[arg-type, return-value]  # a motion or None is the number or None
@@ -230,7 +228,7 @@ QUANTITIES = {
     "base mass": Quantity(
         "kg",
         lambda scene: scene.base and scene.base.mass,  # type: ignore[arg-type, return-value]  # a base or None, likewise
-        lambda scene, factor: scene.with_(base={"mass": factor * scene.base.mass}),  # type: ignore[union-attr]  # asked where there is one
+        lambda scene, factor: scene.with_(base={"mass": factor * scene.base.mass}),  # type: ignore[union-attr]  # only called where there is one
     ),
     # not delta_k, which defines the limit force and is negligible beside the stiffnesses
     **{name.replace("_", " "): _bearing(name) for name in ("ka", *KEYS) if name != "delta_k"},
@@ -238,7 +236,7 @@ QUANTITIES = {
 
 
 def limit_states(scene: Scene) -> tuple[str, ...]:
-    """The LIMIT_STATES that a scene can reach: "stroke" needs bearings with an x_max, "slides" a friction."""
+    """Return the LIMIT_STATES that a scene can reach: "stroke" needs bearings with an x_max, "slides" a friction."""
     needs = {
         "stroke": scene.bearings is not None and scene.bearings.x_max is not None,
         "slides": scene.friction is not None,
@@ -256,11 +254,10 @@ def margins(
     workers: int | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> list[Margin]:
-    """The `Margin` of each quantity for relative changes up to `span`; the smallest change of outcome comes first.
+    """Return the `Margin` of each quantity for relative changes up to `span`, the smallest change of outcome first.
 
     Every run continues until its outcome is decided. The range ends where a change gives no valid scene (e above 1, ka
-    below kb) or one that the model refuses or fails on, and the margin says why; and downwards at the last step before
-    -1.
+    below kb), or one that the model refuses or fails on, and the margin says why; downwards it ends above -1.
 
     Parameters
     ----------
@@ -270,26 +267,25 @@ def margins(
         Largest relative change, up to 9, and the distance of the changes scanned.
     only : collection of str
         Some of QUANTITIES; by default all that the scene has.
-    workers : int or None
-        Threads; by default one per core. The result does not depend on it.
-    progress : callable or None
-        Called with the name of each quantity before its scan.
+    workers, progress : int, callable
+        Threads, by default one per core; called with the name of each quantity before its scan.
 
     Raises
     ------
     SettingError
         tilt, span or step is out of range.
     SceneError
-        The scene itself cannot be run, or is too stiff or too long for so many runs; the message names the part.
+        The scene cannot be run, or is too stiff or too long for so many runs; the message names the part.
     """
-    if not 0 < tilt <= 1:
-        raise SettingError(f"tilt = {tilt!r}: give a share of the slenderness, above 0 and up to 1")
-    if not 0 < span <= LARGEST_SPAN:
-        raise SettingError(f"span = {span!r}: give the largest relative change, above 0 and up to {LARGEST_SPAN:g}")
-    if not 1e-6 <= step <= span:
-        raise SettingError(
-            f"step = {step!r}: give the relative distance of two changes, from 1e-6 to the span {span:g}"
-        )
+    require(0 < tilt <= 1, f"tilt = {tilt!r}: give a share of the slenderness, above 0 and up to 1")
+    require(
+        0 < span <= LARGEST_SPAN,
+        f"span = {span!r}: give the largest relative change, above 0 and up to {LARGEST_SPAN:g}",
+    )
+    require(
+        1e-6 <= step <= span,
+        f"step = {step!r}: give the relative distance of two changes, from 1e-6 to the span {span:g}",
+    )
     scene = scene.with_(duration=None)
     count = math.floor(span / step * (1 + 1e-12))
     changes = step * np.arange(-count, count + 1)
@@ -297,18 +293,17 @@ def margins(
     values = {name: value for name, each in QUANTITIES.items() if (value := each.value(scene)) is not None}
     values = {name: value for name, value in values.items() if not only or name in only}
     check_cost(scene, len(values) * len(changes))
-    found = []
+    results = []
     for name, value in values.items():
-        quantity = QUANTITIES[name]
         if progress:
             progress(name)
         bands, ends = _bands(scene, name, changes, tilt, workers)
-        margin = Margin(name, float(value), quantity.unit, bands, step, **ends)
+        margin = Margin(name, float(value), QUANTITIES[name].unit, bands, step, **ends)
         if margin.interleaved:
             bands, ends = _bands(scene, name, _finer(margin, changes), tilt, workers)
             margin = replace(margin, bands=bands, **ends)
-        found.append(margin)
-    return sorted(found, key=lambda margin: math.inf if margin.nearest is None else abs(margin.nearest))
+        results.append(margin)
+    return sorted(results, key=lambda margin: math.inf if margin.nearest is None else abs(margin.nearest))
 
 
 def check_cost(scene: Scene, runs: int, most: float = MOST_STEPS) -> None:
@@ -330,13 +325,13 @@ class Contact:
 
     @classmethod
     def of(cls, scene: Scene, response: Response) -> Self:
-        """Those of a run of the scene."""
+        """Return the reserves in a run of the scene."""
         slides = response.sliding is not None and response.sliding.path > 0
         return cls(response.min_normal_ratio, response.friction_demand, scene.friction, slides)
 
 
 def _finer(margin, changes):
-    """The changes, with steps `FINER` times smaller between the nearest changes of the outcome."""
+    """Return the changes, with steps `FINER` times smaller between the nearest changes of the outcome."""
     low = changes[0] if margin.down is None else margin.down
     high = changes[-1] if margin.up is None else margin.up
     counts = np.arange(math.ceil(FINER * low / margin.step), FINER * high / margin.step)
@@ -344,16 +339,18 @@ def _finer(margin, changes):
 
 
 def _bands(scene, name, changes, tilt, workers):
-    """(tuple of `Band` over the changes, why they end). Boundaries are bisected for each state, as two may lie within
-    one step."""
+    """Return (tuple of `Band` over the changes, why they end).
+
+    Boundaries are bisected for each state, as two may lie within one step.
+    """
     changes, states, ends = _scanned(scene, name, changes, tilt, workers)
     edges, columns = np.nonzero(states[1:] != states[:-1])
     low, high, before = changes[edges], changes[edges + 1], states[edges, columns]
     for _ in range(BISECTIONS if len(edges) else 0):
         middle = 0.5 * (low + high)
         points, where = np.unique(middle, return_inverse=True)
-        found, failed = _states(scene, name, points, None, tilt, workers)
-        same = (found[where, columns] == before) & ~failed[where]
+        middle_states, failed = _states(scene, name, points, None, tilt, workers)
+        same = (middle_states[where, columns] == before) & ~failed[where]
         low, high = np.where(same, middle, low), np.where(same, high, middle)
     boundaries = 0.5 * (low + high)
     bands, state = [], states[0]
@@ -365,7 +362,10 @@ def _bands(scene, name, changes, tilt, workers):
 
 
 def _scanned(scene, name, changes, tilt, workers):
-    """(the changes about 0 up to the first that cannot be run, their states, {"ends_down", "ends_up": why there})."""
+    """Return (the changes about 0 up to the first that cannot be run, their states, why there).
+
+    The last is a dict of "ends_down" and "ends_up".
+    """
     changes, scenes, ends = _scenes(scene, name, changes)
     states, failed = _states(scene, name, changes, scenes, tilt, workers)
     if failed[changes == 0].any():
@@ -381,7 +381,7 @@ def _scanned(scene, name, changes, tilt, workers):
 
 
 def _why(scene):
-    """Why a scene cannot be run."""
+    """Return why a scene cannot be run."""
     try:
         response = simulate(scene, history=False)
     except SceneError as error:
@@ -395,30 +395,32 @@ def _refusal(error):
 
 
 def _scenes(scene, name, changes):
-    """(the changes about 0 that give a valid scene, their scenes, {"ends_down", "ends_up": why none lies beyond})."""
+    """Return (the changes about 0 that give a valid scene, their scenes, why none lies beyond), as `_scanned`."""
     changed = QUANTITIES[name].changed
-    kept, ends = {0.0: scene}, {}
+    valid, ends = {0.0: scene}, {}
     for key, direction in (("ends_up", changes[changes > 0]), ("ends_down", changes[changes < 0][::-1])):
         for change in direction:
             try:
-                kept[change] = changed(scene, 1 + change)
+                valid[change] = changed(scene, 1 + change)
             except SceneError as error:
                 ends[key] = _refusal(error)
                 break
-    ordered = sorted(kept)
-    return np.array(ordered), [kept[change] for change in ordered], ends
+    ordered = sorted(valid)
+    return np.array(ordered), [valid[change] for change in ordered], ends
 
 
 def _states(scene, name, changes, scenes, tilt, workers):
-    """(array (changes, LIMIT_STATES and one more): the states reached, and whether the model is valid; which runs
-    failed)."""
+    """Return (states, which runs failed).
+
+    states : array (changes, LIMIT_STATES and one more): those reached, and whether the model is valid.
+    """
     if scenes is None:
         scenes = [QUANTITIES[name].changed(scene, 1 + change) for change in changes]
     scales = 1 + changes if name == "motion" else None
     outcomes = simulate_many(scenes, scales=scales, contact=True, workers=workers)
     slenderness = np.array([each.block.slenderness for each in scenes])
     farthest = scene.bearings.x_max if "stroke" in limit_states(scene) else math.inf
-    states = np.column_stack(
+    reached = np.column_stack(
         [
             outcomes.slid,
             outcomes.lifted | outcomes.overturns,
@@ -428,11 +430,11 @@ def _states(scene, name, changes, scenes, tilt, workers):
             (outcomes.min_normal_ratio > 0) | (scene.friction is not None),
         ]
     )
-    return states, outcomes.failed
+    return reached, outcomes.failed
 
 
 def nearby(scene: Scene, *, workers: int | None = None) -> tuple[np.ndarray, Outcomes]:
-    """(relative changes of the motion from -SHARE to SHARE, shape (n,); the `Outcomes` at each), 0 in the middle.
+    """Return (relative changes of the motion from -SHARE to SHARE, shape (n,), 0 in the middle; their `Outcomes`).
 
     Raises
     ------
@@ -445,34 +447,34 @@ def nearby(scene: Scene, *, workers: int | None = None) -> tuple[np.ndarray, Out
     return changes, simulate_many([scene] * len(changes), scales=1 + changes, workers=workers)
 
 
-def cliffs(scene: Scene, changes: np.ndarray, found: Outcomes) -> tuple[Caution, ...]:
-    """A warning if a change of the motion below `SHARE` changes the outcome, or the peak tilt by a factor of `FOLD`.
+def cliffs(scene: Scene, changes: np.ndarray, outcomes: Outcomes) -> tuple[Caution, ...]:
+    """Warn if a change of the motion below `SHARE` changes the outcome, or the peak tilt by a factor of `FOLD`.
 
-    changes, found : results of `nearby`. The value of a `Caution` is the smallest such change.
+    changes, outcomes : results of `nearby`. The value of a `Caution` is the smallest such change.
     """
-    own = len(changes) // 2
-    names, ratios = found.names, found.peak_tilt / scene.block.slenderness
-    said = []
-    other = _nearest(changes, names != names[own])
-    if other is not None:
-        there = "the analytic model fails" if names[other] == "failed" else f"it {names[other]}"
+    centre = len(changes) // 2
+    names, ratios = outcomes.names, outcomes.peak_tilt / scene.block.slenderness
+    cautions = []
+    changed = _nearest(changes, names != names[centre])
+    if changed is not None:
+        instead = "the analytic model fails" if names[changed] == "failed" else f"it {names[changed]}"
         text = (
-            f"The outcome is sensitive to changes of the motion below {SHARE:.0%}: the block {names[own]}, but at "
-            f"{changes[other]:+.2%} {there}."
+            f"The outcome is sensitive to changes of the motion below {SHARE:.0%}: the block {names[centre]}, but at "
+            f"{changes[changed]:+.2%} {instead}."
         )
-        said.append(Caution("motion", text, "outcome", float(changes[other]), SHARE))
+        cautions.append(Caution("motion", text, "outcome", float(changes[changed]), SHARE))
     upright = (names != "overturns") & (names != "failed")
-    low, high = np.minimum(ratios, ratios[own]), np.maximum(ratios, ratios[own])
-    apart = _nearest(changes, upright & upright[own] & (high >= np.maximum(FOLD * low, SEEN)))
+    low, high = np.minimum(ratios, ratios[centre]), np.maximum(ratios, ratios[centre])
+    apart = _nearest(changes, upright & upright[centre] & (high >= np.maximum(FOLD * low, SEEN)))
     if apart is not None:
         text = (
-            f"The peak tilt is sensitive to changes of the motion below {SHARE:.0%}: {ratios[own]:.3g} of the "
+            f"The peak tilt is sensitive to changes of the motion below {SHARE:.0%}: {ratios[centre]:.3g} of the "
             f"slenderness, but {ratios[apart]:.3g} at {changes[apart]:+.2%}."
         )
-        said.append(Caution("motion", text, "peak tilt", float(changes[apart]), SHARE))
-    return tuple(said)
+        cautions.append(Caution("motion", text, "peak tilt", float(changes[apart]), SHARE))
+    return tuple(cautions)
 
 
-def _nearest(changes: np.ndarray, wanted: np.ndarray) -> int | None:
-    """Index of the smallest change among those wanted, None if there is none."""
-    return min(np.flatnonzero(wanted).tolist(), key=lambda index: (abs(changes[index]), changes[index]), default=None)
+def _nearest(changes: np.ndarray, selected: np.ndarray) -> int | None:
+    """Return the index of the smallest of the selected changes, None without any. selected : bool, shape of changes."""
+    return min(np.flatnonzero(selected).tolist(), key=lambda index: (abs(changes[index]), changes[index]), default=None)

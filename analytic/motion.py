@@ -2,9 +2,8 @@
 
 A motion is horizontal. Its vertical component `vertical`, if any, is a motion of the same kind.
 
-The pulses, one entry of `PULSES` each: f(u) with u = frequency (t - start), plus a phase where the pulse has one.
-
-A new pulse is one entry, and a function for its Taylor series unless one here gives it.
+A pulse is f(u) with u = frequency (t - start), plus a phase where the pulse has one; each f is an entry of `PULSES`. A
+new pulse is one entry, and a function for its Taylor series unless one here gives it.
 """
 
 from __future__ import annotations
@@ -21,6 +20,9 @@ from .errors import SceneError
 from .kernel.compiled import inner
 from .kernel.polynomial import INVERSE
 
+if TYPE_CHECKING:
+    from .errors import Values
+
 # A Ricker wavelet is unbounded; cut to four periods around its centre it has a jump below 1e-15 of the amplitude.
 RICKER_PERIODS = 4.0
 _CENTRE = RICKER_PERIODS * math.pi
@@ -28,7 +30,7 @@ _CENTRE = RICKER_PERIODS * math.pi
 
 @inner
 def harmonic_series(order: int, a: float, frequency: float, u: float, A: np.ndarray) -> None:
-    """Coefficients of a sin(u + frequency t)."""
+    """Fill the coefficients of a sin(u + frequency t)."""
     A[0], A[1] = a * math.sin(u), a * frequency * math.cos(u)
     for k in range(order - 1):
         A[k + 2] = -frequency * frequency * A[k] * INVERSE[k + 1] * INVERSE[k + 2]
@@ -36,7 +38,7 @@ def harmonic_series(order: int, a: float, frequency: float, u: float, A: np.ndar
 
 @inner
 def ricker_series(order: int, a: float, frequency: float, u: float, A: np.ndarray) -> None:
-    """Coefficients of a (1 - 2 b) exp(-b), b = (u + frequency t)^2/4."""
+    """Fill the coefficients of a (1 - 2 b) exp(-b), b = (u + frequency t)^2/4."""
     b0, b1, b2 = 0.25 * u * u, 0.5 * u * frequency, 0.25 * frequency * frequency
     e2, e1, e0 = 0.0, 0.0, math.exp(-b0)  # coefficients k-2, k-1, k of exp(-b)
     for k in range(order + 1):
@@ -63,7 +65,7 @@ def _ricker(ops: Any, u: Any) -> Any:
 
 
 def _ricker_integral(ops: Any, u: Any, phase: float) -> Any:
-    """With y = u/2 - 2 pi: d(2 y exp(-y^2))/du = (1 - 2 y^2) exp(-y^2)."""
+    """Return the integral, with y = u/2 - 2 pi: d(2 y exp(-y^2))/du = (1 - 2 y^2) exp(-y^2)."""
     y, half = 0.5 * u - 0.5 * _CENTRE, 0.5 * _CENTRE
     return 2 * y * ops.exp(-(y**2)) + 2 * half * ops.exp(-half * half)
 
@@ -123,11 +125,6 @@ PULSES = {
 }
 SERIES = tuple(dict.fromkeys(pulse.series for pulse in PULSES.values() if pulse.series))
 
-
-if TYPE_CHECKING:
-    from .errors import Values
-
-
 MOST_SAMPLES = 10_000_000  # of a component: a day at 100 Hz
 SAME_STEP = 1e-9  # relative difference of two equal steps that are printed with different precision
 
@@ -138,14 +135,14 @@ def _positive(key: str, value: object, unit: str) -> None:
 
 
 def slowest_key(motion: Motion) -> str:
-    """The key of a scene file that determines the length of a motion."""
+    """Return the key of a scene file that determines the length of a motion."""
     if isinstance(motion, SampledMotion):
         return "motion.dt"
     return "motion.start" if motion.start > motion.length else "motion.frequency"
 
 
 def vertical_acceleration(motion: Motion | None, t: Values) -> Values:
-    """Vertical ground acceleration a_v [m/s2], upward, at time(s) t [s]; 0 where the motion, or None, has none."""
+    """Return the vertical ground acceleration a_v [m/s2], upward, at time(s) t [s]; 0 without a vertical motion."""
     return motion.vertical.acceleration(t) if motion is not None and motion.vertical is not None else 0.0 * t
 
 
@@ -211,43 +208,43 @@ class SampledMotion:
 
     @property
     def end(self) -> float:
-        """Time of the last sample [s]."""
+        """Return the time of the last sample [s]."""
         return (len(self.samples) - 1) * self.dt
 
     @property
     def peak(self) -> float:
-        """Peak ground acceleration [m/s2] (absolute)."""
+        """Return the peak ground acceleration [m/s2] (absolute)."""
         return float(np.abs(self.samples).max())
 
     @property
     def peak_time(self) -> float:
-        """Time of the peak [s]."""
+        """Return the time of the peak [s]."""
         return float(np.abs(self.samples).argmax() * self.dt)
 
     @property
     def jumps(self) -> tuple[float, ...]:
-        """Times above 0 at which the acceleration jumps [s]."""
+        """Return the times above 0 at which the acceleration jumps [s]."""
         return (self.end,) if self.samples[-1] or self.vertical and self.vertical.samples[-1] else ()
 
     def acceleration(self, t: Values) -> Values:
-        """Acceleration [m/s2] at time(s) t [s]; zero before 0 and after the last sample."""
+        """Return the acceleration [m/s2] at time(s) t [s]; zero before 0 and after the last sample."""
         times = np.arange(len(self.samples)) * self.dt
         return np.interp(t, times, self.samples, left=0.0, right=0.0)
 
     def scaled(self, factor: float) -> SampledMotion:
-        """The same motion times `factor`, the vertical one too."""
+        """Return the same motion times `factor`, the vertical one too."""
         up = self.vertical and self.vertical.scaled(factor)
         return SampledMotion(self.dt, self.samples * factor, self.label, self.warnings, up)
 
     def digest(self) -> str:
-        """Content of the motion as a hash: equal motions have equal digests."""
+        """Return the content of the motion as a hash: equal motions have equal digests."""
         content = np.float64(self.dt).tobytes() + self.samples.tobytes()
         return hashlib.sha256(content + (self.vertical.digest().encode() if self.vertical else b"")).hexdigest()
 
 
 @dataclass(frozen=True)
 class PulseMotion:
-    """A pulse given by a formula; with u = frequency (t - start):
+    """A pulse given by a formula in u = frequency (t - start).
 
     one-sine: a sin u, 0 <= u <= 2 pi; one-cosine: a cos u, 0 <= u <= 2 pi; half-sine: a sin u, 0 <= u <= pi;
     rectangular: a, 0 <= u <= pi; ricker: a (1 - 2 b) exp(-b), b = (u - 4 pi)^2/4, 0 <= u <= 8 pi.
@@ -307,50 +304,50 @@ class PulseMotion:
 
     @property
     def form(self) -> Pulse:
-        """The entry of `PULSES`."""
+        """Return the entry of `PULSES`."""
         return PULSES[self.shape]
 
     @property
     def length(self) -> float:
-        """Duration of the pulse [s]."""
+        """Return the duration of the pulse [s]."""
         return self.form.length / self.frequency
 
     @property
     def end(self) -> float:
-        """Time at which the pulse is over [s]."""
+        """Return the time at which the pulse is over [s]."""
         return self.start + self.length
 
     @property
     def peak(self) -> float:
-        """Peak ground acceleration [m/s2] (absolute)."""
+        """Return the peak ground acceleration [m/s2] (absolute)."""
         return abs(self.amplitude)
 
     @property
     def peak_time(self) -> float:
-        """First time of the peak [s]."""
+        """Return the first time of the peak [s]."""
         return self.start + self.form.first_peak(self.phase) / self.frequency
 
     @property
     def jumps(self) -> tuple[float, ...]:
-        """Times above 0 at which the acceleration jumps [s]."""
+        """Return the times above 0 at which the acceleration jumps [s]."""
         if self.form.jumps or self.phase or self.vertical and self.vertical.phase:
             return tuple(t for t in (self.start, self.end) if t > 0)
         return ()
 
     def acceleration(self, t: Values) -> Values:
-        """Acceleration [m/s2] at time(s) t [s]; zero outside the pulse."""
+        """Return the acceleration [m/s2] at time(s) t [s]; zero outside the pulse."""
         t = np.asarray(t, dtype=float)  # type: ignore[assignment]  # a number as well, see the return
         u = self.frequency * (t - self.start)
         inside = (t >= self.start) & (t <= self.end)
         return np.where(inside, self.amplitude * self.form.value(np, u + self.phase), 0.0)[()]  # type: ignore[return-value]  # [()]: a number for a number
 
     def scaled(self, factor: float) -> PulseMotion:
-        """The same pulse times `factor`, the vertical one too."""
+        """Return the same pulse times `factor`, the vertical one too."""
         up = self.vertical and self.vertical.scaled(factor)
         return replace(self, amplitude=self.amplitude * factor, vertical=up)
 
     def digest(self) -> str:
-        """Content of the motion as a hash: equal motions have equal digests."""
+        """Return the content of the motion as a hash: equal motions have equal digests."""
         content: tuple[str, ...] = (self.shape, self.amplitude.hex(), self.frequency.hex(), self.start.hex())
         if self.phase or self.vertical:  # otherwise keeps the digests in stored results
             content += (self.phase.hex(), self.vertical.digest() if self.vertical else "")
@@ -361,7 +358,7 @@ Motion = SampledMotion | PulseMotion
 
 
 def paired(level: SampledMotion, upright: SampledMotion) -> SampledMotion:
-    """The motion `level` with `upright` as its vertical component; the time of both starts at their first sample.
+    """Return the motion `level` with `upright` as its vertical component; both start at their first sample.
 
     The coarser one is resampled linearly to the step of the other, and the shorter one is padded with zeros. Warnings
     say so, after those of `upright`.
@@ -371,7 +368,7 @@ def paired(level: SampledMotion, upright: SampledMotion) -> SampledMotion:
     SceneError
         The two together would hold more than `MOST_SAMPLES`.
     """
-    said: list[str] = []
+    notes: list[str] = []
     step = min(level.dt, upright.dt)
     samples = max(level.end, upright.end) / step
     if samples > MOST_SAMPLES:
@@ -381,28 +378,28 @@ def paired(level: SampledMotion, upright: SampledMotion) -> SampledMotion:
             f"beside {level.end:.4g} s at {level.dt:.4g} s they are {samples:.3g} samples together",
             f"resample the finer one, to at most {MOST_SAMPLES:.0e} in the longer one's time",
         )
-    first, second = (_resampled(motion, step, said) for motion in (level, upright))
+    first, second = (_resampled(motion, step, notes) for motion in (level, upright))
     count = max(len(first), len(second))
     first, second = (
-        _padded(samples, count, step, motion.label, said) for samples, motion in ((first, level), (second, upright))
+        _padded(samples, count, step, motion.label, notes) for samples, motion in ((first, level), (second, upright))
     )
-    warnings = tuple(dict.fromkeys((*level.warnings, *upright.warnings, *said)))
+    warnings = tuple(dict.fromkeys((*level.warnings, *upright.warnings, *notes)))
     vertical = replace(upright, dt=step, samples=second, warnings=())
     return SampledMotion(step, first, f"{level.label}, vertical {upright.label}", warnings, vertical)
 
 
-def _resampled(motion: SampledMotion, step: float, said: list[str]) -> np.ndarray:
-    """Samples at the step [s]; the last one at the motion's end, or the first after it."""
+def _resampled(motion: SampledMotion, step: float, notes: list[str]) -> np.ndarray:
+    """Return the samples at the step [s]; the last one at the motion's end, or the first after it."""
     if math.isclose(motion.dt, step, rel_tol=SAME_STEP):
         return motion.samples
-    said.append(f"{motion.label}: resampled from {motion.dt:.6g} s to the {step:.6g} s of the other component")
+    notes.append(f"{motion.label}: resampled from {motion.dt:.6g} s to the {step:.6g} s of the other component")
     times = step * np.arange(math.ceil(motion.end / step * (1 - SAME_STEP)) + 1)
     last = times[-1] <= motion.end * (1 + SAME_STEP)
     return motion.acceleration(np.append(times[:-1], motion.end) if last else times)
 
 
-def _padded(samples: np.ndarray, count: int, step: float, label: str, said: list[str]) -> np.ndarray:
+def _padded(samples: np.ndarray, count: int, step: float, label: str, notes: list[str]) -> np.ndarray:
     missing = count - len(samples)
     if missing:
-        said.append(f"{label}: {missing * step:.6g} s of zeros put at its end, as the other component is longer")
+        notes.append(f"{label}: {missing * step:.6g} s of zeros put at its end, as the other component is longer")
     return np.append(samples, np.zeros(missing))

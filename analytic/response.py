@@ -111,7 +111,7 @@ class History:
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """The columns that it has: `COLUMNS`, and the slip where the block slides."""
+        """Return the names of its columns: `COLUMNS`, and the slip where the block slides."""
         return self.COLUMNS if self.slip is None else (*self.COLUMNS, "slip")
 
     def to_csv(self, path: str | PathLike[str] | TextIO) -> None:
@@ -138,14 +138,14 @@ class Energy:
 
     @property
     def imbalance(self) -> float:
-        """input - (changes + losses) [J]; zero for an exact solution."""
+        """Return input - (changes + losses) [J]; zero for an exact solution."""
         losses = self.hysteretic + self.viscous + self.impact_loss + self.friction
         return self.input - (self.kinetic + self.potential + losses)
 
 
 @dataclass(frozen=True)
 class Sliding:
-    """Slip of the block's corner along its support: largest and last [m], whole way [m], friction work [J], modes.
+    """Slip of the block's corner along its support: largest and last [m], path length [m], friction work [J], modes.
 
     modes: (time [s], mode) of each change: "stick", "slide" (both corners), "rock", "slide-rock", "flight". The slip is
     positive toward +x, and goes on in the last fall.
@@ -182,7 +182,7 @@ class Caution:
 
 
 def about_record(motion: Any) -> tuple[Caution, ...]:
-    """Warnings on an unusual record of a motion; none for pulses or None."""
+    """Return the warnings on an unusual record of a motion; none for pulses or None."""
     return tuple(Caution("record", text) for text in getattr(motion, "warnings", ()))
 
 
@@ -239,7 +239,7 @@ class Response:
     peak_tilt: float  # rad
     peak_tilt_ratio: float  # peak tilt / slenderness
     # if the block overturns, base peaks and contact forces are taken up to the last passage of the slenderness; after
-    # it the model's block falls about its corner, where a real one would slide and jump
+    # it the model's block falls about its corner, where a real block would slide and jump
     peak_base_displacement: float  # m
     peak_base_acceleration: float  # m/s2, absolute
     impacts: tuple[Impact, ...]
@@ -260,7 +260,7 @@ class Response:
     comparable: str = UNCOMPARED  # whether it was compared with the model; see `COMPARED`
     failure: Failure | None = None
     energy: Energy | None = None
-    sliding: Sliding | None = None  # of a block that slides, or may: the scene gives a friction that is used up
+    sliding: Sliding | None = None  # of a block that slides, or may: the scene gives a friction that is exhausted
     history: History | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
@@ -271,7 +271,7 @@ class Response:
 
     @property
     def outcome_text(self) -> str:
-        """The outcome as shown: the outcome, or "undecided (rocks so far)"."""
+        """Return the outcome as shown: the outcome, or "undecided (rocks so far)"."""
         return self.outcome if self.decided or self.outcome == "failed" else f"undecided ({self.outcome} so far)"
 
     @property
@@ -279,7 +279,7 @@ class Response:
         return len(self.impacts)
 
     def to_json(self) -> dict[str, Any]:
-        """The response without its history as a JSON-ready dict; non-finite numbers become None."""
+        """Return the response without its history as a JSON-ready dict; non-finite numbers become None."""
         values = {}
         for part in dataclasses.fields(self):
             if part.name == "history":
@@ -288,21 +288,21 @@ class Response:
             if dataclasses.is_dataclass(value):
                 value = dataclasses.asdict(value)  # type: ignore[arg-type]  # no class is a field's value
             elif isinstance(value, tuple):
-                value = [dataclasses.asdict(one) if dataclasses.is_dataclass(one) else one for one in value]  # type: ignore[arg-type]  # as above
+                value = [dataclasses.asdict(entry) if dataclasses.is_dataclass(entry) else entry for entry in value]  # type: ignore[arg-type]  # as above
             values[part.name] = value
         values["impact_count"] = len(self.impacts)
         return _finite(values)
 
     @classmethod
     def unmeasured(cls, **known: Any) -> Self:
-        """A response with the `known` fields only: other numbers are NaN, and there are no events."""
+        """Return a response with the `known` fields only: other numbers are NaN, and there are no events."""
         numbers = {part.name: math.nan for part in dataclasses.fields(cls) if part.type is float}
         nothing = dict(overturning_time=None, unstable_time=None, impacts=(), uplifts=(), rests=(), steps=0)
         return cls(**{**numbers, **nothing, "end": State(*[math.nan] * 6), **known})
 
     @classmethod
     def from_json(cls, values: Mapping[str, Any], history: History | None = None) -> Self:
-        """The response from the values of `to_json`; numbers that were not finite are NaN.
+        """Return the response from the values of `to_json`; numbers that were not finite are NaN.
 
         values may lack cpu_seconds. history: the `History` of the response.
         """
@@ -313,7 +313,7 @@ class Response:
         numbers = {part.name: _number(values.get(part.name)) for part in dataclasses.fields(cls) if part.type is float}
         series = {name: tuple(values[name]) for name in ("uplifts", "rests")}
         series |= {
-            name: tuple(kind(**one) for one in values.get(name, ()))
+            name: tuple(kind(**entry) for entry in values.get(name, ()))
             for name, kind in (("warnings", Caution), ("differences", Difference))
         }
         return cls(
@@ -353,40 +353,40 @@ def _finite(value: Any) -> Any:
 
 
 def scene_warnings(scene: "Scene") -> tuple[Caution, ...]:
-    """Warnings that precede any outcome of a scene: a base without bearings or friction, a start beyond balance."""
-    found, tilt, gamma = [], scene.start.tilt, scene.block.slenderness
+    """Return the warnings that precede any outcome of a scene: a base that nothing holds, a start beyond balance."""
+    warnings, tilt, gamma = [], scene.start.tilt, scene.block.slenderness
     if scene.base is not None and scene.bearings is None:
-        words = (
+        text = (
             "No friction is modelled under the base, and it has no bearings: such a base exists in thought experiments "
             "only. Leave it out if the pedestal is fixed to the ground."
         )
-        found.append(Caution("model", words))
+        warnings.append(Caution("model", text))
     if abs(tilt) >= gamma:
         words = (
             f"The block starts at a tilt of {tilt:.4g} rad, past its balance at {gamma:.4g} rad: it falls unless "
             "something brings it back."
         )
-        found.append(Caution("limit", words, "start.tilt", tilt, gamma))
-    return tuple(found)
+        warnings.append(Caution("limit", words, "start.tilt", tilt, gamma))
+    return tuple(warnings)
 
 
 def limit_warnings(scene: "Scene", peak_base_displacement: float, peak_slip: float = 0.0) -> tuple[Caution, ...]:
-    """Warnings if the peak base displacement [m] exceeds the bearings' x_max, or the peak slip [m] the half width.
+    """Warn if the peak base displacement [m] exceeds the bearings' x_max, or the peak slip [m] the half width.
 
-    peak_slip : 0 of a block that overturns, whose slip goes on in its fall.
+    peak_slip : 0 for a block that overturns, whose slip goes on in its fall.
     """
-    found = []
+    warnings = []
     limit = None if scene.bearings is None else scene.bearings.x_max
     if limit is not None and peak_base_displacement > limit:
         words = (
             f"the base moves by {peak_base_displacement:.3g} m, beyond the x_max = {limit:.3g} m of its bearings: they "
             "may tear or hit a stop, and the outcome is outside the model"
         )
-        found.append(Caution("limit", words, "peak_base_displacement", peak_base_displacement, limit))
+        warnings.append(Caution("limit", words, "peak_base_displacement", peak_base_displacement, limit))
     if peak_slip > scene.block.half_width:
         words = (
             f"the block slips by {peak_slip:.3g} m, beyond its half width of {scene.block.half_width:.3g} m: the "
             "model's support has no edge, and from one as wide as the block it would fall"
         )
-        found.append(Caution("limit", words, "peak_slip", peak_slip, scene.block.half_width))
-    return tuple(found)
+        warnings.append(Caution("limit", words, "peak_slip", peak_slip, scene.block.half_width))
+    return tuple(warnings)

@@ -1,11 +1,11 @@
-"""Uplift, rocking and impact of a rigid block: eqs (1)-(8) of the Caryatid paper, corrected where misprinted.
+"""The equations of the model: rocking of a block, force of its bearings, and design of bearings.
 
-The tilt phi is positive toward +x; s = sgn(phi) is the side of the pivot; x is the base displacement relative to the
-ground. Under a vertical ground acceleration a_v, upward, g is replaced by g + a_v: bearings are vertically rigid.
+Uplift, rocking and impact follow eqs (1)-(8) of the Caryatid paper, corrected where misprinted. The tilt phi is
+positive toward +x; s = sgn(phi) is the side of the pivot; x is the base displacement relative to the ground. Under a
+vertical ground acceleration a_v, upward, g is replaced by g + a_v: bearings are vertically rigid.
 
-The force of one bearing: elastic kb x, hysteretic z with |z| <= f0 by one of `laws`, and viscous.
-
-Design of bearings: ka, kb and alpha, Table 1(b), from target period, damping and displacement, Table 1(a).
+The force of one bearing has an elastic part kb x, a hysteretic part z with |z| <= f0 by one of `laws`, and a viscous
+part. Bearings are designed from target period, damping and displacement, Table 1(a): ka, kb and alpha, Table 1(b).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
-from .errors import SettingError
+from .errors import SettingError, require
 from .kernel.compiled import entry, inner
 from .laws import LAWS, NUMBERS, Constants, law_function
 from .scene import LEAST, MOST, Bearings
@@ -26,14 +26,14 @@ from .scene import LEAST, MOST, Bearings
 if TYPE_CHECKING:
     from .errors import Values
     from .laws.law import Law
-    from .scene import Bearings
+    from .scene import Scene
 
 _after_travel = law_function("after_travel")
 
 
 @inner
 def hysteretic_force(z: float, dx: float, law: float, c: Constants) -> float:
-    """Hysteretic force [N] after monotonic travel dx [m] from a point with hysteretic force z [N]."""
+    """Return the hysteretic force [N] after monotonic travel dx [m] from a point with hysteretic force z [N]."""
     if dx == 0:
         return z
     return _after_travel(law, z, dx, c)
@@ -81,7 +81,7 @@ class BearingLaw:
     @classmethod
     @functools.lru_cache(maxsize=64)  # needed some forty times in a run of an engine
     def of(cls, bearings: Bearings | None) -> Self:
-        """The law of a `Bearings` part; None gives no force."""
+        """Return the law of a `Bearings` part; None gives no force."""
         if bearings is None:
             return cls(NUMBERS["linear"], 0, 0.0, 0.0, Constants(dk=0.0, f0=0.0))
         number = NUMBERS[bearings.law]
@@ -90,7 +90,7 @@ class BearingLaw:
 
     @property
     def unit(self) -> Law:
-        """The `Law` itself."""
+        """Return the `Law` itself."""
         return LAWS[self.law]
 
     @property
@@ -104,31 +104,26 @@ class BearingLaw:
         return self.constants.f0
 
     def hysteretic(self, z: float, dx: float) -> float:
-        """z of one bearing [N] after monotonic travel dx [m] from z."""
+        """Return z of one bearing [N] after monotonic travel dx [m] from z."""
         return _hysteretic(z, dx, self.law, *self.constants)
 
     def path(self, x: np.ndarray) -> np.ndarray:
-        """z [N] along displacements x [m], shape (n,), monotonic in between; x[0] is reached by `start`."""
+        """Return z [N] along displacements x [m], shape (n,), monotonic in between; x[0] is reached by `start`."""
         forces = np.empty(len(x))
         _path(self.start(float(x[0])), x, self.law, self.constants, forces)
         return forces
 
     def start(self, displacement: float) -> float:
-        """z of one bearing [N] after monotonic loading of the virgin bearing to `displacement` [m]."""
+        """Return z of one bearing [N] after monotonic loading of the virgin bearing to `displacement` [m]."""
         return self.hysteretic(0.0, displacement)
 
     def force(self, x: Values, z: Values, v: Values | float = 0.0) -> Values:
-        """Force of all bearings together [N], positive against positive x: eqs (9), (11), plus the viscous part."""
+        """Return the force of all bearings together [N], positive against positive x: eqs (9), (11), and viscous."""
         return self.count * (self.kb * x + z + self.damping * v)
 
     def work(self, z: float, dx: float) -> float:
-        """Integral of the hysteretic force of one bearing over monotonic travel dx [m] from z [J], exact."""
+        """Return the integral of the hysteretic force of one bearing over monotonic travel dx [m] from z [J], exact."""
         return 0.0 if dx == 0 else self.unit.work(z, dx, self.constants)
-
-
-if TYPE_CHECKING:
-    from .errors import Values
-    from .scene import Scene
 
 
 @dataclass(frozen=True)
@@ -161,6 +156,7 @@ class RockingModel:
 
     @classmethod
     def of(cls, scene: Scene) -> Self:
+        """Return the equations of a scene."""
         block = scene.block
         return cls(
             block.mass,
@@ -176,21 +172,21 @@ class RockingModel:
         )
 
     def lever(self, s: Values | float, tilt: Values) -> tuple[Values, Values]:
-        """(c, n) [m]: height of the centre of mass above the corner, and its signed horizontal lever."""
+        """Return (c, n) [m]: height of the centre of mass above the corner, and its signed horizontal lever."""
         angle = s * self.gamma - tilt
         return self.R * math.cos(angle), self.R * math.sin(angle)  # type: ignore[return-value]  # `engines.swings.ArrayModel` has it for arrays
 
     def contact_acceleration(self, bearing_force: Values) -> Values:
-        """x'' + a_g [m/s2] of the base in full contact, eq. (2)."""
+        """Return x'' + a_g [m/s2] of the base in full contact, eq. (2)."""
         return -bearing_force / self.M
 
     @property
     def uplift_acceleration(self) -> float:
-        """|absolute base acceleration| above which the block lifts: g tan(gamma) [m/s2]."""
+        """Return the |absolute base acceleration| above which the block lifts: g tan(gamma) [m/s2]."""
         return self.uplift_limit(0.0)
 
     def uplift_limit(self, vertical: Values) -> Values:
-        """The uplift acceleration [m/s2] under a vertical ground acceleration [m/s2]."""
+        """Return the uplift acceleration [m/s2] under a vertical ground acceleration [m/s2]."""
         return (self.g + vertical) * math.tan(self.gamma)
 
     def accelerations(
@@ -202,7 +198,7 @@ class RockingModel:
         bearing_force: Values,
         vertical: Values | float = 0.0,
     ) -> tuple[Values, Values]:
-        """(phi'', x'') [rad/s2, m/s2] while rocking about the corner of side s, eqs (3)-(6).
+        """Return (phi'', x'') [rad/s2, m/s2] while rocking about the corner of side s, eqs (3)-(6).
 
         ground, vertical : ground accelerations a_g and a_v [m/s2]. On rigid ground x'' is 0 and the bearing force is
         not used.
@@ -219,14 +215,14 @@ class RockingModel:
 
     @property
     def jump_arm(self) -> float:
-        """Velocity that the base gains at an impact per tilt rate lost [m]: mt R cos(gamma), eq. (8).
+        """Return the velocity that the base gains at an impact per tilt rate lost [m]: mt R cos(gamma), eq. (8).
 
         (8) is printed with a factor R cos(gamma) too many; this form conserves horizontal momentum.
         """
         return self.mass_share * self.R * math.cos(self.gamma)
 
     def impact(self, rate: Values) -> tuple[Values, Values]:
-        """(phi'+, jump of x') of an impact at tilt rate phi'-, eqs (7) and (8)."""
+        """Return (phi'+, jump of x') of an impact at tilt rate phi'-, eqs (7) and (8)."""
         after = self.restitution * rate  # (7)
         return after, self.jump_arm * (rate - after)
 
@@ -239,31 +235,31 @@ class RockingModel:
         base_acceleration: Values,
         vertical: Values | float = 0.0,
     ) -> tuple[Values, Values]:
-        """(H, N) [N]: horizontal and normal force of the base on the block, base_acceleration absolute."""
+        """Return (H, N) [N]: horizontal and normal force of the base on the block; base_acceleration is absolute."""
         c, n = self.lever(s, tilt)
         horizontal = self.m * (base_acceleration + c * tilt_acceleration + n * rate * rate)
         normal = self.m * (self.g + vertical + n * tilt_acceleration - c * rate * rate)
         return horizontal, normal
 
     def kinetic_energy(self, s: float, tilt: float, rate: float, v: float) -> float:
-        """[J], in the ground's frame; s = 0 for full contact."""
+        """Return the kinetic energy [J], in the ground's frame; s = 0 for full contact."""
         c = self.lever(s, tilt)[0] if s else 0.0
         return 0.5 * self.M * v * v + self.m * c * rate * v + 0.5 * self.J * rate * rate
 
     def potential_energy(self, s: float, tilt: float, x: float) -> float:
-        """Of gravity and of the springs kb [J], 0 at rest."""
+        """Return the energy of gravity and of the springs kb [J], 0 at rest."""
         height = self.lever(s, tilt)[0] - self.R * math.cos(self.gamma) if s else 0.0
         return self.m * self.g * height + 0.5 * self.bearing.count * self.bearing.kb * x**2
 
 
 def restitution(scene: Scene) -> float:
-    """e_phi of a scene: the given one, else that of eq. (7), at least 0."""
+    """Return e_phi of a scene: the given one, else that of eq. (7), at least 0."""
     given = scene.block.restitution
     return max(momentum_restitution(scene), 0.0) if given is None else given
 
 
 def momentum_restitution(scene: Scene) -> float:
-    """e_phi of eq. (7) from conservation of momentum, 1 - 2 m b^2/(J_O - m mt h^2), even if the scene gives another.
+    """Return e_phi of eq. (7), 1 - 2 m b^2/(J_O - m mt h^2), from momentum, even if the scene gives another.
 
     It may be negative (stocky block, light base).
     """
@@ -273,7 +269,7 @@ def momentum_restitution(scene: Scene) -> float:
 
 
 def base_jump_length(scene: Scene) -> float:
-    """e_x of eq. (8), corrected [m]: x'+ = x'- - e_x phi'-."""
+    """Return e_x of eq. (8), corrected [m]: x'+ = x'- - e_x phi'-."""
     block, mt = scene.block, scene.mass_share
     R, gamma, m = block.radius, block.slenderness, block.mass
     return (
@@ -288,7 +284,10 @@ def base_jump_length(scene: Scene) -> float:
 
 
 def base_jump_length_as_printed(scene: Scene) -> float:
-    """e_x of eq. (8) as printed, with a factor R cos(gamma) too many: a length squared. Kept to show the misprint."""
+    """Return e_x of eq. (8) as printed, with a factor R cos(gamma) too many: a length squared.
+
+    It is kept to show the misprint.
+    """
     block, mt = scene.block, scene.mass_share
     R, gamma, m = block.radius, block.slenderness, block.mass
     return (
@@ -334,7 +333,7 @@ class BearingProperties:
 
 
 def steady_cycle(law: BearingLaw, amplitude: float) -> tuple[float, float]:
-    """(loss [J], force [N] at +amplitude) of one bearing in the steady cycle between +-amplitude [m].
+    """Return (loss [J], force [N] at +amplitude) of one bearing in the steady cycle between +-amplitude [m].
 
     The loss is the integral of the hysteretic force along both branches, exact.
     """
@@ -346,7 +345,7 @@ def steady_cycle(law: BearingLaw, amplitude: float) -> tuple[float, float]:
 
 
 def properties(bearings: Bearings, mass: float, x_max: float) -> BearingProperties:
-    """`BearingProperties` of bearings under `mass` (block and base) [kg] at x_max [m]."""
+    """Return the `BearingProperties` of bearings under `mass` (block and base) [kg] at x_max [m]."""
     law = BearingLaw.of(bearings)
     loss, force = steady_cycle(law, x_max)
     secant = force / x_max
@@ -364,13 +363,13 @@ def properties(bearings: Bearings, mass: float, x_max: float) -> BearingProperti
 
 
 def _mismatch(alpha: float, loss: float, secant: float, x_max: float, ratio: float) -> tuple[float, float]:
-    """ka - kb from f0 and alpha minus ka - kb from kb and the ratio; f0 from the loss on the limit curves."""
+    """Return (ka - kb from f0 and alpha minus ka - kb from kb and the ratio, f0 from the loss on the limit curves)."""
     f0 = loss / (4 * (x_max - 1 / (alpha - 2)))
     return 2 * f0 * (alpha - 1) - (ratio - 1) * (secant - f0 / x_max), f0
 
 
 def _feasible(damping: float, divisor: float, secant: float, x_max: float, ratio: float) -> tuple[float, float]:
-    """(alpha of least mismatch, the mismatch there); a design exists where it is below 0."""
+    """Return (alpha of least mismatch, the mismatch there); a design exists where it is below 0."""
     loss = damping * divisor * 0.5 * secant * x_max**2
     low = math.log(1 / x_max * (1 + 1e-9))
 
@@ -392,22 +391,16 @@ def design_bearings(
     definition: str = "equivalent",
     delta_k: float = 1e-20,
 ) -> Bearings:
-    """Bearings with a given secant period and damping at x_max.
+    """Return bearings with a given secant period and damping at x_max.
 
     Parameters
     ----------
-    mass : float
-        Block and base together [kg].
-    period : float
-        Secant period at x_max [s].
-    damping : float
-        Equivalent damping at x_max, over critical damping; see `definition`.
-    x_max : float
-        Design displacement [m].
-    count : int
-        Number of bearings.
-    stiffness_ratio : float
-        ka/kb. The paper does not print it; its Table 1(b) has 10.
+    mass, x_max : float
+        Mass of block and base together [kg]; design displacement [m].
+    period, damping : float
+        Secant period [s] and equivalent damping, over critical damping, at x_max; see `definition`.
+    count, stiffness_ratio : int, float
+        Number of bearings; ka/kb. The paper does not print this ratio; its Table 1(b) has 10.
     definition : str
         "equivalent" for the usual W_D/(4 pi E_s), "paper" for the Caryatid paper's W_D/(2 pi E_s), twice as much.
 
@@ -432,9 +425,9 @@ def design_bearings(
     except (ArithmeticError, ValueError) as error:  # scipy's, where numbers overflow
         if isinstance(error, SettingError):
             raise
-        asked = ", ".join(f"{name} = {value:.4g}" for name, value in targets.items() if name != "delta_k")
+        targets_text = ", ".join(f"{name} = {value:.4g}" for name, value in targets.items() if name != "delta_k")
         ratio = f"stiffness_ratio = {stiffness_ratio:.4g}"
-        raise SettingError(f"{asked}, {ratio}: no bearings give that; change one of them") from None
+        raise SettingError(f"{targets_text}, {ratio}: no bearings give that; change one of them") from None
     kb = secant - f0 / x_max
     bearings = Bearings(count=count, ka=stiffness_ratio * kb, kb=kb, alpha=alpha, delta_k=delta_k, x_max=x_max)
     got = properties(bearings, mass, x_max)
@@ -451,20 +444,22 @@ def design_bearings(
 def _check(targets, count, stiffness_ratio, definition):
     """Refuse what is out of range."""
     for name, number in targets.items():
-        if not (math.isfinite(number) and number > 0):
-            raise SettingError(f"{name} = {number!r}: give a finite number above 0")
-        if name != "delta_k" and not LEAST <= number <= MOST:  # so that products do not overflow
-            raise SettingError(f"{name} = {number!r}: give a number from {LEAST:g} to {MOST:g}")
-    if not 1 < stiffness_ratio <= MOST:
-        raise SettingError(f"stiffness_ratio = {stiffness_ratio!r}: ka/kb must be above 1, and at most {MOST:g}")
-    if count < 1:
-        raise SettingError(f"count = {count!r}: give at least one bearing")
-    if definition not in DEFINITIONS:
-        raise SettingError(f"definition = {definition!r}: choose one of {', '.join(DEFINITIONS)}")
+        require(math.isfinite(number) and number > 0, f"{name} = {number!r}: give a finite number above 0")
+        fits = name == "delta_k" or LEAST <= number <= MOST  # so that products do not overflow
+        require(fits, f"{name} = {number!r}: give a number from {LEAST:g} to {MOST:g}")
+    require(
+        1 < stiffness_ratio <= MOST,
+        f"stiffness_ratio = {stiffness_ratio!r}: ka/kb must be above 1, and at most {MOST:g}",
+    )
+    require(count >= 1, f"count = {count!r}: give at least one bearing")
+    require(definition in DEFINITIONS, f"definition = {definition!r}: choose one of {', '.join(DEFINITIONS)}")
 
 
 def _exponent(damping, definition, divisor, secant, x_max, ratio):
-    """(alpha, f0 [N]) that give the damping at x_max with the stiffness ratio; `SettingError` states the limit."""
+    """Return (alpha, f0 [N]) that give the damping at x_max with the stiffness ratio.
+
+    `SettingError` states the limit where there are none.
+    """
     turn, least = _feasible(damping, divisor, secant, x_max, ratio)
     if least >= 0:
         # damping -> 0 is always possible: with f0 -> 0 only the ratio term remains

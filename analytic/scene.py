@@ -1,10 +1,9 @@
 """What is simulated: a rigid block, its base, the bearings, the ground motion. Frozen, SI units.
 
-Base class of the parts of a scene: frozen, checked by pydantic; all mistakes are reported in one `SceneError`.
-
-The Caryatid, its base and its bearings (text and Table 1 of the paper), used in most studies.
-
-Problems A and B: two scenes with reference solutions, for timing and comparing solvers.
+`Part` is the base class of the parts of a scene. pydantic checks them, and all mistakes are reported in one
+`SceneError`. Two sets of shipped parts stand here, too: the Caryatid, its base and its bearings (text and Table 1 of
+the paper), used in most studies; and problems A and B, two scenes with reference solutions, for timing and comparing
+solvers.
 """
 
 from __future__ import annotations
@@ -92,17 +91,20 @@ class Part(BaseModel):
 
 
 def scene_error(error: ValidationError, part: type[Part]) -> SceneError:
-    """All mistakes that pydantic found in a `part`, one per key; unknown keys first, as they explain missing ones."""
-    found: dict[str, SceneError] = {}
+    """Return all mistakes that pydantic found in a `part` as one error, one per key.
+
+    Unknown keys come first, as they explain missing ones.
+    """
+    by_key: dict[str, SceneError] = {}
     for problem in sorted(error.errors(), key=lambda problem: problem["type"] != "extra_forbidden"):
         mistake = _mistake(problem, part)
-        found.setdefault(mistake.key, mistake)
-    first, *others = found.values()
-    return first.with_others(*others)
+        by_key.setdefault(mistake.key, mistake)
+    first, *further = by_key.values()
+    return first.with_others(*further)
 
 
 def _mistake(problem: ErrorDetails, part: type[Part]) -> SceneError:
-    """The error for one of the problems that pydantic found."""
+    """Return the error for one of the problems that pydantic found."""
     kind, value, context = problem["type"], problem["input"], problem.get("ctx", {})
     loc = [str(name) for name in problem["loc"]]
     if kind.startswith("dataclass"):  # one of several classes; its name is last in the location
@@ -123,12 +125,12 @@ def _mistake(problem: ErrorDetails, part: type[Part]) -> SceneError:
     if kind in LIMITS:
         words = LIMITS[kind].format(*context.values())
         return SceneError(key, value, "out of range", f"give a number {words}{unit}")
-    wanted = f"a table: write [{key}]" if kind == "model_type" else WANTED.get(kind, "a number")
-    return SceneError(key, value, f"wrong type ({type(value).__name__})", f"give {wanted}{unit}")
+    expected = f"a table: write [{key}]" if kind == "model_type" else WANTED.get(kind, "a number")
+    return SceneError(key, value, f"wrong type ({type(value).__name__})", f"give {expected}{unit}")
 
 
 def missing(key: str) -> SceneError:
-    """The error for a missing table or key."""
+    """Return the error for a missing table or key."""
     if key in {table.table for table in Part.__subclasses__() if table.table}:
         return SceneError(key, None, "missing", f"add a table [{key}]")
     unit = f" [{SCENE_UNITS[key]}]" if key in SCENE_UNITS else ""
@@ -200,22 +202,22 @@ class Block(Part):
 
     @property
     def inertia(self) -> float:
-        """J_O [kg m2] about a base corner."""
+        """Return J_O [kg m2] about a base corner."""
         return 4 / 3 * self.mass * self.radius**2 if self.corner_inertia is None else self.corner_inertia
 
     @property
     def centre_inertia(self) -> float:
-        """Moment of inertia about the centre of mass [kg m2]."""
+        """Return the moment of inertia about the centre of mass [kg m2]."""
         return self.inertia - self.mass * self.radius**2
 
     @property
     def half_width(self) -> float:
-        """b = R sin(gamma) [m]."""
+        """Return b = R sin(gamma) [m]."""
         return self.radius * math.sin(self.slenderness)
 
     @property
     def half_height(self) -> float:
-        """h = R cos(gamma) [m]."""
+        """Return h = R cos(gamma) [m]."""
         return self.radius * math.cos(self.slenderness)
 
 
@@ -276,7 +278,7 @@ class Bearings(Part):
         return self
 
     def given(self, name: str) -> float:
-        """The number called `name`, which this law needs."""
+        """Return the number called `name`, which this law needs."""
         return float(getattr(self, name))
 
 
@@ -295,7 +297,7 @@ class Start(Part):
 
 
 class Scene(Part):
-    """All that is simulated. A part that is None is not modelled.
+    """All that is simulated; a part that is None is not modelled.
 
     Without a base the block stands on rigid ground; without bearings the base slides without friction; without a motion
     the block moves freely. Without a duration [s] a run continues until its outcome is decided. friction: Coulomb's
@@ -314,7 +316,7 @@ class Scene(Part):
 
     @property
     def end(self) -> float:
-        """End of a run [s]: the duration, which is set in every scene passed to a solver; see `until_decided`."""
+        """Return the end of a run [s]: the duration, which every scene passed to a solver has; see `until_decided`."""
         assert self.duration is not None
         return self.duration
 
@@ -352,22 +354,22 @@ class Scene(Part):
 
     @property
     def rocking_frequency(self) -> float:
-        """omega_r = sqrt(m g R/J_O) [rad/s], eq. (1)."""
+        """Return omega_r = sqrt(m g R/J_O) [rad/s], eq. (1)."""
         block = self.block
         return math.sqrt(block.mass * self.gravity * block.radius / block.inertia)
 
     @property
     def total_mass(self) -> float:
-        """m + m_b [kg]."""
+        """Return m + m_b [kg]."""
         return self.block.mass + (self.base.mass if self.base else 0.0)
 
     @property
     def mass_share(self) -> float:
-        """m/(m + m_b), the paper's m-tilde; 0 on rigid ground."""
+        """Return m/(m + m_b), the paper's m-tilde; 0 on rigid ground."""
         return self.block.mass / self.total_mass if self.base else 0.0
 
     def with_(self, **changes: Any) -> Self:
-        """A copy with fields replaced, validated again; ``block={"slenderness": 0.2}`` changes one part."""
+        """Return a copy with fields replaced, validated again; ``block={"slenderness": 0.2}`` changes one part."""
         values = {name: getattr(self, name) for name in type(self).model_fields}
         for name, change in changes.items():
             part = values.get(name)
@@ -377,7 +379,7 @@ class Scene(Part):
         return type(self)(**values)
 
     def digest(self) -> str:
-        """Hash of the scene without its name: equal for scenes with the same simulation."""
+        """Return a hash of the scene without its name: equal for scenes with the same simulation."""
         content = self.model_dump(mode="python", exclude={"name", "motion"})
         content["motion"] = self.motion.digest() if self.motion else None
         if self.bearings:  # keeps the digests in stored results
@@ -395,22 +397,22 @@ BEARINGS = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
 
 
 def caryatid_block(slenderness: float) -> Block:
-    """A block of the Caryatid's mass and radius; slenderness [rad]."""
+    """Return a block of the Caryatid's mass and radius; slenderness [rad]."""
     return Block(mass=MASS, radius=RADIUS, slenderness=slenderness)
 
 
 def benchmark_block() -> Block:
-    """The block of problems A and B: omega_r = 2.60 rad/s with g = 9.81 m/s2, slenderness 0.25, Housner's e."""
+    """Return the block of problems A and B: omega_r = 2.60 rad/s with g = 9.81 m/s2, slenderness 0.25, Housner's e."""
     return Block(mass=1000.0, radius=0.75 * 9.81 / 2.60**2, slenderness=0.25)
 
 
 def problem_a(duration: float = 7.0) -> Scene:
-    """Problem A: free rocking on rigid ground from 0.9 slenderness."""
+    """Return problem A: free rocking on rigid ground from 0.9 slenderness."""
     return Scene(name="problem A", block=benchmark_block(), start=Start(tilt=0.9 * 0.25), duration=duration)
 
 
 def problem_b(duration: float = 6.0) -> Scene:
-    """Problem B: the block at rest under one full sine of 1.2 g tan(slenderness) at 5.2 rad/s."""
+    """Return problem B: the block at rest under one full sine of 1.2 g tan(slenderness) at 5.2 rad/s."""
     block = benchmark_block()
     pulse = PulseMotion("one-sine", 1.2 * 9.81 * math.tan(block.slenderness), 5.2)
     return Scene(name="problem B", block=block, motion=pulse, duration=duration)

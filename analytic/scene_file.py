@@ -1,4 +1,4 @@
-"""Scenes from scene files (TOML); all mistakes in a file are reported in one `SceneError`.
+"""Scene files (TOML): read, with all mistakes in one `SceneError`, and written from measured quantities.
 
 SI units. Only ``[block]`` is needed; a part that is left out is not modelled::
 
@@ -40,23 +40,23 @@ SI units. Only ``[block]`` is needed; a part that is left out is not modelled::
     [run]                     # optional: without it a run ends when its outcome is decided
     duration = 20.0           # s
 
-Under a vertical motion a_v, gravity is g + a_v(t) for the block. The bearings are vertically rigid in the model, while
-real ones vibrate vertically at some 10 to 20 Hz; a warning says so. Components with different steps or lengths are
-resampled and padded, and ``warnings`` say how. Where the normal force reaches zero and no friction is given, the
-outcome is outside the model.
+Under a vertical motion a_v, gravity is g + a_v(t) for the block. Bearings are vertically rigid in the model, while real
+bearings vibrate vertically at 10 to 20 Hz; a warning says so. Components with different steps or lengths are resampled
+and padded, and ``warnings`` say how. Where the normal force reaches zero and no friction is given, the outcome is
+outside the model.
 
-With ``friction``, Coulomb's coefficient between the block and its support, the block slides where it is used up, and
-flies where the normal force vanishes, in the analytic model and, in place of its own setting, in an engine
-(`analytic.sliding.equations`). Without it the block does not slide, and the friction demand says what that takes. Two
-bounds, which an error names: a block released by hand needs a friction at which its impacts do not slip, and none may
-be so large that a block that slides has no motion (4/3 for a rectangle).
+``friction`` is Coulomb's coefficient between the block and its support. With it the block slides when friction is
+exhausted, and flies where the normal force vanishes (`analytic.sliding.equations`). It holds for the analytic model
+and, in place of the engine's own setting, for engines. Without it the block does not slide, and the friction demand
+says which coefficient that takes. Two bounds, which an error names: a block released by hand needs a friction at which
+its impacts do not slip; and no friction may be so large that a sliding block has no motion (4/3 for a rectangle).
 
 ``rocking run`` also runs the analytic model with start, motion and restitution (or friction) changed by a millionth. It
 warns if the outcome changes: so near an outcome boundary no solver can be trusted.
 
-A scene file from measured quantities: height, width and mass of a block, its base and bearings, a motion.
+A file is written from the height, width and mass of a block, with its base, bearings and motion::
 
-text = scene_text("bust", block_from(1.9, 0.55, density=MATERIALS["marble"]))
+    text = scene_text("bust", block_from(1.9, 0.55, density=MATERIALS["marble"]))
 """
 
 import json
@@ -70,7 +70,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, ValidationError
 
-from .errors import SceneError, SettingError, read_plain
+from .errors import SceneError, SettingError, read_plain, require
 from .motion import PULSES, PulseMotion, SampledMotion, paired
 from .records import UNITS, read_record
 from .records import content as fema
@@ -92,6 +92,7 @@ from .scene import (
 )
 
 LARGEST, DEEPEST = 100_000, 100  # bytes of a scene file and dots in a line, far more than its keys need
+FLAT = "write the tables of a scene file, one level"
 SHIPPED = Path(__file__).parent / "scenes"
 
 MOTIONS = {
@@ -101,9 +102,9 @@ MOTIONS = {
 }
 
 
-def _as_text(found: object) -> object:
-    """The number of a channel as text."""
-    return str(found) if type(found) is int else found
+def _as_text(value: object) -> object:
+    """Return the number of a channel as text."""
+    return str(value) if type(value) is int else value
 
 
 class _Motion(Part):
@@ -131,7 +132,7 @@ class _Motion(Part):
     scale: Number = 1.0
 
     def motion(self, folder: Path) -> SampledMotion | PulseMotion:
-        """The ground motion; paths of records are relative to `folder`."""
+        """Return the ground motion; paths of records are relative to `folder`."""
         kinds = [kind for kind in MOTIONS if getattr(self, kind) is not None]
         if len(kinds) != 1:
             problem = "names several motions at once" if kinds else "names no motion"
@@ -162,8 +163,8 @@ class _Motion(Part):
         level = synthetic_motion(style, seed)
         if not self.vertical_ratio:
             return level
-        other = (seed + 1) % 2**64 if self.vertical_seed is None else self.vertical_seed
-        return paired(level, synthetic_motion(style, other).scaled(self.vertical_ratio))
+        upright_seed = (seed + 1) % 2**64 if self.vertical_seed is None else self.vertical_seed
+        return paired(level, synthetic_motion(style, upright_seed).scaled(self.vertical_ratio))
 
     def _pulsed(self) -> PulseMotion:
         for key in ("amplitude", "frequency"):
@@ -172,26 +173,24 @@ class _Motion(Part):
         level = PulseMotion(self.pulse, self.amplitude, self.frequency, self.start or 0.0)  # type: ignore[arg-type]  # checked above
         if not self.vertical_ratio:
             return level
+        amplitude, phase = level.amplitude * self.vertical_ratio, self.vertical_phase or 0.0
         try:
-            phase = self.vertical_phase or 0.0
-            return replace(level, vertical=replace(level, amplitude=level.amplitude * self.vertical_ratio, phase=phase))
+            return replace(level, vertical=replace(level, amplitude=amplitude, phase=phase))
         except SceneError as error:
             raise SceneError("motion.vertical_phase", error.value, error.problem, error.remedy) from None
 
     def _read(self, path: Path, key: Literal["record", "vertical"]) -> SampledMotion:
-        if key == "record":
-            said: dict[str, Any] = {"column": self.column, "channel": self.channel}
-            return read_record(path, self.units, self.scale, dt=self.dt, **said)
-        said = {"column": self.vertical_column, "channel": self.vertical_channel}
+        prefix = "" if key == "record" else "vertical_"
+        choice: dict[str, Any] = {name: getattr(self, prefix + name) for name in ("column", "channel")}
         try:
-            return read_record(path, None, self.scale, dt=self.dt, **said)
+            return read_record(path, self.units if key == "record" else None, self.scale, dt=self.dt, **choice)
         except SceneError as error:
-            if error.key != "motion.units":
+            if key == "record" or error.key != "motion.units":
                 raise
-        return read_record(path, self.units, self.scale, dt=self.dt, **said)  # it does not say its unit
+        return read_record(path, self.units, self.scale, dt=self.dt, **choice)  # it does not state its unit
 
     def _recorded(self, folder: Path, key: Literal["record", "vertical"]) -> SampledMotion:
-        """The component that `key` names; a vertical one without a file is another channel of the record."""
+        """Return the component that `key` names; a vertical one without a file is another channel of the record."""
         name = self.vertical or self.record if key == "vertical" else self.record
         assert name is not None  # checked
         path = Path(name) if fema.is_one(name) else folder / name
@@ -199,13 +198,13 @@ class _Motion(Part):
             return self._read(path, key)
         except SceneError as error:
             if error.key.startswith("motion.") and error.key != "motion.record":
-                own, remedy = error.key, error.remedy
-                word = own.removeprefix("motion.")
+                full_key, remedy = error.key, error.remedy
+                word = full_key.removeprefix("motion.")
                 if word in ("column", "channel") and key == "vertical":
-                    own, remedy = f"motion.vertical_{word}", remedy.replace(word, f"vertical_{word}")
-                raise SceneError(own, error.value, f"{error.problem} ({path.name})", remedy) from None
-            found = "" if error.value is None else f" = {error.value!r}"
-            where = "" if error.key in ("record", "motion.record") else f"{error.key}{found}: "
+                    full_key, remedy = f"motion.vertical_{word}", remedy.replace(word, f"vertical_{word}")
+                raise SceneError(full_key, error.value, f"{error.problem} ({path.name})", remedy) from None
+            value_text = "" if error.value is None else f" = {error.value!r}"
+            where = "" if error.key in ("record", "motion.record") else f"{error.key}{value_text}: "
             raise SceneError(f"motion.{key}", name, where + error.problem, error.remedy) from None
 
 
@@ -230,18 +229,18 @@ class _SceneFile(Part):
 
 
 def shipped_scenes() -> tuple[str, ...]:
-    """Names of the scenes that come with the package: ``load_scene("caryatid-isolated")``."""
+    """Return the names of the scenes that come with the package: ``load_scene("caryatid-isolated")``."""
     return tuple(sorted(path.stem for path in SHIPPED.glob("*.toml")))
 
 
 def load_scene(path: str | PathLike[str]) -> Scene:
-    """The scene in a TOML file, or a shipped scene by its name.
+    """Return the scene in a TOML file, or a shipped scene by its name.
 
     Raises
     ------
     SceneError
         The message names the file, the key, the value and the remedy. It lists all mistakes in keys, in values and in
-        the motion. The consistency of the parts is checked after each of them is correct.
+        the motion. The consistency of the parts is checked once each of them is correct.
     """
     path = Path(path)
     if str(path) in shipped_scenes() and not path.exists():
@@ -257,9 +256,7 @@ def _parse(path: Path) -> dict[str, Any]:
         text = read_plain(path, LARGEST).decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
         for number, line in enumerate(text.split("\n"), 1):
             if line.split("#")[0].count(".") > DEEPEST:  # the parser takes quadratic time in the parts of a key
-                raise SceneError(
-                    "scene", None, f"line {number} is nested too deeply", "write the tables of a scene file, one level"
-                )
+                raise SceneError("scene", None, f"line {number} is nested too deeply", FLAT)
         return tomllib.loads(text)
     except OSError as error:
         raise SceneError(
@@ -269,7 +266,7 @@ def _parse(path: Path) -> dict[str, Any]:
             "give a scene file or one of " + ", ".join(shipped_scenes()),
         ) from error
     except RecursionError:
-        raise SceneError("scene", None, "is nested too deeply", "write the tables of a scene file, one level") from None
+        raise SceneError("scene", None, "is nested too deeply", FLAT) from None
     except SceneError:
         raise
     except ValueError as error:  # TOML and its encoding, and integers of thousands of digits
@@ -277,18 +274,18 @@ def _parse(path: Path) -> dict[str, Any]:
 
 
 def _scene(table: Mapping[str, Any], path: Path) -> Scene:
-    """The scene from the tables of a file; raises all mistakes of tables, motion and consistency together."""
+    """Return the scene from the tables of a file; raise all mistakes of tables, motion and consistency together."""
     mistakes: list[SceneError] = []
     file = motion = None
     scene: Scene | None = None
     try:
         file = _SceneFile.model_validate(table)  # not **table: a key may be called self
-        said = file.motion
+        motion_table = file.motion
     except ValidationError as error:
         mistakes.append(scene_error(error, _SceneFile))
-        said = _motion_alone(table)
+        motion_table = _motion_alone(table)
     try:
-        motion = said.motion(path.parent) if said else None
+        motion = motion_table.motion(path.parent) if motion_table else None
     except SceneError as error:
         mistakes.append(error)
     try:
@@ -312,7 +309,7 @@ def _scene(table: Mapping[str, Any], path: Path) -> Scene:
 
 
 def _motion_alone(table: Mapping[str, Any]) -> _Motion | None:
-    """The table [motion] of a file with mistakes elsewhere; None if it is missing or has mistakes itself."""
+    """Return the table [motion] of a file with mistakes elsewhere; None if it is missing or has mistakes itself."""
     try:
         return _Motion.model_validate(table.get("motion"))
     except ValidationError:
@@ -339,9 +336,9 @@ UPLIFT, YIELD = "uplift acceleration g tan(slenderness)", "acceleration at which
 def block_from(
     height: float, width: float, *, depth: float | None = None, density: float | None = None, mass: float | None = None
 ) -> Block:
-    """The homogeneous rectangular `Block` of height and width [m], width along the motion.
+    """Return the homogeneous rectangular `Block` of height and width [m], width along the motion.
 
-    Given is its mass [kg], or its density [kg/m3] and depth [m] across the motion (default: the width).
+    Give its mass [kg], or its density [kg/m3] and depth [m] across the motion (default: the width).
     R = sqrt(h^2 + b^2) and gamma = atan(b/h), with half height h and half width b.
 
     Raises
@@ -359,8 +356,7 @@ def block_from(
     """
     given = {"height": height, "width": width, "depth": depth, "density": density, "mass": mass}
     for name, value in given.items():
-        if value is not None and not (value > 0 and math.isfinite(value)):
-            raise SettingError(f"{name} = {value!r}: give a number above 0")
+        require(value is None or (value > 0 and math.isfinite(value)), f"{name} = {value!r}: give a number above 0")
     if density is not None and mass is None:
         mass = density * height * width * (depth or width)
     elif mass is None or density is not None:
@@ -369,7 +365,7 @@ def block_from(
 
 
 def derived(scene: Scene) -> list[tuple[str, float, str]]:
-    """Derived quantities of a scene: rows of (name, value, unit).
+    """Return the derived quantities of a scene: rows of (name, value, unit).
 
     Secant period and equivalent damping, W_D/(4 pi E_s) of the hysteresis only, are given if the bearings yield at
     x_max: below yield the loss is smaller than rounding errors.
@@ -395,8 +391,7 @@ def derived(scene: Scene) -> list[tuple[str, float, str]]:
                 period = 2 * math.pi * math.sqrt(scene.total_mass / (law.count * stiffness))
                 rows.append((f"isolation period {name}", period, "s"))
         if law.f0 > 0:
-            force = law.count * law.f0 / scene.total_mass
-            rows.append((YIELD, force, "m/s2"))
+            rows.append((YIELD, law.count * law.f0 / scene.total_mass, "m/s2"))
     return rows
 
 
@@ -411,7 +406,7 @@ def scene_text(
     friction: float | None = None,
     about: Sequence[str] = (),
 ) -> str:
-    """A commented scene file (TOML) that `load_scene` reads.
+    """Return a commented scene file (TOML) that `load_scene` reads.
 
     Parameters
     ----------
@@ -420,22 +415,28 @@ def scene_text(
     motion : dict or None
         Keys of the table [motion].
     tilt : float or None
-        Of the start [rad].
+        Tilt at the start [rad].
     friction : float or None
         Coefficient between the block and its support; None: it does not slide.
     about : sequence of str
         Comment lines at the top.
     """
-    lines = [*(f"# {line}" for line in about), f"name = {_toml(name)}"]
+    slides = "# friction = 0.6  # of the block on its support; without it the block does not slide"
     if friction is not None:
-        lines.append(f"friction = {_toml(friction)}  # of the block on its support: it slides where this is used up")
-    else:
-        lines.append("# friction = 0.6  # of the block on its support; without it the block does not slide")
-    lines += ["", "[block]"]
-    lines += _rows({"mass": (block.mass, "kg"), "radius": (block.radius, "m; base corner to centre of mass")})
-    degrees = math.degrees(block.slenderness)
-    lines += _rows({"slenderness": (block.slenderness, f"rad, {degrees:.4g} degrees; atan(width/height)")})
-    lines += [
+        slides = f"friction = {_toml(friction)}  # of the block on its support: it slides when friction is exhausted"
+    degrees = f"{math.degrees(block.slenderness):.4g} degrees"
+    rows = {
+        "mass": (block.mass, "kg"),
+        "radius": (block.radius, "m; base corner to centre of mass"),
+        "slenderness": (block.slenderness, f"rad, {degrees}; atan(width/height)"),
+    }
+    lines = [
+        *(f"# {line}" for line in about),
+        f"name = {_toml(name)}",
+        slides,
+        "",
+        "[block]",
+        *_rows(rows),
         f"# corner_inertia = {block.inertia:.6g}  # kg m2; 4/3 m R^2 of a homogeneous rectangle, unless given",
         "# restitution = 0.9  # default: eq. (7); give a measured one",
     ]
@@ -451,21 +452,21 @@ def scene_text(
 
 
 def with_bearings(text: str, bearings: Bearings, base: Base | None = None) -> str:
-    """The text of a scene file with other bearings: the table [bearings] is replaced, or added at the end.
+    """Return the text of a scene file with other bearings: the table [bearings] is replaced, or added at the end.
 
     base : for a scene without one; its table is added before that of the bearings.
 
     Examples
     --------
-    >>> one = Bearings(law="linear", ka=1e4)
-    >>> "ka = 10000.0" in with_bearings("[base]\\nmass = 400.0\\n", one)
+    >>> softer = Bearings(law="linear", ka=1e4)
+    >>> "ka = 10000.0" in with_bearings("[base]\\nmass = 400.0\\n", softer)
     True
     """
     lines = text.rstrip().split("\n")
     heads = [number for number, line in enumerate(lines) if line.lstrip().startswith("[")] + [len(lines)]
-    own = next((number for number in heads[:-1] if lines[number].split("#")[0].strip() == "[bearings]"), len(lines))
-    following = next((number for number in heads if number > own), len(lines))
-    before = lines[:own] if own < len(lines) else [*lines, ""]
+    begin = next((number for number in heads[:-1] if lines[number].split("#")[0].strip() == "[bearings]"), len(lines))
+    following = next((number for number in heads if number > begin), len(lines))
+    before = lines[:begin] if begin < len(lines) else [*lines, ""]
     after = ["", *lines[following:]] if following < len(lines) else []
     under = [] if base is None else [*_base(base), ""]
     return "\n".join([*before, *under, *_bearings(bearings), *after]) + "\n"
@@ -491,5 +492,5 @@ def _rows(values):
 
 
 def _toml(value):
-    """A value as TOML writes it, numbers to six digits; JSON's strings and numbers are TOML's."""
+    """Return a value as TOML writes it, numbers to six digits; JSON's strings and numbers are TOML's."""
     return json.dumps(float(f"{value:.6g}") if isinstance(value, float) else value, ensure_ascii=False)

@@ -1,8 +1,8 @@
-"""``simulate(scene)``: the analytic model, by the compiled kernel.
+"""``simulate(scene)``: the analytic model, by the compiled kernel; limits of a run, and when it may end.
 
-Limits of one run: steps, events, rows of the history; and the error for a scene that exceeds them.
-
-The rules of `decision.py` applied to the end state of another solver's run: whether that run may end.
+A run has limits of steps, events and rows of its history; a scene that exceeds them is refused with an error that names
+the cause. The rules of `decision` are applied to the end state of another solver's run, too: they say whether that run
+may end.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .errors import SceneError, SettingError
+from .errors import SceneError, SettingError, require
 from .kernel import layout
 from .kernel import march as kernel
 from .kernel.compiled import compiling
@@ -40,19 +40,20 @@ from .sliding.run import contact_of, is_needed
 from .sliding.run import slid as march
 
 if TYPE_CHECKING:
+    from .motion import Motion
     from .scene import Scene
 
 # Steps of a run until its outcome is decided, some seconds of CPU time: both Caryatid scenes take 6000, bearings of ten
 # thousand rocking frequencies five million. A longer given duration may take more, up to a minute or two.
 STEPS, MOST_STEPS = 5_000_000, 100_000_000
-STEPS_PER_SAMPLE = 10  # further steps for each sample of a record; one or two are usual
+STEPS_PER_SAMPLE = 10  # further steps for each sample of a record; one or two of them are usual
 EVENTS = 1_000_000  # impacts, uplifts or rests of a response
 ROWS, MOST_ROWS = 1_000_000, 10_000_000  # of a history: by default, and with a given interval
 USUAL_EXPONENT = 100.0  # of a bearing law: up to it, the yielding is no stiffer than the rest
 
 
 def most_steps(scene: Scene) -> int:
-    """Largest number of steps of a run of the scene."""
+    """Return the largest number of steps of a run of the scene."""
     longer = 1.0
     if scene.duration is not None:
         longer = max(1.0, (scene.duration - motion_end(scene)) / (CAP_PERIODS * period(scene)))
@@ -61,7 +62,7 @@ def most_steps(scene: Scene) -> int:
 
 
 def too_long(scene: Scene, spent: str) -> SceneError:
-    """The error for a run that has `spent` its limit; it names the part of the scene that is furthest from usual.
+    """Return the error for a run that has `spent` its limit; it names the part of the scene furthest from usual.
 
     The bearings' frequency and decay rate are compared with omega_r, their exponent with 100, and the duration with a
     hundred rocking periods.
@@ -71,21 +72,21 @@ def too_long(scene: Scene, spent: str) -> SceneError:
 
 
 def _parts(scene: Scene) -> list[tuple[float, str, float, str, str]]:
-    """[(ratio to a usual value, key, value, problem, remedy)] of all causes of a long run."""
+    """Return [(ratio to a usual value, key, value, problem, remedy)] of all causes of a long run."""
     model, omega, turn = RockingModel.of(scene), scene.rocking_frequency, 2 * math.pi
-    found = [(0.0, "block.radius", scene.block.radius, f"the block rocks at {omega:.3g} rad/s", "give a larger one")]
+    parts = [(0.0, "block.radius", scene.block.radius, f"the block rocks at {omega:.3g} rad/s", "give a larger one")]
     if model.restitution > NEARLY_ELASTIC:
         problem, remedy = "impacts lose almost no energy", "give a smaller one"
-        found.append((1.0, "block.restitution", model.restitution, problem, remedy))
+        parts.append((1.0, "block.restitution", model.restitution, problem, remedy))
     if scene.duration is not None:
         periods = scene.duration * omega / turn
-        found.append((periods / 100, "run.duration", scene.duration, f"{periods:.3g} rocking periods", "shorten it"))
+        parts.append((periods / 100, "run.duration", scene.duration, f"{periods:.3g} rocking periods", "shorten it"))
     if scene.motion is not None:
         periods, key = scene.motion.end * omega / turn, slowest_key(scene.motion)
         problem = f"the motion lasts {scene.motion.end:.3g} s, {periods:.3g} rocking periods"
         remedy = "raise it" if key == "motion.frequency" else "lower it"
-        found.append((periods / 100, key, getattr(scene.motion, key.removeprefix("motion.")), problem, remedy))
-    return found + _bearing_parts(scene, model)
+        parts.append((periods / 100, key, getattr(scene.motion, key.removeprefix("motion.")), problem, remedy))
+    return parts + _bearing_parts(scene, model)
 
 
 def _bearing_parts(scene, model):
@@ -95,24 +96,20 @@ def _bearing_parts(scene, model):
     free = model.M - (model.m * model.R * math.cos(model.gamma)) ** 2 / model.J  # effective mass of the base [kg]
     ringing, decay = math.sqrt(law.count * (law.kb + law.dk) / free), law.count * law.damping / free
     problem = f"the base vibrates at {ringing:.3g} rad/s on such bearings"
-    found = [(ringing / omega, "bearings.ka", bearings.ka, problem, "lower it")]
+    parts = [(ringing / omega, "bearings.ka", bearings.ka, problem, "lower it")]
     if decay:
         problem = f"such dampers stop the base within {1 / decay:.3g} s"
-        found.append((decay / omega, "bearings.damping", law.damping, problem, "lower it"))
+        parts.append((decay / omega, "bearings.damping", law.damping, problem, "lower it"))
     if bearings.alpha is not None:
         problem, remedy = "the law yields almost at a point", 'lower it, or give law = "bilinear"'
-        found.append((bearings.alpha / USUAL_EXPONENT, "bearings.alpha", bearings.alpha, problem, remedy))
-    return found
+        parts.append((bearings.alpha / USUAL_EXPONENT, "bearings.alpha", bearings.alpha, problem, remedy))
+    return parts
 
-
-if TYPE_CHECKING:
-    from .motion import Motion
-    from .scene import Scene
 
 # Chosen by measurement (`rocking study speed-error`): where CPU against error is least.
 ORDER = 18  # free flight and pulses: long steps
 TOLERANCE = 1e-11
-# Impacts are followed down to this fraction of omega_r, then summed to their limit; see kernel.remaining_hops.
+# Impacts are followed down to this fraction of omega_r, then summed to their limit; see `events.remaining_hops`.
 REST_RATE = 1e-8
 # History points where the motion has no sampling interval of its own.
 HISTORY_POINTS = 2000
@@ -125,7 +122,7 @@ _NO_SAMPLES.flags.writeable = False  # the same compiled type as the samples of 
 
 
 def parameters(scene: Scene) -> Parameters:
-    """The scene as the kernel's `Parameters`."""
+    """Return the scene as the kernel's `Parameters`."""
     model, law, start = RockingModel.of(scene), BearingLaw.of(scene.bearings), scene.start
     return Parameters(
         m=model.m,
@@ -154,7 +151,7 @@ def parameters(scene: Scene) -> Parameters:
 
 
 def ground(motion: Motion | None, scale: float = 1.0) -> Ground:
-    """The motion as the kernel's `Ground`, times `scale`."""
+    """Return the motion as the kernel's `Ground`, times `scale`."""
     scale = float(scale)
     if motion is None:
         return Ground(QUIET, 1.0, _NO_SAMPLES, None, Shaking(*[0.0] * len(Shaking._fields)))
@@ -181,17 +178,15 @@ def options(
     shortest: float | None = None,
     steps: int = MOST_STEPS,
 ) -> Options:
-    """The kernel's `Options`, checked; `shortest` is by default 0 where it is to `decide`, else infinite.
+    """Return the kernel's `Options`, checked; `shortest` is by default 0 where the run is to `decide`, else infinite.
 
     Raises
     ------
     SettingError
         A setting is out of range.
     """
-    if not 1e-17 <= tolerance <= 1e-2:
-        raise SettingError(f"tolerance = {tolerance!r}: give a value from 1e-17 to 1e-2")
-    if not 0 < rest_rate <= 1e-2:
-        raise SettingError(f"rest_rate = {rest_rate!r}: give a value above 0, up to 1e-2")
+    require(1e-17 <= tolerance <= 1e-2, f"tolerance = {tolerance!r}: give a value from 1e-17 to 1e-2")
+    require(0 < rest_rate <= 1e-2, f"rest_rate = {rest_rate!r}: give a value above 0, up to 1e-2")
     if shortest is None:
         shortest = 0.0 if decide else math.inf
     return Options(
@@ -209,10 +204,9 @@ def simulate(
 ) -> Response:
     """Simulate a scene with the analytic rocking model.
 
-    Without a duration the run ends when its outcome is decided and its peaks are final (`decision`). With a duration, a
-    base that oscillates under a block which will not lift again is followed up to `longest_duration` at most. If the
-    duration ends while the block is certain to overturn (rigid ground, after the motion), the outcome is "overturns",
-    and the time of overturning lies beyond the end.
+    Without a duration the run ends when its outcome is decided and its peaks are final (`decision`). With one, a base
+    that oscillates under a block which will not lift again is followed up to `longest_duration`. If the duration ends
+    while the block is certain to overturn (rigid ground, after the motion), the outcome is "overturns" all the same.
 
     Parameters
     ----------
@@ -220,25 +214,19 @@ def simulate(
     history : bool
         Keep the history at multiples of `output_step` (and at the end).
     tolerance : float
-        The accuracy parameter: the last Taylor term of a step, relative to the motion within the step. The error at the
-        end is larger by the sensitivity of the motion (a few hundred times near overturning).
+        The last Taylor term of a step, relative to the motion within the step. The error at the end is larger by the
+        sensitivity of the motion (a few hundred times near overturning).
     rest_rate : float
         Impacts slower than this fraction of omega_r are summed to their limit and end in rest.
     output_step : float or None
-        [s]; by default the sampling interval of the motion, or a 2000th of the (shortest) duration; in a history that
-        would hold more than a million rows a whole number of these.
-
-    Returns
-    -------
-    Response
+        [s]; by default the sampling interval of the motion or a 2000th of the duration, or a multiple (`_output_step`).
 
     Raises
     ------
     SettingError
         A setting is out of range.
     SceneError
-        A part of the scene is so stiff, or its motion so long, that the run does not end within its budget (`budget`);
-        names that part.
+        The run needs too many steps (`most_steps`) or has too many impacts; the message names the cause in the scene.
     """
     output_step = _output_step(scene, output_step, history)
     settings = {"tolerance": tolerance, "rest_rate": rest_rate, "order": ORDER, "short_order": SHORT_ORDER}
@@ -253,15 +241,7 @@ def simulate(
     par, shaking = parameters(scene), ground(scene.motion)
     compile_kernels(shaking.upright is not None)
     begin = time.process_time()
-    totals, *result = kernel.run(par, shaking, chosen)
-    most = int(totals[[layout.IMPACTS, layout.UPLIFTS, layout.RESTS]].max())
-    if totals[layout.STATUS] == layout.SPENT:
-        reached = f"{chosen.most_steps:.3g} steps of the analytic model reach only {totals[layout.TIME]:.3g} s"
-        raise too_long(scene, reached)
-    if most > EVENTS:
-        raise too_long(scene, f"{most} impacts, of which no more than {EVENTS} are kept")
-    if most > chosen.capacity:
-        totals, *result = kernel.run(par, shaking, chosen._replace(capacity=most))
+    totals, *result = _kernel_run(scene, par, shaking, chosen)
     cpu, slid, sliding = time.process_time() - begin, None, None
     at_end = totals[layout.END_TILT : layout.END_V + 1].tolist()
     energies = _stored(par, *at_end) - _stored(par, par.tilt, par.rate, par.x, par.v)
@@ -276,22 +256,33 @@ def simulate(
     return _response(scene, totals, result, energies, sliding, settings, cpu, history)
 
 
-def _output_step(scene, asked, history):
-    """Interval of the history [s]; by default that of the motion's samples, or a share of the (shortest) duration."""
+def _kernel_run(scene, par, shaking, chosen):
+    """Return what the kernel returns, with room for all events; refuse a run beyond the limits."""
+    totals, *result = kernel.run(par, shaking, chosen)
+    most = int(totals[[layout.IMPACTS, layout.UPLIFTS, layout.RESTS]].max())
+    if totals[layout.STATUS] == layout.SPENT:
+        reached = f"{chosen.most_steps:.3g} steps of the analytic model reach only {totals[layout.TIME]:.3g} s"
+        raise too_long(scene, reached)
+    if most > EVENTS:
+        raise too_long(scene, f"{most} impacts, of which no more than {EVENTS} are kept")
+    return (totals, *result) if most <= chosen.capacity else kernel.run(par, shaking, chosen._replace(capacity=most))
+
+
+def _output_step(scene, step, history):
+    """Return the interval of the history [s]; by default that of the motion's samples, or a share of the duration."""
     longest = longest_duration(scene) if scene.duration is None else scene.duration
-    if asked is None:
+    if step is None:
         span = shortest_duration(scene) if scene.duration is None else scene.duration
-        asked = scene.motion.dt if isinstance(scene.motion, SampledMotion) else span / HISTORY_POINTS
-        return asked * max(1, math.ceil(longest / asked / ROWS))
-    if asked <= 0 or not math.isfinite(asked):
-        raise SettingError(f"output_step = {asked!r}: give a time above 0 [s]")
-    if history and longest / asked > MOST_ROWS:
+        step = scene.motion.dt if isinstance(scene.motion, SampledMotion) else span / HISTORY_POINTS
+        return step * max(1, math.ceil(longest / step / ROWS))
+    require(step > 0 and math.isfinite(step), f"output_step = {step!r}: give a time above 0 [s]")
+    if history and longest / step > MOST_ROWS:
         least = longest / MOST_ROWS
         raise SettingError(
-            f"output_step = {asked!r}: up to {longest / asked:.3g} rows of history; give at least {least:.3g} s, or "
+            f"output_step = {step!r}: up to {longest / step:.3g} rows of history; give at least {least:.3g} s, or "
             "history=False"
         )
-    return asked
+    return step
 
 
 @functools.cache
@@ -316,7 +307,7 @@ def compile_kernels(vertical: bool = False) -> None:
 
 @functools.cache
 def versions() -> dict[str, str]:
-    """Versions of Python and of the packages behind the analytic model."""
+    """Return the versions of Python and of the packages behind the analytic model."""
     import numba
 
     return {"numpy": np.__version__, "numba": numba.__version__}
@@ -332,7 +323,7 @@ _REASONS = {
 
 
 def _response(scene, totals, result, energies, sliding, settings, cpu, history):
-    """The `Response` of a run of the kernel, or, with a `Sliding`, of the march of a block that may slide."""
+    """Return the `Response` of a run of the kernel, or, with a `Sliding`, of the march of a block that may slide."""
     impacts, uplifts, rests, table = result
     tilt, rate, x, v, z = totals[layout.END_TILT : layout.END_Z + 1].tolist()
     end = State(float(totals[layout.TIME]), tilt, rate, x, v, BearingLaw.of(scene.bearings).force(x, z, v))
@@ -377,7 +368,7 @@ def _response(scene, totals, result, energies, sliding, settings, cpu, history):
 
 
 def _stored(par, tilt, rate, x, v):
-    """(kinetic, potential) energy [J] of a block that does not slide, in the ground's frame."""
+    """Return (kinetic, potential) energy [J] of a block that does not slide, in the ground's frame."""
     side = math.copysign(1.0, tilt if tilt != 0 else rate)
     c = par.R * math.cos(side * par.gamma - tilt)
     moving = 0.5 * par.M * v * v + par.m * c * v * rate if par.on_base else 0.0
@@ -388,7 +379,7 @@ def _stored(par, tilt, rate, x, v):
 
 
 def _history(scene: Scene, table: np.ndarray, end: State, *slip: float) -> History:
-    """slip : at the end [m], of a block that slides."""
+    """Return the `History` of a table of rows and the end state. slip : at the end [m], of a block that slides."""
     last = np.array([[*astuple(end), *slip]])
     if not len(table) or table[-1, 0] < end.time:
         table = np.vstack([table, last])
@@ -397,14 +388,8 @@ def _history(scene: Scene, table: np.ndarray, end: State, *slip: float) -> Histo
     return History(*columns[:6], shaking, columns[6] if slip else None)  # type: ignore[call-arg]  # of six
 
 
-if TYPE_CHECKING:
-    from .kernel.layout import Parameters
-    from .response import Response
-    from .scene import Scene
-
-
 def is_decided(scene: Scene, response: Response, *, contact_tilt: float = 0.0) -> bool:
-    """Whether the outcome of a run is certain at its end, by rules (a), (b) and (c).
+    """Return whether the outcome of a run is certain at its end, by rules (a), (b) and (c).
 
     Parameters
     ----------
@@ -422,7 +407,7 @@ def is_decided(scene: Scene, response: Response, *, contact_tilt: float = 0.0) -
 
 
 def is_finished(scene: Scene, response: Response, *, contact_tilt: float = 0.0) -> bool:
-    """Whether the outcome of a run is certain at its end and its peaks can no longer grow; see `is_decided`."""
+    """Return whether the outcome of a run is certain at its end and its peaks can no longer grow; see `is_decided`."""
     decided, state = _at_end(scene, response, contact_tilt)
     if not decided or state is None:
         return decided
@@ -431,7 +416,7 @@ def is_finished(scene: Scene, response: Response, *, contact_tilt: float = 0.0) 
 
 
 def _at_end(scene: Scene, response: Response, contact_tilt: float) -> tuple[bool, tuple[Parameters, Body, Base] | None]:
-    """(decided, the kernel's parameters and state; None if the block has overturned or the run failed)."""
+    """Return (decided, the kernel's parameters and state; None if the block has overturned or the run failed)."""
     if response.outcome in ("overturns", "failed"):
         return response.outcome == "overturns", None
     par, end = parameters(scene), response.end
@@ -457,7 +442,7 @@ def until_decided(
     at_least: float = 0.0,
     finished: Callable[[Scene, Response], bool] = is_finished,
 ) -> Response:
-    """``simulate(scene)`` with increasing durations until the run has finished or the longest is reached.
+    """Return the response of runs with increasing durations until one has finished or the longest is reached.
 
     Parameters
     ----------

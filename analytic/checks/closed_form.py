@@ -1,7 +1,7 @@
 """Closed-form solutions of a rocking block on rigid ground, for verification of the numerical models.
 
-Exact solutions of free rocking, phi'' = -omega_r^2 sin(s gamma - phi).
-Source: the pendulum's elliptic integral in the form of B. C. Carlson (1995), Numer. Algorithms 10, 13-26.
+Free rocking obeys phi'' = -omega_r^2 sin(s gamma - phi). The solutions use the pendulum's elliptic integral in the form
+of B. C. Carlson (1995), Numer. Algorithms 10, 13-26.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from scipy.special import ellipj, elliprf
 
 
 def swing_energy(slenderness: float, peak: float) -> float:
-    """(cos(gamma - |peak|) - cos gamma)/2: energy above the upright position over 2 m g R, no units."""
+    """Return (cos(gamma - |peak|) - cos gamma)/2: energy above the upright position over 2 m g R, no units."""
     peak = abs(peak)
     return math.sin(slenderness - peak / 2) * math.sin(peak / 2)
 
 
 def quarter_period(omega_r: float, slenderness: float, energy: float) -> float:
-    """Time from the peak of a swing, at rest, to the impact [s].
+    """Return the time from the peak of a swing, at rest, to the impact [s].
 
     [K(k) - F(psi, k)]/omega_r with k = cos(u0/2), sin psi = cos(gamma/2)/k and u0 = gamma - |peak|, written
     as one integral F(theta, k), tan theta = 1/(k' tan psi), that loses no digits for small swings or near
@@ -54,7 +54,7 @@ class FreeRocking:
 
 
 def free_rocking(omega_r: float, slenderness: float, restitution: float, tilt: float, count: int) -> FreeRocking:
-    """The first `count` impacts of a block released at rest from `tilt` [rad], 0 < |tilt| < slenderness.
+    """Return the first `count` impacts of a block released at rest from `tilt` [rad], 0 < |tilt| < slenderness.
 
     Successive peaks obey cos(u') - cos(gamma) = e^2 (cos(u) - cos(gamma)), u = gamma - |phi|.
 
@@ -73,7 +73,7 @@ def free_rocking(omega_r: float, slenderness: float, restitution: float, tilt: f
 
 
 def impacts_to_rest(omega_r: float, slenderness: float, restitution: float, tilt: float, rest_rate: float) -> int:
-    """Number of impacts until |phi'+| < rest_rate [rad/s], of a block released at rest from `tilt` [rad]."""
+    """Return the number of impacts until |phi'+| < rest_rate [rad/s], of a block released at rest from `tilt` [rad]."""
     first = 2 * omega_r * math.sqrt(swing_energy(slenderness, tilt))
     count = max(0, math.floor(math.log(rest_rate / first) / math.log(restitution)))
     while first * restitution**count >= rest_rate:
@@ -82,7 +82,7 @@ def impacts_to_rest(omega_r: float, slenderness: float, restitution: float, tilt
 
 
 def remaining_time(rate_after: float, restitution: float, deceleration: float) -> float:
-    """Time [s] from an impact with small rate_after = |phi'+| [rad/s] to the accumulation of all further impacts.
+    """Return the time [s] from an impact with a small rate after it [rad/s] to the limit of all further impacts.
 
     Each swing lasts 2 |phi'+|/deceleration and is followed by e times the rate: a geometric series. `deceleration` is
     |phi''| at phi = 0 [rad/s2]; corrections are of the order of rate_after^2.
@@ -91,7 +91,7 @@ def remaining_time(rate_after: float, restitution: float, deceleration: float) -
 
 
 def rest_time(omega_r: float, slenderness: float, restitution: float, tilt: float) -> float:
-    """Time [s] at which the impacts accumulate; released at rest from `tilt` [rad], restitution < 1."""
+    """Return the time [s] at which the impacts accumulate; released at rest from `tilt` [rad], restitution < 1."""
     count = max(1, impacts_to_rest(omega_r, slenderness, restitution, tilt, 1e-9 * omega_r))
     run = free_rocking(omega_r, slenderness, restitution, tilt, count)
     deceleration = omega_r**2 * math.sin(slenderness)
@@ -99,7 +99,7 @@ def rest_time(omega_r: float, slenderness: float, restitution: float, tilt: floa
 
 
 def free_rocking_tilt(omega_r: float, slenderness: float, restitution: float, tilt: float, t: float) -> float:
-    """Tilt [rad] at t [s] of a block released at rest from `tilt` [rad]; 0 once the impacts have accumulated.
+    """Return the tilt [rad] at t [s] of a block released at rest from `tilt` [rad]; 0 after the last impact.
 
     Within a swing sin(u/2) = sin(u0/2)/dn(omega_r (t - t_peak), cos(u0/2)), u = gamma - |phi|.
     """

@@ -1,13 +1,13 @@
-"""A small fixed-step integrator that, like multibody engines, detects an impact only at the end of a step.
+"""A small fixed-step integrator that, like multibody engines, sees an impact only at the end of a step.
 
-Without a friction: semi-implicit Euler, accelerations at the start of the step, velocities first, then positions. The
-impact law is that of eqs (7), (8), so that all differences from the event-driven model come from time stepping.
+Without a friction it is semi-implicit Euler: accelerations at the start of the step, velocities first, then positions.
+The impact law is that of eqs (7), (8), so that all differences from the event-driven model come from time stepping.
 
-With a friction: Moreau's time stepping, the second implementation of the block that may slide. It knows no modes and no
-events: a planar block with two corners, unilateral contact and Coulomb friction at each. In a step of length h the
-coordinates move to the midpoint q + h/2 v; corners that do not gape there are closed; impulses on these give the
-velocities after the step, with which the coordinates move on. An impact is a step as any other: what is required of the
-velocities after it (no corner penetrates, Coulomb's law on the impulses) is the plastic impact.
+With a friction it is Moreau's time stepping, the second implementation of the block that may slide. It knows neither
+modes nor events: a planar block has two corners, with unilateral contact and Coulomb friction at each. In a step of
+length h the coordinates move to the midpoint q + h/2 v. Corners that do not gape there are closed. Impulses on these
+give the velocities after the step, with which the coordinates move on. An impact is a step like any other: the plastic
+impact follows from what is required of the velocities after it (no corner penetrates, and Coulomb's law holds).
 
 J. J. Moreau (1999), Numerical aspects of the sweeping process, Comput. Methods Appl. Mech. Eng. 177, 329-349;
 M. Jean (1999), The non-smooth contact dynamics method, ibid., 235-257.
@@ -28,7 +28,7 @@ import numba
 import numpy as np
 from numba import njit
 
-from ..errors import SceneError, SettingError
+from ..errors import SceneError, SettingError, require
 from ..kernel.compiled import inner
 from ..kernel.layout import Body
 from ..motion import SampledMotion
@@ -66,18 +66,17 @@ def simulate_time_stepping(scene: Scene, *, step: float, history: bool = True) -
     -------
     Response
         engine "time-stepping", without energy ledger. All times and extremes are at ends of steps. With a friction
-        there are no uplifts and rests, and forces, accelerations and the work of friction are NaN; an impact is where
-        the block goes from one corner to the other.
+        there are no uplifts and rests; forces, accelerations and the work of friction are NaN; an impact is where the
+        block passes from one corner to the other.
 
     Raises
     ------
     SceneError
-        The scene has a friction, and a given restitution.
+        The scene has both a friction and a given restitution.
     SettingError
         The step is not positive, or too short for the run.
     """
-    if not (step > 0 and math.isfinite(step)):
-        raise SettingError(f"step = {step!r} is not positive: give a finite value above 0 [s]")
+    require(step > 0 and math.isfinite(step), f"step = {step!r} is not positive: give a finite value above 0 [s]")
     if scene.duration is None:
         return until_decided(lambda cut: simulate_time_stepping(cut, step=step, history=history), scene)
     most = MOST_ROWS if history else MOST_STEPS
@@ -103,14 +102,14 @@ def simulate_time_stepping(scene: Scene, *, step: float, history: bool = True) -
     marched = march(par, h, ground, gravity, rows)
     response = _response(scene, h, marched, time.process_time() - started)
     if history:
-        kept = rows[: response.steps + 1].T
-        level = np.zeros(kept.shape[1]) if scene.motion is None else scene.motion.acceleration(kept[0])
-        response = replace(response, history=History(*kept[:6], level, *kept[6:]))  # type: ignore[call-arg]  # of eight at most
+        table = rows[: response.steps + 1].T
+        level = np.zeros(table.shape[1]) if scene.motion is None else scene.motion.acceleration(table[0])
+        response = replace(response, history=History(*table[:6], level, *table[6:]))  # type: ignore[call-arg]  # of eight at most
     return replace(response, decided=is_decided(scene, response))
 
 
 def _response(scene, h, marched, seconds):
-    """The `Response` of what `_march` or `_slide` returns, without history."""
+    """Return the `Response` without history; marched: what `_march` or `_slide` returns."""
     taken, over, lifted, (impacts, uplifts, rests), (unstable, fall), extremes, end, slips = marched
     peak_tilt, peak_x, peak_acceleration, friction, normal = extremes
     end_slip, peak_slip, path = slips
@@ -142,12 +141,12 @@ def _response(scene, h, marched, seconds):
 
 
 def _samples(motion: Motion | None, h: float, count: int) -> np.ndarray:
-    """Acceleration [m/s2] at the ends of steps."""
+    """Return the acceleration [m/s2] at the ends of the steps."""
     return np.zeros(count + 1) if motion is None else motion.acceleration(h * np.arange(count + 1))
 
 
 def _means(motion: Motion | None, h: float, count: int) -> np.ndarray:
-    """Mean acceleration [m/s2] in each step, exact where it jumps: the gain of ground velocity over h."""
+    """Return the mean acceleration [m/s2] in each step: the gain of ground velocity over h, exact where it jumps."""
     if motion is None:
         return np.zeros(count)
     edges = h * np.arange(count + 1)
@@ -164,7 +163,7 @@ def _means(motion: Motion | None, h: float, count: int) -> np.ndarray:
 
 @inner
 def _rocking(par, body, a, g, force):
-    """(phi'', absolute acceleration of the base, forces at the corner) while the block rocks, (3)-(6)."""
+    """Return (phi'', absolute acceleration of the base, forces at the corner) while the block rocks, (3)-(6)."""
     (side, tilt, rate), m, M, J = body, par.m, par.M, par.J
     c, n = par.R * math.cos(side * par.gamma - tilt), par.R * math.sin(side * par.gamma - tilt)
     spin, absolute = -m * (c * a + g * n) / J, a
@@ -177,7 +176,7 @@ def _rocking(par, body, a, g, force):
 
 @njit(cache=True, nogil=True)
 def _march(par, h, ground, gravity, rows):
-    """All steps, under a_g and g + a_v [m/s2] at each.
+    """Take all steps, under a_g and g + a_v [m/s2] at each.
 
     Returns (steps taken, overturned?, lifted?, (impacts, uplifts, rests), (unstable time or -1, fall time), extremes,
     end, (slip, largest slip, path)).
@@ -243,13 +242,13 @@ def _slip_rate(v, corner):
 
 @inner
 def _approach(v, corner):
-    """Velocity at which a closed corner would penetrate [m/s]."""
+    """Return the velocity at which a closed corner would penetrate [m/s]."""
     return max(corner.n * v.tilt - v.Y, 0.0) if corner.closed else 0.0
 
 
 @inner
 def _on_one(v, body, corner, sigma):
-    """(T, N, velocities after): one corner carries, and sticks (sigma = 0) or slips with this sign.
+    """Return (T, N, velocities after): one corner carries, and sticks (sigma = 0) or slips with this sign.
 
     T and N are the tangential and normal impulse of the base on the block [N s].
     """
@@ -265,40 +264,44 @@ def _on_one(v, body, corner, sigma):
 
 @inner
 def _on_both(v, body, first, second, sigma):
-    """(T, N, the lesser N of a corner, velocities after): both carry, thus the block does not turn.
+    """Return (T, N, the lesser N of a corner, velocities after): both corners carry, so that the block does not turn.
 
-    They share T as N, which is Coulomb's law where they slip, and one way among others where they stick.
+    They share T as they share N. This is Coulomb's law where they slip, and one way among others where they stick.
     """
     N = -body.m * v.Y
     T = -(v.X - v.x) / (1 / body.m + body.base) if sigma == 0 else -sigma * body.mu * N
     ratio = T / N if N > 0 else 0.0
-    here, there = first.c * ratio + first.n, second.c * ratio + second.n  # here N_1 + there N_2 = J_G tilt'
-    one = (body.J * v.tilt - there * N) / (here - there)
+    # lever N_1 + other_lever N_2 = J_G tilt'
+    lever, other_lever = first.c * ratio + first.n, second.c * ratio + second.n
+    N_first = (body.J * v.tilt - other_lever * N) / (lever - other_lever)
     x = v.x - T * body.base
-    return T, N, min(one, N - one), Planar(x if sigma == 0 else v.X + T / body.m, 0.0, 0.0, x)
+    return T, N, min(N_first, N - N_first), Planar(x if sigma == 0 else v.X + T / body.m, 0.0, 0.0, x)
 
 
 @inner
 def _solve(v, body, first, second):
-    """(velocities after, corners that carry): the mode that violates the laws of contact least, by rounding only."""
+    """Return (velocities after, corners that carry) of the mode that violates the laws of contact least.
+
+    What it violates is by rounding only.
+    """
     carrying, after, best = NEITHER, v, max(_approach(v, first), _approach(v, second))
     for corners in (BOTH, FIRST, SECOND):
         if (corners & FIRST and not first.closed) or (corners & SECOND and not second.closed):
             continue
-        corner, other = (second, first) if corners == SECOND else (first, second)
+        corner, opposite = (second, first) if corners == SECOND else (first, second)
         for sigma in (0.0, -1.0, 1.0):
             if best <= 0:
                 return after, carrying
             if corners == BOTH:
-                T, N, least, found = _on_both(v, body, first, second, sigma)
+                T, N, least, velocities = _on_both(v, body, first, second, sigma)
                 wrong = 0.0
             else:
-                T, N, found = _on_one(v, body, corner, sigma)
-                least, wrong = N, _approach(found, other)
+                T, N, velocities = _on_one(v, body, corner, sigma)
+                least, wrong = N, _approach(velocities, opposite)
             impulse = max(-least, abs(T) - body.mu * N)
-            wrong = max(wrong, impulse / body.m, -sigma * _slip_rate(found, corner))
+            wrong = max(wrong, impulse / body.m, -sigma * _slip_rate(velocities, corner))
             if wrong < best:
-                carrying, after, best = corners, found, wrong
+                carrying, after, best = corners, velocities, wrong
     return after, carrying
 
 
@@ -315,14 +318,14 @@ def _moved(q, v, duration):
 
 @inner
 def _slip(par, q):
-    """Displacement of the lower corner along its base [m]."""
+    """Return the displacement of the lower corner along its base [m]."""
     s = math.copysign(1.0, q.tilt)
     return q.X - q.x + par.R * (math.sin(s * par.gamma - q.tilt) - s * math.sin(par.gamma))
 
 
 @inner
 def _start(par):
-    """Coordinates and velocities: the lower corner touches the base and does not slip."""
+    """Return coordinates and velocities at the start: the lower corner touches the base and does not slip."""
     s = math.copysign(1.0, par.tilt if par.tilt != 0 else par.rate)
     corner = _corner(par, s, Planar(0.0, 0.0, par.tilt, 0.0))
     q = Planar(par.x + (s * par.R * math.sin(par.gamma) - corner.n), corner.c, par.tilt, par.x)
@@ -331,13 +334,13 @@ def _start(par):
 
 @inner
 def _force(par, x, z, v):
-    """Of all bearings [N]."""
+    """Return the force of all bearings [N]."""
     return par.count * (par.kb * x + z + par.damping * v)
 
 
 @njit(cache=True, nogil=True)
 def _slide(body, par, h, ground, gravity, rows):
-    """All steps of a block that may slide, under the mean a_g and g + a_v [m/s2] in each; returns as `_march`."""
+    """Take all steps of a block that may slide, under the mean a_g and g + a_v [m/s2] in each; return as `_march`."""
     (q, v), z, pivot, taken, impacts, never = _start(par), par.z, NEITHER, 0.0, [(0.0, 0.0, 0.0, 0.0)], [0.0]
     impacts.pop(), never.pop()
     lifted, unstable, slip, path = q.tilt != 0 or v.tilt != 0, -1.0, _slip(par, q), 0.0

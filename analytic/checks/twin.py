@@ -1,8 +1,8 @@
-"""The second implementation: the equations of rocking.py solved by scipy's `solve_ivp` with events; slow and simple.
+"""The second implementation: the equations of `rocking`, solved by scipy's `solve_ivp` with events.
 
-It is independent of the compiled kernel, which it verifies, and is what a careful user would write. One call of
-`solve_ivp` covers one interval of smooth motion. It ends at the next corner of the ground motion, at an impact, an
-uplift, a reversal of the base (where the bearing's history is committed), a corner of the bearing law, or at
+It is slow and simple, and what a careful user would write. It is independent of the compiled kernel, which it verifies.
+One call of `solve_ivp` covers one interval of smooth motion. It ends at the next corner of the ground motion, at an
+impact, an uplift, a reversal of the base (where the bearing's history is committed), a corner of the bearing law, or at
 overturning.
 """
 
@@ -21,7 +21,7 @@ import scipy
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from ..errors import SettingError
+from ..errors import SettingError, require
 from ..kernel.decision import model_warnings
 from ..motion import PulseMotion, SampledMotion
 from ..response import Energy, Failure, History, Impact, Response, State, limit_warnings
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from ..scene import Scene
 
 METHODS = ("DOP853", "RK45", "LSODA", "Radau")
-IMPACT_LIMIT = 50_000  # more impacts in one run never accumulate (restitution of 1)
+IMPACT_LIMIT = 50_000  # impacts of a run; more of them never accumulate (restitution of 1)
 STALL_LIMIT = 50  # guard against an endless loop of events at one time
 STAND_POINTS = 33  # points of a segment at which uplift is checked under two motions
 REST_HORIZON = 0.1  # a block rests only if its impacts end within this share of 1/omega_r
@@ -69,8 +69,7 @@ def simulate_twin(
     max_step : float, optional
         Longest step [s]; default the least of half a sampling interval and, on bearings, half of 1/omega at ka.
     rest_rate : float
-        Impacts count as accumulated if |phi'+| < rest_rate omega_r and the contact force is compressive; the block then
-        rests.
+        Impacts have accumulated if |phi'+| < rest_rate omega_r under a compressive force; the block then rests.
 
     Returns
     -------
@@ -83,7 +82,7 @@ def simulate_twin(
     SettingError
         The method is unknown, a tolerance is not positive, or `max_step` too short for the run.
     SceneError
-        Stiff bearings or a long run need more steps than `budget` allows; the message names the part.
+        Stiff bearings or a long run need more steps than `most_steps` allows; the message names the part.
     """
     settings: dict[str, Any] = {
         "method": method,
@@ -116,33 +115,34 @@ def _check_cost(run: Run, max_step: float | None) -> None:
 
 def _check(settings: Mapping[str, Any]) -> None:
     """Refuse a method that is unknown, or a number that is not positive."""
-    if settings["method"] not in METHODS:
-        raise SettingError(f"method {settings['method']!r} is unknown: choose one of {', '.join(METHODS)}")
+    require(
+        settings["method"] in METHODS, f"method {settings['method']!r} is unknown: choose one of {', '.join(METHODS)}"
+    )
     for name, value in settings.items():
-        if name != "method" and value is not None and not (value > 0 and math.isfinite(value)):
-            raise SettingError(f"{name} = {value!r} is not positive: give a finite value above 0")
+        positive = name == "method" or value is None or (value > 0 and math.isfinite(value))
+        require(positive, f"{name} = {value!r} is not positive: give a finite value above 0")
 
 
 def shared_segments(
     motion: Motion | None, duration: float
 ) -> list[tuple[float, float, GroundFunction, GroundFunction]]:
-    """[(start, end, a_g(t), a_v(t)), ...] as of `segments`: on each both accelerations are smooth and monotone."""
+    """Return [(start, end, a_g(t), a_v(t)), ...] as `segments` does: both are smooth and monotone on each."""
     level = segments(motion, duration)
     if motion is None or motion.vertical is None:
         return [(*piece, _line(0.0, 0.0, 0.0)) for piece in level]
     upright = segments(motion.vertical, duration)
     cuts = sorted({end for pieces in (level, upright) for _, end, _ in pieces})
-    found, start, i, j = [], 0.0, 0, 0
+    shared, start, i, j = [], 0.0, 0, 0
     for end in cuts:
-        found.append((start, end, level[i][2], upright[j][2]))
+        shared.append((start, end, level[i][2], upright[j][2]))
         start, i, j = end, i + (level[i][1] == end), j + (upright[j][1] == end)
-    return found
+    return shared
 
 
 def segments(motion: Motion | None, duration: float) -> list[tuple[float, float, GroundFunction]]:
-    """[(start, end, a_g(t)), ...] from 0 to duration [s]: on each, a_g is smooth, and monotone in the open.
+    """Return [(start, end, a_g(t)), ...] from 0 to duration [s]: on each, a_g is smooth, and monotone inside.
 
-    One per interval of a record; pulses are cut at their zeros and extremes. a_g takes floats.
+    A record has one per interval; pulses are cut at their zeros and extremes. a_g takes floats.
     """
     if isinstance(motion, SampledMotion):
         dt, samples = motion.dt, motion.samples.tolist()
@@ -195,12 +195,12 @@ class Extremes:
             self.rows.append(row)
 
     def exclude_overturning(self) -> float:
-        """Remove the last fall of a block that has overturned; returns the time [s] at which it began."""
+        """Remove the last fall of a block that has overturned; return the time [s] at which it began."""
         self.x, self.acceleration, self.friction, self.normal, began = self.held
         return began
 
     def history(self) -> History | None:
-        """The `History`, or None."""
+        """Return the `History`, or None."""
         if self.rows is None:
             return None
         return History(*np.array(self.rows).reshape(-1, len(History.COLUMNS)).T)
@@ -208,7 +208,10 @@ class Extremes:
 
 @dataclass(frozen=True)
 class Event:
-    """An event of `solve_ivp`, a root of function(t, y). terminal: ends the interval. direction: sign of the slope."""
+    """An event of `solve_ivp`: a root of function(t, y).
+
+    terminal: whether it ends the interval. direction: sign of the slope.
+    """
 
     function: Callable[..., float]
     terminal: bool = True
@@ -219,7 +222,7 @@ class Event:
 
 
 class Equations:
-    """The state y and its derivative. y = [tilt, rate], on a base also x, v and z if integrated, then energy terms.
+    """The state y and its derivative: y = [tilt, rate], on a base also x, v and z if integrated, then energy terms.
 
     t [s]; side of the pivot, 0 in full contact; scale of each component of y; max_step: longest step [s] for the
     bearings.
@@ -252,12 +255,13 @@ class Equations:
         self.side = math.copysign(1.0, start.tilt or start.tilt_rate) if start.tilt or start.tilt_rate else 0.0
 
     def contact_acceleration(self, y: np.ndarray, ground: float) -> float:
-        """Absolute acceleration of the base in full contact [m/s2], eq. (2)."""
+        """Return the absolute acceleration of the base in full contact [m/s2], eq. (2)."""
         if not self.model.on_base:
             return ground
         return self.model.contact_acceleration(self.bearing_force(y))
 
     def derivative(self, ground: GroundFunction, direction: float) -> Callable[[float, np.ndarray], np.ndarray]:
+        """Return y'(t, y) over an interval. direction: sign of the base velocity."""
         model, law, side, energy, vertical = self.model, self.law, self.side, self.energy, self.vertical
         branch = law.unit.branch and law.unit.branch(self.hysteretic_force(self.y), direction, law.constants)
         if not model.on_base:
@@ -292,10 +296,11 @@ class Equations:
         return block_on_base
 
     def hysteretic_force(self, y: np.ndarray) -> float:
-        """z of one bearing [N]: from the state, or in closed form from the last reversal."""
+        """Return z of one bearing [N]: from the state, or in closed form from the last reversal."""
         return float(y[4]) if self.law.unit.branch else self.law.hysteretic(self.z_c, float(y[2]) - self.x_c)
 
     def bearing_force(self, y: np.ndarray) -> float:
+        """Return the force of all bearings [N], 0 on rigid ground."""
         return self.law.force(float(y[2]), self.hysteretic_force(y), float(y[3])) if self.model.on_base else 0.0
 
     def fix_history(self) -> None:
@@ -304,12 +309,13 @@ class Equations:
             self.z_c, self.x_c = self.hysteretic_force(self.y), float(self.y[2])
 
     def energies(self) -> tuple[float, float]:
-        """(kinetic, potential) [J], see `RockingModel`."""
+        """Return (kinetic, potential) [J], see `RockingModel`."""
         model, (tilt, rate, *base) = self.model, self.y[:4].tolist()
         x, v = base if model.on_base else (0.0, 0.0)
         return model.kinetic_energy(self.side, tilt, rate, v), model.potential_energy(self.side, tilt, x)
 
     def state(self) -> State:
+        """Return the current `State`."""
         x, v = (float(self.y[2]), float(self.y[3])) if self.model.on_base else (0.0, 0.0)
         return State(self.t, float(self.y[0]), float(self.y[1]), x, v, self.bearing_force(self.y))
 
@@ -320,7 +326,7 @@ class Run(Equations):
     def __init__(self, scene: Scene, settings: Mapping[str, Any], history: bool, energy: bool) -> None:
         super().__init__(scene, energy)
         self.settings, start = settings, scene.start
-        if isinstance(scene.motion, SampledMotion):  # two steps a sample, as one could skip a hop
+        if isinstance(scene.motion, SampledMotion):  # two steps a sample, as a single step could skip a hop
             self.max_step = min(self.max_step, 0.5 * scene.motion.dt)
         self.max_step = settings["max_step"] or self.max_step
         self.atol = settings["atol"] * self.scale
@@ -340,7 +346,7 @@ class Run(Equations):
     # the state machine
 
     def go(self) -> Failure | None:
-        """Run to the end or to overturning; a Failure, or None."""
+        """Run to the end or to overturning; return a Failure, or None."""
         for _, end, ground, vertical in shared_segments(self.scene.motion, self.scene.end):
             self.vertical = vertical  # a_v(t) [m/s2] of the segment
             while self.t < end and self.overturning is None:
@@ -356,7 +362,7 @@ class Run(Equations):
         return None
 
     def advance(self, end: float, ground: GroundFunction) -> Failure | None:
-        """One interval of smooth motion from self.t, at most to `end`."""
+        """Advance over one interval of smooth motion from self.t, at most to `end`."""
         if self.side == 0:
             a = self.contact_acceleration(self.y, ground(self.t))
             if abs(a) > self.model.uplift_limit(self.vertical(self.t)):
@@ -368,12 +374,12 @@ class Run(Equations):
         return self.integrate(end, ground)
 
     def lift(self, acceleration: float) -> None:
-        """Uplift: tilt, rate and phi'' are 0, so that the side follows from the acceleration, which it opposes."""
+        """Lift the block: tilt, rate and phi'' are 0, so that the side is opposite to the acceleration."""
         self.side, self.lifted, self.rocked = -math.copysign(1.0, acceleration), self.t, True
         self.uplifts.append(self.t)
 
     def stand(self, end: float, ground: GroundFunction) -> None:
-        """Full contact on rigid ground: the block stands until |a_g| exceeds (g + a_v) tan(gamma)."""
+        """Keep the block in full contact on rigid ground until |a_g| exceeds (g + a_v) tan(gamma)."""
 
         def excess(t):
             return abs(ground(t)) - self.model.uplift_limit(self.vertical(t))
@@ -433,34 +439,34 @@ class Run(Equations):
 
     @staticmethod
     def states(events: Sequence[tuple[str, Event]], solution: Any) -> list[tuple[float, np.ndarray]]:
-        """(t, y) in order of time: the steps, the reversals of block and base, and the passages of the slenderness."""
-        found = list(zip(solution.t, solution.y.T, strict=True))
+        """Return (t, y) in order of time, at steps, reversals of block and base, and passages of the slenderness."""
+        points = list(zip(solution.t, solution.y.T, strict=True))
         for (_, event), times, states in zip(events, solution.t_events, solution.y_events, strict=True):
             if not event.terminal:
-                found += zip(times, states, strict=True)
-        return sorted(found, key=lambda each: each[0])
+                points += zip(times, states, strict=True)
+        return sorted(points, key=lambda each: each[0])
 
     def stepped_over(self, events: Sequence[tuple[str, Event]], solution: Any) -> float | None:
-        """Time of the first extreme beyond a threshold that was crossed twice within one step, or None.
+        """Return the time of the first extreme beyond a threshold that was crossed twice within one step, or None.
 
-        tilt below 0 where its rate is 0; |a_abs| above g tan(gamma), or the bearing beyond its corner, where the base
-        stands still.
+        These are a tilt below 0 where its rate is 0 and, where the base stands still, |a_abs| above g tan(gamma) or the
+        bearing beyond its corner.
         """
-        found = []
+        crossings = []
         for (name, _), times, states in zip(events, solution.t_events, solution.y_events, strict=True):
             for t, y in zip(times, states, strict=True):
                 if name == "apex" and self.side * y[0] < 0:
-                    found.append(float(t))
+                    crossings.append(float(t))
                 elif name == "reversal" and self.side == 0:
                     limit = self.model.uplift_limit(self.vertical(t))
                     if abs(self.contact_acceleration(y, 0.0)) > limit * (1 + 1e-13):
-                        found.append(float(t))
+                        crossings.append(float(t))
                 if name == "reversal" and abs(self.corner) < math.inf and abs(y[4]) > abs(self.corner):
-                    found.append(math.nextafter(t, self.t))
-        return min(found, default=None)
+                    crossings.append(math.nextafter(t, self.t))
+        return min(crossings, default=None)
 
     def direction(self, end: float, ground: GroundFunction) -> float:
-        """Sign of the base velocity over the coming stretch; where it stands, of its acceleration."""
+        """Return the sign of the base velocity over the coming stretch; where the base stands, of its acceleration."""
         if not self.model.on_base:
             return 0.0
         if self.y[3] != 0:
@@ -474,28 +480,32 @@ class Run(Equations):
     # events of the integration; "terminal" ones end an interval and have an at_ method
 
     def events(self, direction: float) -> list[tuple[str, Event]]:
+        """Return (name, `Event`) of all events of an integration.
+
+        A terminal event ends the interval, and the method at_NAME applies it.
+        """
         side, model, lifted, turned = self.side, self.model, self.lifted, self.turned
-        found = []
+        events = []
         if side:
             # the root phi = 0 at uplift is divided out
-            found.append(("impact", Event(lambda t, y: side * y[0] / (t - lifted) if t > lifted else 1.0)))
-            found.append(("overturning", Event(lambda t, y: side * y[0] - math.pi / 2, direction=1)))
-            found.append(("apex", Event(lambda t, y: side * y[1], terminal=False, direction=0)))
-            found.append(("unstable", Event(lambda t, y: side * y[0] - model.gamma, terminal=False, direction=1)))
+            events.append(("impact", Event(lambda t, y: side * y[0] / (t - lifted) if t > lifted else 1.0)))
+            events.append(("overturning", Event(lambda t, y: side * y[0] - math.pi / 2, direction=1)))
+            events.append(("apex", Event(lambda t, y: side * y[1], terminal=False, direction=0)))
+            events.append(("unstable", Event(lambda t, y: side * y[0] - model.gamma, terminal=False, direction=1)))
         else:
             limit, vertical = model.uplift_limit, self.vertical
-            found.append(
+            events.append(
                 ("uplift", Event(lambda t, y: abs(self.contact_acceleration(y, 0.0)) - limit(vertical(t)), direction=1))
             )
         if direction:
             stops = self.law.unit.memory  # else there may be several, each a peak
             reversal = Event(lambda t, y: direction * y[3] if t > turned else 1.0, stops, -1 if stops else 0)
-            found.append(("reversal", reversal))
+            events.append(("reversal", reversal))
             ahead = self.law.unit.begin.py_func(direction, self.hysteretic_force(self.y), 1.0, self.law.constants)[2]
             self.corner = corner = direction * ahead
             if ahead < math.inf:
-                found.append(("corner", Event(lambda t, y: direction * (y[4] - corner), direction=1)))
-        return found
+                events.append(("corner", Event(lambda t, y: direction * (y[4] - corner), direction=1)))
+        return events
 
     def at_overturning(self, ground: GroundFunction) -> None:
         self.overturning = self.t
@@ -511,7 +521,7 @@ class Run(Equations):
         self.y[4] = self.corner
 
     def at_impact(self, ground: float) -> None:
-        """Eqs (7), (8); then the other corner, or rest if impacts accumulate under a compressive contact force."""
+        """Apply eqs (7), (8); then the other corner, or rest if impacts accumulate under a compressive force."""
         y, model = self.y, self.model
         before, kinetic = y[1], self.energies()[0]
         y[0] = 0.0
@@ -523,15 +533,15 @@ class Run(Equations):
         self.side, self.lifted = math.copysign(1.0, y[1]), self.t
         force, e = self.bearing_force(y), model.restitution
         # deceleration toward contact on either corner: sides alternate, and a load makes them unequal
-        here, there = (
+        this_side, other_side = (
             -side * model.accelerations(side, 0.0, y[1], ground, force, self.vertical(self.t))[0]
             for side in (self.side, -self.side)
         )
-        held, remaining = min(here, there) > 0, math.inf
+        held, remaining = min(this_side, other_side) > 0, math.inf
         if held and e < 1:  # two geometric series
-            remaining = 2 * abs(y[1]) / (1 - e * e) * (1 / here + e / there)
-        if here > 0:
-            self.flight = 2.2 * abs(y[1]) / here or None
+            remaining = 2 * abs(y[1]) / (1 - e * e) * (1 / this_side + e / other_side)
+        if this_side > 0:
+            self.flight = 2.2 * abs(y[1]) / this_side or None
         resting = abs(y[1]) < self.settings["rest_rate"] * self.omega_r
         if y[1] == 0 or (resting and remaining * self.omega_r < REST_HORIZON):
             if model.on_base:  # the remaining momentum goes to the base, as at an impact with restitution 0
@@ -541,7 +551,7 @@ class Run(Equations):
                 self.rests.append(float(self.t + remaining))
         self.impact_loss += kinetic - self.energies()[0]
 
-    # what is kept
+    # results
 
     def record(self, t: float, y: np.ndarray, ground: float) -> None:
         """Keep one step."""
@@ -561,11 +571,13 @@ class Run(Equations):
         )
 
     def ledger(self) -> Energy:
-        kinetic, potential = (now - then for now, then in zip(self.energies(), self.stored, strict=True))
+        """Return the energy balance from the start to now."""
+        kinetic, potential = (after - before for after, before in zip(self.energies(), self.stored, strict=True))
         work = self.y[-3:].tolist() if self.model.on_base else [float(self.y[-1]), 0.0, 0.0]
         return Energy(*[kinetic, potential, *work, float(self.impact_loss)])
 
     def response(self, cpu_seconds: float, failure: Failure | None) -> Response:
+        """Return the `Response` of the run."""
         outcome = "rocks" if self.rocked else "stands"
         outcome = "failed" if failure else "overturns" if self.overturning is not None else outcome
         extremes = self.extremes

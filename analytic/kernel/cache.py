@@ -1,7 +1,7 @@
-"""Where numba keeps the compiled model: each entry by the code of all that it runs, whatever file that stands in.
+"""The cache of compiled functions: an entry is found by the code of all that it runs.
 
-Numba itself looks only at the file of the entry: after a change in taylor.py it would use a stale kernel, and after one
-beside the kernel it would compile a good one again.
+Numba itself looks only at the file of the entry. After a change in `steps` it would use a stale kernel, and after a
+change elsewhere in that file it would compile a good one again.
 """
 
 from __future__ import annotations
@@ -22,28 +22,28 @@ import numba
 import numpy as np
 from numba.core.caching import UserProvidedCacheLocator
 
-HERE, PACKAGE = Path(__file__).parent, __name__.partition(".")[0]
-# the first that can be written
+HERE = Path(__file__).parent
+# Folders of the cache; the first one that can be written is used.
 PLACES = (HERE / "__pycache__", Path.home() / ".cache" / "rocking", Path(tempfile.gettempdir()))
 
 
 class Locator(UserProvidedCacheLocator):
-    """Place and state of an entry's compiled form, as numba asks for them."""
+    """Place of an entry's compiled form, and stamp of the code that it was compiled from, as numba asks for them."""
 
     def __init__(self, function: Any, place: Path) -> None:
         self._stamp, self._cache_path = digest(function), str(place / "numba")
 
     def get_source_stamp(self) -> str:
-        """Of what it was compiled from."""
+        """Return the digest of the code that the entry was compiled from."""
         return self._stamp
 
     def get_disambiguator(self) -> str:
-        """Part of the file's name: forms of several states of the code stand side by side."""
+        """Return a part of the file's name, so that compiled forms of several versions stand side by side."""
         return self._stamp[:16]
 
     @classmethod
     def from_function(cls, py_func: Any, py_file: str) -> Locator | None:
-        """The locator in the first of `PLACES` that can be written; none where there is none."""
+        """Return the locator in the first of `PLACES` that can be written, or None."""
         for place in PLACES:
             locator = cls(py_func, place)
             try:
@@ -56,7 +56,10 @@ class Locator(UserProvidedCacheLocator):
 
 @contextmanager
 def kernel_cache() -> Iterator[None]:
-    """Functions decorated inside are cached by `Locator`; NUMBA_CACHE_DIR, if set, wins."""
+    """Cache the functions decorated inside by `Locator`, in files of their own for each version of the source.
+
+    NUMBA_CACHE_DIR, if set, wins.
+    """
     config: Any = numba.config
     before = config.CACHE_LOCATOR_CLASSES
     if not config.CACHE_DIR:
@@ -68,57 +71,59 @@ def kernel_cache() -> Iterator[None]:
 
 
 def digest(function: Any) -> str:
-    """Of the code of a function and of all that it reads: constants, and functions with what those read."""
+    """Return the digest of a function's code and of all that it reads: constants, and functions with what they read."""
     content = [(HERE / "compiled.py").read_text(encoding="utf-8"), *_read(function, set())]
     return hashlib.sha256("\n".join(content).encode()).hexdigest()
 
 
-def _read(one: Any, known: set[int]) -> Iterator[str]:
-    """Texts that differ where what `one` says differs. known: functions that were met, by id."""
-    function = getattr(one, "py_func", one)  # of a compiled one
-    if not _own(function):
-        yield repr(one.tolist() if isinstance(one, np.ndarray) else getattr(one, "__name__", one))
+def _read(item: Any, seen: set[int]) -> Iterator[str]:
+    """Yield texts that differ where the item, or anything that it reads, differs. seen: ids of functions already read.
+
+    They name the modules of the project's items, too, as a stored form finds these by their modules.
+    """
+    function = getattr(item, "py_func", item)  # of a compiled function
+    module = _module_of(function)
+    if module.partition(".")[0] != __package__.partition(".")[0]:
+        yield repr(item.tolist() if isinstance(item, np.ndarray) else getattr(item, "__name__", item))
     elif not inspect.isfunction(function):
-        yield f"{_module(function)} {_source(function)}"  # types are kept by the name of their module
-    elif id(function) not in known:
-        known.add(id(function))
-        yield f"{_module(function)} {_plain(function.__code__, function.__doc__)} {function.__defaults__}"
+        yield f"{module} {_source(function)}"
+    elif id(function) not in seen:
+        seen.add(id(function))
+        yield f"{module} {_plain(function.__code__, function.__doc__)} {function.__defaults__}"
         around = inspect.getclosurevars(function).nonlocals
         for name in sorted({*_global(function.__code__), *around}):
             yield name
             for scope in (around, function.__globals__, vars(builtins)):
                 if name in scope:
-                    yield from _read(scope[name], known)
+                    yield from _read(scope[name], seen)
                     break
             else:
-                words = f"{name}, read by {function.__qualname__}, stands below the entry: move the entry down"
-                raise NameError(words)  # else a change in what it calls would leave a stale kernel
+                # Otherwise a change in what it calls would leave a stale kernel.
+                raise NameError(f"{name}, read by {function.__qualname__}, stands below the entry: move the entry down")
 
 
-def _own(one):
-    """Whether it is a module, class or function of the model."""
-    return (_module(one) if inspect.ismodule(one) or callable(one) else "").partition(".")[0] == PACKAGE
+def _module_of(item):
+    """Return the name of the module that an item is, or that a class or function stands in; "" for others."""
+    if inspect.ismodule(item):
+        return item.__name__
+    return (getattr(item, "__module__", None) if callable(item) else None) or ""
 
 
-def _module(one: Any) -> str:
-    """Name of a module, or of that of a class or function."""
-    return (one.__name__ if inspect.ismodule(one) else getattr(one, "__module__", None)) or ""
-
-
-def _source(one: Any) -> str:
+def _source(kind: Any) -> str:
     try:
-        return inspect.getsource(one)
-    except OSError:  # a class that was made by a call
-        return inspect.getsource(sys.modules[one.__module__])
+        return inspect.getsource(kind)
+    except OSError:  # a class made by a call, as a namedtuple
+        return inspect.getsource(sys.modules[kind.__module__])
 
 
 def _global(code):
-    """Names that a code object reads from its module."""
-    inner = (_global(one) for one in code.co_consts if isinstance(one, CodeType))
-    return {one.argval for one in dis.get_instructions(code) if one.opname == "LOAD_GLOBAL"}.union(*inner)
+    """Return the names that a code object reads from its module."""
+    inner = (_global(constant) for constant in code.co_consts if isinstance(constant, CodeType))
+    return {step.argval for step in dis.get_instructions(code) if step.opname == "LOAD_GLOBAL"}.union(*inner)
 
 
 def _plain(code, doc=None):
-    """What a code object does, without lines, names of files and its docstring."""
-    consts = [_plain(one) if isinstance(one, CodeType) else one for one in code.co_consts if one is None or one != doc]
-    return code.co_code.hex(), consts, code.co_names, code.co_varnames
+    """Return what a code object does, without line numbers, file names and its docstring."""
+    constants = [each for each in code.co_consts if each is None or each != doc]
+    plain = [_plain(each) if isinstance(each, CodeType) else each for each in constants]
+    return code.co_code.hex(), plain, code.co_names, code.co_varnames

@@ -1,10 +1,10 @@
 """Compilation of the model by numba, into machine code that runs without the interpreter and its lock.
 
-A function that is called only by compiled code is `inner`: without wrappers for Python and C, which take longer to
-compile than most functions themselves, and without reference counts of arrays, an atomic operation at each call. It
-must therefore not allocate an array. It is not optimised and compiled to machine code on its own, as numba does with
-every function at every level of calls: its intermediate code is linked into the calling `entry`, which is optimised as
-a whole. An entry is a function that Python calls; it is cached on disk, see `_cache`.
+A function that only compiled code calls is `inner`. It has no wrappers for Python and C, which take longer to compile
+than most functions themselves, and no reference counts of arrays, an atomic operation at each call. It must therefore
+not allocate an array. It is not optimised and compiled to machine code on its own, as numba does with every function at
+every level of calls: its intermediate code is linked into the calling `entry`, which is optimised as a whole. An entry
+is a function that Python calls. It is cached on disk, see `cache`.
 """
 
 import gc
@@ -39,12 +39,12 @@ class _Lowering(NativeLowering):
         state.flags.no_compile = True
         state["library"] = _Linked(state.targetctx.codegen(), state.func_id.func_qualname)
         super().run_pass(state)
-        made = state["cr"]
+        lowered = state["cr"]
         # as numba does with machine code; callers find the function by this key, which nothing calls
-        where, name = made.fndesc.lookup_module(), made.fndesc.qualname
-        key = _dynfunc.make_function(where, name, "", 0, made.env, (state["library"],))
-        state.targetctx.insert_user_function(key, made.fndesc, [state["library"]])
-        state["cr"] = made._replace(cfunc=key)
+        where, name = lowered.fndesc.lookup_module(), lowered.fndesc.qualname
+        key = _dynfunc.make_function(where, name, "", 0, lowered.env, (state["library"],))
+        state.targetctx.insert_user_function(key, lowered.fndesc, [state["library"]])
+        state["cr"] = lowered._replace(cfunc=key)
         return True
 
 
@@ -63,22 +63,28 @@ _BARE: dict[str, Any] = {**_UNCOUNTED, "no_cpython_wrapper": True, "no_cfunc_wra
 
 
 def inner(function: Callable[..., Any]) -> Any:
-    """Compiled for calls from compiled code only."""
+    """Compile a function for calls from compiled code only."""
     return njit(**_BARE)(function)
 
 
 def inlined(function: Callable[..., Any]) -> Any:
-    """As `inner`, and inlined into each caller by LLVM, which takes a fraction of the time of numba's inlining."""
+    """Compile as `inner` does, inlined into each caller by LLVM.
+
+    That takes a fraction of the time of numba's own inlining.
+    """
     return njit(**_BARE, forceinline=True)(function)
 
 
 def entry(function: Callable[..., Any]) -> Any:
-    """Compiled for calls from Python and compiled code; it releases the lock, so that threads run and Ctrl-C works."""
+    """Compile a function for calls from Python and compiled code.
+
+    It releases the lock, so that threads run and Ctrl-C works.
+    """
     return njit(**_UNCOUNTED, nogil=True, cache=True)(function)
 
 
 def chosen(functions: Sequence[Callable[..., Any]]) -> Any:
-    """Compiled function of (number, *arguments): the function of that number.
+    """Return the compiled function of (number, *arguments) that calls the function of that number.
 
     With functions as arguments, each caller would be compiled once for each of them.
     """
@@ -88,24 +94,24 @@ def chosen(functions: Sequence[Callable[..., Any]]) -> Any:
     def choose(number, *arguments):
         return last(*arguments)
 
-    for place, own in reversed(list(enumerate(before))):
-        choose = _either(place, own, choose)
+    for place, function in reversed(list(enumerate(before))):
+        choose = _either(place, function, choose)
     return choose
 
 
-def _either(place: int, own: Callable[..., Any], others: Callable[..., Any]) -> Any:
+def _either(place: int, function: Callable[..., Any], otherwise: Callable[..., Any]) -> Any:
     @inlined
     def choose(number, *arguments):
         if number == place:
-            return own(*arguments)
-        return others(number, *arguments)
+            return function(*arguments)
+        return otherwise(number, *arguments)
 
     return choose
 
 
 @contextmanager
 def compiling() -> Iterator[None]:
-    """Without the garbage collector, as the compiler's millions of objects live until its end."""
+    """Run without the garbage collector, as the compiler's millions of objects live until its end."""
     enabled = gc.isenabled()
     gc.disable()
     try:

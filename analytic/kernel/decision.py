@@ -51,7 +51,7 @@ _recoverable = law_function("recoverable")
 
 @inner
 def recoverable_energy(law: float, c: Constants, z: float) -> float:
-    """S(z) [J] of one bearing: the integral of |z| dx while unloading to z = 0; at least z^2/(2 (ka - kb))."""
+    """Return S(z) [J] of one bearing: the integral of |z| dx while unloading to z = 0; at least z^2/(2 (ka - kb))."""
     z = abs(z)
     if z == 0:
         return 0.0
@@ -60,7 +60,7 @@ def recoverable_energy(law: float, c: Constants, z: float) -> float:
 
 @inner
 def remaining_energy(par: Parameters, body: Body, base: Base) -> float:
-    """E [J] that can still reach the block, see the module's docstring."""
+    """Return E [J] that can still reach the block, see the module's docstring."""
     (s, tilt, rate), (x, v, z) = body, base
     kinetic, gravity, momentum = 0.5 * par.M * v * v, 0.0, par.M * v
     if not par.on_base:
@@ -82,7 +82,7 @@ def remaining_energy(par: Parameters, body: Body, base: Base) -> float:
 
 @inner
 def largest_force(par: Parameters, energy: float) -> float:
-    """Largest force of all bearings [N] that `energy` allows in full contact.
+    """Return the largest force of all bearings [N] that `energy` allows in full contact.
 
     By the Cauchy-Schwarz inequality for kinetic, elastic and recoverable energy, the last at least z^2/(2 (ka - kb));
     or with the hysteretic part at its limit f0.
@@ -97,7 +97,10 @@ def largest_force(par: Parameters, energy: float) -> float:
 
 @entry
 def will_not_overturn(par: Parameters, body: Body, base: Base, lifted: bool) -> bool:
-    """Whether, after the motion, "stands" or "rocks" is certain, by rules (a) and (b). lifted : before, or now."""
+    """Return whether, after the motion, "stands" or "rocks" is certain, by rules (a) and (b).
+
+    lifted : whether the block has lifted, before or now.
+    """
     rocking = body.s != 0
     if not (rocking or par.on_base):
         return True
@@ -109,7 +112,7 @@ def will_not_overturn(par: Parameters, body: Body, base: Base, lifted: bool) -> 
 
 @entry
 def peaks_are_final(par: Parameters, body: Body, base: Base, peaks: tuple[float, float, float]) -> bool:
-    """Whether, after a decision, no reported peak can grow by more than `PEAK_TOLERANCE`.
+    """Return whether, after a decision, no reported peak can grow by more than `PEAK_TOLERANCE`.
 
     peaks : of tilt, base displacement and absolute base acceleration; a negative one is ignored. A base without
     bearings slides for ever, so that its displacement has no peak.
@@ -134,7 +137,7 @@ def peaks_are_final(par: Parameters, body: Body, base: Base, peaks: tuple[float,
 
 
 def period(scene: Scene) -> float:
-    """The longer of rocking and isolation period [s]: 2 pi/omega_r and 2 pi sqrt((m + m_b)/(n_d k))."""
+    """Return the longer of rocking and isolation period [s]: 2 pi/omega_r and 2 pi sqrt((m + m_b)/(n_d k))."""
     rocking = 2 * math.pi / scene.rocking_frequency
     if scene.bearings is None:
         return rocking
@@ -144,43 +147,46 @@ def period(scene: Scene) -> float:
 
 
 def motion_end(scene: Scene) -> float:
-    """End of the ground motion [s], 0 without one."""
+    """Return the end of the ground motion [s], 0 without one."""
     return 0.0 if scene.motion is None else scene.motion.end
 
 
 def shortest_duration(scene: Scene) -> float:
-    """Shortest run without a duration [s]: the motion and `TAIL_PERIODS` after it."""
+    """Return the shortest run without a duration [s]: the motion and `TAIL_PERIODS` after it."""
     return motion_end(scene) + TAIL_PERIODS * period(scene)
 
 
 def longest_duration(scene: Scene) -> float:
-    """Longest run without a duration, decided or not [s]: `CAP_PERIODS` after the motion."""
+    """Return the longest run without a duration, decided or not [s]: `CAP_PERIODS` after the motion."""
     return motion_end(scene) + CAP_PERIODS * period(scene)
 
 
 def model_warnings(
     scene: Scene, friction_demand: float, min_normal_ratio: float, slides: bool = False
 ) -> tuple[Caution, ...]:
-    """Warnings where a run violates the model's assumptions: compressive contact, no sliding, and bearings that are
-    rigid under a vertical motion. slides : by a solver whose block slides and flies with a friction, and is seen to."""
-    found = []
+    """Return warnings where a run violates the model's assumptions.
+
+    These are compressive contact, no sliding, and bearings that are rigid under a vertical motion. slides : whether the
+    solver models a block that slides and flies with a friction, so that these are no violations.
+    """
+    warnings = []
     if scene.bearings is not None and scene.motion is not None and scene.motion.vertical is not None:
-        found.append(Caution("model", RIGID_BEARINGS))
+        warnings.append(Caution("model", RIGID_BEARINGS))
     if slides and scene.friction is not None:
-        return tuple(found)
+        return tuple(warnings)
     if min_normal_ratio <= 0:
         words = (
             f"the least normal force at the contact is {min_normal_ratio:.3g} m g: the block would jump, and the "
             "outcome is outside the model" + ("" if scene.friction else "; with a friction in the scene it flies")
         )
-        found.append(Caution("model", words, "min_normal_ratio", min_normal_ratio, 0.0))
+        warnings.append(Caution("model", words, "min_normal_ratio", min_normal_ratio, 0.0))
     if scene.friction is not None and friction_demand > scene.friction:
         words = (
             f"the friction demand {friction_demand:.3g} is above the scene's friction {scene.friction:.3g}: the block "
             "would slide, and the outcome is outside the model"
         )
-        found.append(Caution("model", words, "friction_demand", friction_demand, scene.friction))
-    return tuple(found)
+        warnings.append(Caution("model", words, "friction_demand", friction_demand, scene.friction))
+    return tuple(warnings)
 
 
 def run_warnings(
@@ -192,18 +198,18 @@ def run_warnings(
     slides: bool = False,
     peak_slip: float = 0.0,
 ) -> tuple[Caution, ...]:
-    """All warnings of a run of the analytic model: of the record, `model_warnings`, `limit_warnings`, a base that
-    slides on.
+    """Return all warnings of a run of the analytic model.
 
-    base_velocity : at the end [m/s]. slides : as in `model_warnings`. peak_slip : as in `limit_warnings` [m].
+    They are of the record, `model_warnings`, `limit_warnings`, and of a base that slides on. base_velocity : at the end
+    [m/s]. slides : as in `model_warnings`. peak_slip : as in `limit_warnings` [m].
     """
-    found = [*about_record(scene.motion), *model_warnings(scene, friction_demand, min_normal_ratio, slides)]
-    found += limit_warnings(scene, peak_base_displacement, peak_slip)
+    warnings = [*about_record(scene.motion), *model_warnings(scene, friction_demand, min_normal_ratio, slides)]
+    warnings += limit_warnings(scene, peak_base_displacement, peak_slip)
     drift = abs(base_velocity) * CAP_PERIODS * period(scene)  # rounding errors are no motion
     if scene.base is not None and scene.bearings is None and drift > PEAK_TOLERANCE * peak_base_displacement:
         words = (
             f"the base slides on at {base_velocity:.3g} m/s with no bearing to stop it: its displacement has no peak, "
             "the one given is that at the end of the run"
         )
-        found.append(Caution("model", words, "base_velocity", base_velocity, 0.0))
-    return tuple(found)
+        warnings.append(Caution("model", words, "base_velocity", base_velocity, 0.0))
+    return tuple(warnings)

@@ -1,9 +1,7 @@
-"""Event location for block and base inside one Taylor step, and the rules of rest (compiled).
+"""Events inside one Taylor step, the rules of rest, and what is read from a step (compiled).
 
-Each finder returns the first time in the step, or -1. It first evaluates a cheap bound on the polynomial, as most steps
-have no event.
-
-Dense output of a Taylor step: history, contact diagnostics and energy ledger (compiled).
+Each finder returns the first time of its event in the step, or -1. It first evaluates a cheap bound on the polynomial,
+as most steps have no event. Dense output of the step gives history, contact diagnostics and energy ledger.
 """
 
 import math
@@ -25,7 +23,7 @@ TOUCH = 1e-9
 
 @inner
 def find_uplift(shape, vertical, refused, step, P, work):
-    """|absolute acceleration| exceeds the threshold g tan(gamma), or that of g + a_v."""
+    """Return the time at which |absolute acceleration| exceeds the threshold g tan(gamma), or that of g + a_v."""
     row, order, highest, h, event = (
         P[L.ABSOLUTE if shape.on_base else L.GROUND],
         step.order,
@@ -36,7 +34,7 @@ def find_uplift(shape, vertical, refused, step, P, work):
     threshold, slope, G = step.gravity * shape.slope, shape.slope, P[L.GRAVITY]
     if abs(row[0]) > threshold and not refused:
         return 0.0
-    size, found, least = bound(row, order, h), -1.0, threshold
+    size, first, least = bound(row, order, h), -1.0, threshold
     if vertical is not None:
         least, power = slope * G[0], slope
         for k in range(1, highest + 1):
@@ -57,13 +55,13 @@ def find_uplift(shape, vertical, refused, step, P, work):
                     continue
             root = first_root(event, order, h, work)
             if root >= 0:
-                found, h = root, root
-    return found
+                first, h = root, root
+    return first
 
 
 @inner
 def find_fall(f, side, limit, order, h, event, work):
-    """First time at which limit + side f falls below 0; a root at the start of the step is the previous event."""
+    """Return the first time at which limit + side f falls below 0; a root at the start is the previous event."""
     lowest, power = limit + side * f[0], 1.0
     for k in range(1, order + 1):
         power *= h
@@ -78,7 +76,7 @@ def find_fall(f, side, limit, order, h, event, work):
 
 @inner
 def upper_bound(phi, s, order, h):
-    """A bound on |tilt| over the step."""
+    """Return a bound on |tilt| over the step."""
     top, power = s * phi[0], 1.0
     for k in range(1, order + 1):
         power *= h
@@ -88,40 +86,44 @@ def upper_bound(phi, s, order, h):
 
 @inner
 def find_passage(gamma, s, tilt, sooner, order, P, work):
-    """(kind, time) of the first passage of the slenderness or of pi/2; sooner : (kind, time) of another event, else
-    returned."""
-    (found, h), phi, event = sooner, P[L.PHI], P[L.EVENT]
+    """Return (kind, time) of the first passage of the slenderness or of pi/2, or else `sooner`.
+
+    sooner : (kind, time) of another event.
+    """
+    (kind, h), phi, event = sooner, P[L.PHI], P[L.EVENT]
     top = upper_bound(phi, s, order, h)
     if top > gamma > s * tilt:
         root = find_fall(phi, -s, gamma, order, h, event, work)
         if root >= 0:
-            found, h = L.PASSAGE, root
+            kind, h = L.PASSAGE, root
     if top > 0.5 * math.pi:
         root = find_fall(phi, -s, 0.5 * math.pi, order, h, event, work)
         if root >= 0:
-            found, h = L.OVERTURNING, root
-    return found, h
+            kind, h = L.OVERTURNING, root
+    return kind, h
 
 
 @inner
 def find_turn(direction, corner, sooner, order, P, work):
-    """(kind, time) of the first reversal or corner of the bearings; direction : of the base velocity; sooner : as in
-    `find_passage`."""
-    found, h = sooner
+    """Return (kind, time) of the first reversal or corner of the bearings, or else `sooner`, see `find_passage`.
+
+    direction : of the base velocity.
+    """
+    kind, h = sooner
     if direction != 0:
         root = find_fall(P[L.V], direction, 0.0, order, h, P[L.EVENT], work)
         if root > 0:
-            found, h = L.REVERSAL, root
+            kind, h = L.REVERSAL, root
         if corner < math.inf:
             root = find_fall(P[L.Q], -direction, corner, order, h, P[L.EVENT], work)
             if root >= 0:
-                found, h = L.CORNER, root
-    return found, h
+                kind, h = L.CORNER, root
+    return kind, h
 
 
 @inner
 def direction_from_rest(par, body, gravity, highest, A, force):
-    """Sign of the motion that a base at rest begins: that of its first derivative that is not zero.
+    """Return the sign of the motion that a base at rest begins: that of its first derivative that is not zero.
 
     gravity : g + a_v [m/s2]; A : series of a_g; force : of all bearings [N].
     """
@@ -141,7 +143,7 @@ def direction_from_rest(par, body, gravity, highest, A, force):
 
 @inner
 def hop_deceleration(par, s, gravity, ground, force):
-    """-s phi'' at phi = 0 on side s [rad/s2], positive toward contact, from eqs (3)-(6).
+    """Return -s phi'' at phi = 0 on side s [rad/s2], positive toward contact, from eqs (3)-(6).
 
     gravity, ground : g + a_v and a_g [m/s2].
     """
@@ -154,28 +156,32 @@ def hop_deceleration(par, s, gravity, ground, force):
 
 @inner
 def remaining_hops(par, rate, gravity, ground, force):
-    """Time [s] from an impact with tilt rate `rate` after it to the limit of all further ones; -1 without rest.
+    """Return the time [s] from an impact to the limit of all further ones, or -1 if the block does not come to rest.
 
-    A swing lasts 2 w/q on its side, and w is multiplied by e at each impact: a geometric series, exact for small
-    swings.
+    rate : the tilt rate after the impact. A swing lasts 2 w/q on its side, and w is multiplied by e at each impact: a
+    geometric series, exact for small swings.
     """
     s = 1.0 if rate > 0 else -1.0
-    here, there = hop_deceleration(par, s, gravity, ground, force), hop_deceleration(par, -s, gravity, ground, force)
+    # decelerations toward contact on the side of the next swing, and on the other
+    near, far = hop_deceleration(par, s, gravity, ground, force), hop_deceleration(par, -s, gravity, ground, force)
     w = abs(rate)
-    if here <= 0 or there <= 0:
+    if near <= 0 or far <= 0:
         # exactly on the threshold rounding determines the sign, and swings decrease for ever
-        touching = min(here, there) >= -TOUCH * par.p2
+        touching = min(near, far) >= -TOUCH * par.p2
         return 0.0 if touching and w < NO_RATE * math.sqrt(par.p2) else -1.0
-    if 2 * w > LONGEST_LAST_HOP / math.sqrt(par.p2) * min(here, there):
+    if 2 * w > LONGEST_LAST_HOP / math.sqrt(par.p2) * min(near, far):
         return -1.0
     if par.e > NEARLY_ELASTIC:
         return 0.0
-    return 2 * w * (1 / here + par.e / there) / (1 - par.e * par.e)
+    return 2 * w * (1 / near + par.e / far) / (1 - par.e * par.e)
 
 
 @inner
 def impact_loss(par, v, before, after, jump):
-    """Kinetic energy lost [J]: the tilt rate falls from `before` to `after`, the base velocity v rises by `jump`."""
+    """Return the kinetic energy lost [J] while the tilt rate falls from `before` to `after`.
+
+    v : velocity of the base, which rises by `jump`.
+    """
     coupling = par.m * par.R * math.cos(par.gamma)
     return (
         0.5 * par.J * (before * before - after * after)
@@ -186,7 +192,7 @@ def impact_loss(par, v, before, after, jump):
 
 @inner
 def land(par, rate, base, gravity, ground, rest_rate, t, arrays):
-    """State after an impact, eqs (7), (8): (rate, base velocity, whether the block rests). Stores the impact.
+    """Return the state after an impact, eqs (7), (8): (rate, base velocity, whether the block rests). Store the impact.
 
     base : before it; gravity, ground : g + a_v and a_g [m/s2]; rest_rate [rad/s].
     """
@@ -218,7 +224,7 @@ def land(par, rate, base, gravity, ground, rest_rate, t, arrays):
 
 @inner
 def settle(par, body):
-    """(certain, overturns, peak tilt, impacts) of free rocking on rigid ground, from its energy integral.
+    """Return (certain, overturns, peak tilt, impacts) of free rocking on rigid ground, from its energy integral.
 
     phi'^2/2 + p^2 cos(s gamma - phi) is constant between impacts and has its barrier p^2 at |phi| = gamma; an impact
     multiplies phi'^2 by e^2. Uncertain only for a block beyond the barrier that is coming back.
@@ -245,7 +251,7 @@ PROBES = 4
 
 @inner
 def write_history(par, body, step, output_step, arrays, written):
-    """Write the rows of the history up to the end of the step; returns the number of rows written so far."""
+    """Write the rows of the history up to the end of the step; return the number of rows written so far."""
     history, P, order = arrays.history, arrays.P, step.order
     while written < history.shape[0] and written * output_step <= step.t + step.h:
         row = history[written]
@@ -262,7 +268,7 @@ def write_history(par, body, step, output_step, arrays, written):
 
 @inner
 def integral_of_product(f, highest, g, order, h):
-    """Integral over [0, h] of f g, of orders `highest` and `order`, with all terms of the product.
+    """Return the integral over [0, h] of f g, of orders `highest` and `order`, with all terms of the product.
 
     Truncated at the order of its factors, the product would be less accurate than they are, by up to two to that order.
     """
@@ -279,7 +285,7 @@ def integral_of_product(f, highest, g, order, h):
 
 @inner
 def gravity_at(par, vertical, P, highest, d):
-    """g + a_v [m/s2] at d [s] in the step; highest : order of the series of the ground motion."""
+    """Return g + a_v [m/s2] at d [s] in the step; highest : order of the series of the ground motion."""
     if vertical is None:
         gravity = par.g
     else:
@@ -289,7 +295,7 @@ def gravity_at(par, vertical, P, highest, d):
 
 @inner
 def top(a, b, c):
-    """Maximum, between its points, of the parabola through three values at equal intervals."""
+    """Return the maximum, between its points, of the parabola through three values at equal intervals."""
     turn, bend = 0.5 * (a - c), a - 2 * b + c
     if abs(turn) < -bend:  # its vertex is inside
         return b - 0.5 * turn * turn / bend
@@ -298,14 +304,14 @@ def top(a, b, c):
 
 @inner
 def read_contact(par, vertical, body, step, arrays):
-    """Friction demand |H|/N, least N/(m g) and peak absolute base acceleration within the step."""
+    """Read friction demand |H|/N, least N/(m g) and peak absolute base acceleration within the step."""
     P, totals, work, h, order, highest = arrays.P, arrays.totals, arrays.work, step.h, step.order, step.highest
     rocking = body.s != 0
     row, last = (L.ABSOLUTE, order) if par.on_base else (L.GROUND, highest)
     level = not rocking and vertical is None  # then |H|/N = |acceleration|/g
-    known = min(totals[L.PEAK_ACCELERATION], totals[L.FRICTION] * par.g) if level else totals[L.PEAK_ACCELERATION]
-    if last >= 0 and bound(P[row], last, h) > known:
-        peak = largest(P[row], 1.0, last, h, known, P[L.EVENT], work)
+    known_peak = min(totals[L.PEAK_ACCELERATION], totals[L.FRICTION] * par.g) if level else totals[L.PEAK_ACCELERATION]
+    if last >= 0 and bound(P[row], last, h) > known_peak:
+        peak = largest(P[row], 1.0, last, h, known_peak, P[L.EVENT], work)
         peak = largest(P[row], -1.0, last, h, peak, P[L.EVENT], work)
         totals[L.PEAK_ACCELERATION] = max(totals[L.PEAK_ACCELERATION], peak)
         if level:
@@ -323,16 +329,16 @@ def read_contact(par, vertical, body, step, arrays):
             c, n = par.R * math.cos(angle), par.R * math.sin(angle)
             horizontal += c * second + n * rate * rate
             upward += n * second - c * rate * rate
-        here, low = abs(horizontal) / upward if upward > 0 else math.inf, -upward / par.g
+        ratio, low = abs(horizontal) / upward if upward > 0 else math.inf, -upward / par.g
         if probe > 1:
-            totals[L.FRICTION] = max(totals[L.FRICTION], top(demand_before, demand, here))
+            totals[L.FRICTION] = max(totals[L.FRICTION], top(demand_before, demand, ratio))
             totals[L.NORMAL] = min(totals[L.NORMAL], -top(lift_before, lift, low))
-        demand_before, demand, lift_before, lift = demand, here, lift, low
+        demand_before, demand, lift_before, lift = demand, ratio, lift, low
 
 
 @inner
 def read_lifting(par, step, P, totals):
-    """Work of the vertical ground motion on the rocking block within the step [J]: -int a_v m n phi' dt."""
+    """Read the work of the vertical ground motion on the rocking block within the step [J]: -int a_v m n phi' dt."""
     h, order, highest = step.h, step.order, step.highest
     lift, rising = P[L.EVENT], P[L.PRODUCT_A]
     for k in range(max(highest, 0) + 1):
@@ -351,7 +357,7 @@ def read_lifting(par, step, P, totals):
 
 @inner
 def read_energy(par, body, step, P, totals):
-    """Work of the ground, of the hysteretic and of the viscous bearing force within the step [J]."""
+    """Read the work of the ground, of the hysteretic and of the viscous bearing force within the step [J]."""
     h, order, highest = step.h, step.order, step.highest
     momentum = P[L.PRODUCT_A]
     if highest >= 0:  # -int a_g (M x' + m c phi') dt
@@ -367,7 +373,7 @@ def read_energy(par, body, step, P, totals):
 
 @inner
 def read_bearings(par, step, P, totals):
-    """Work of the hysteretic and of the viscous bearing force within the step [J]."""
+    """Read the work of the hysteretic and of the viscous bearing force within the step [J]."""
     h, order, hysteretic = step.h, step.order, P[L.PRODUCT_B]
     if par.count > 0:
         for k in range(order + 1):

@@ -1,4 +1,4 @@
-"""Names shared by the parts of the compiled kernel: modes, endings, slots of the totals, rows of the workspace."""
+"""Names shared by the parts of the compiled kernel: modes, endings, totals, rows of the workspace."""
 
 from collections import namedtuple
 
@@ -24,7 +24,7 @@ TOTALS = 36
 # gap of the corner and its rate, vertical velocity of the centre of mass, forces of the support on the block.
 DRIFT, SLIP, SPEED, GAP, RISE, CLIMB, H, N = range(14, 22)
 ROWS = 22
-# Kinds of event inside a step; of a block that may slide also: the friction is used up, the slip stops, the normal
+# Kinds of event inside a step; of a block that may slide also: the friction is exhausted, the slip stops, the normal
 # force vanishes, a corner lands, the other corner becomes the lower one.
 NONE, UPLIFT, IMPACT, REVERSAL, CORNER, PASSAGE, OVERTURNING, CONE, STOP, LOSS, LANDING, LEVEL = range(12)
 # Impacts: of the landing corner alone, which sticks or slips; of both, which stick or slip.

@@ -1,8 +1,8 @@
-"""The compiled event-driven integrator: full contact, uplift, rocking, impact, rest, re-uplift, overturning.
+"""The compiled event-driven integrator: full contact, uplift, rocking, impact, rest, overturning.
 
-A Taylor series integrator: steps end at every corner of the ground motion, and events inside a step are located as
-roots of the step's polynomials (dense output), so that their times are as accurate as the step. The parts of a step are
-in steps.py, the equations in taylor.py, the bearing laws in laws, the events in events.py.
+It is a Taylor series integrator. Steps end at every corner of the ground motion. Events inside a step are located as
+roots of the step's polynomials (dense output), so that their times are as accurate as the step. The parts of a step and
+the equations are in `steps`, the bearing laws in `laws`, the events in `events`.
 """
 
 import math
@@ -40,21 +40,21 @@ ELASTIC_REST_RATE = 1e-4
 ONSET = 1e-9
 
 
-# The parameters of a run as one entry of an array, by name.
+# The parameters of a run, by name, as one entry of an array.
 ROW = np.dtype([(name, float) for name in (*L.Parameters._fields[:-1], *Constants._fields)])
 OWN, SIZE, SHAKING = len(L.Parameters._fields) - 1, len(ROW.descr), len(L.Shaking._fields)
 tuple_of: Any = to_fixed_tuple
 
 
 def row_of(par: L.Parameters) -> tuple[float, ...]:
-    """Parameters as an entry of an array of dtype `ROW`."""
+    """Return the parameters as an entry of an array of dtype `ROW`."""
     return (*par[:-1], *par.constants)
 
 
 def arrays(totals: np.ndarray, capacity: int = 0, outputs: int = 0) -> L.Arrays:
-    """Workspace of runs, with room for `capacity` events of a kind and `outputs` rows of history.
+    """Return the workspace of runs, with room for `capacity` events of a kind and `outputs` rows of history.
 
-    totals : (n, TOTALS), a row of each run.
+    totals : (n, TOTALS), a row for each run.
     """
     workspace, scratch = np.zeros((L.ROWS, MAX_ORDER + 2)), np.empty(SCRATCH)
     events = np.empty((capacity, 4)), np.empty(capacity), np.empty(capacity)
@@ -64,7 +64,7 @@ def arrays(totals: np.ndarray, capacity: int = 0, outputs: int = 0) -> L.Arrays:
 def run(
     par: L.Parameters, ground: L.Ground, options: L.Options
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Simulate; (totals by the slots of layout.py, impacts, uplifts, rests, history).
+    """Simulate one run; return (totals, impacts, uplifts, rests, history), totals by the slots of `layout`.
 
     impacts : (n, 4) time, rates before and after, base velocity jump; uplifts, rests : (n,); history : (n, 6) at
     multiples of output_step: time, tilt, rate, x, v, F (empty if output_step is 0).
@@ -89,7 +89,7 @@ def run_rows(rows: np.ndarray, pulses: np.ndarray, ground: L.Ground, options: L.
 # One long function, as two loops share some twenty state variables.
 @inner
 def _integrate(par, ground, upright, options, arrays):
-    """One run. upright : an argument of its own, see steps.py."""
+    """Integrate one run. upright : an argument of its own, see `steps`."""
     P, work, totals, shaking = arrays.P, arrays.work, arrays.totals, ground.shaking
     totals[:] = 0.0
     totals[L.UNSTABLE_TIME], totals[L.NORMAL] = 0.0 if abs(par.tilt) >= par.gamma else -1.0, 1.0
@@ -130,10 +130,10 @@ def _integrate(par, ground, upright, options, arrays):
                 if options.decide and early and (options.record or par.on_base):
                     h = min(h, options.shortest - t)
                 elif options.decide or par.on_base and not early:
-                    final, will_overturn, top, more = _is_final(par, options, body, base, peak_tilt, peak_x, totals)
+                    final, will_overturn, top, further = _is_final(par, options, body, base, peak_tilt, peak_x, totals)
                     if final:
                         peak_tilt, status = max(peak_tilt, top), L.DECIDED
-                        totals[L.IMPACTS] += more
+                        totals[L.IMPACTS] += further
                         break
             steps += 1
             if steps > options.most_steps:
@@ -160,7 +160,7 @@ def _integrate(par, ground, upright, options, arrays):
                 break
 
             step = L.Step(t, h, used, highest, gravity, factors, corner)
-            found, h = first_event(shape, upright, body, refused, branch.direction, step, P, work)
+            event, h = first_event(shape, upright, body, refused, branch.direction, step, P, work)
             idle = idle + 1 if tau + h <= tau else 0
             if idle > PATIENCE:
                 status = L.STUCK
@@ -171,9 +171,9 @@ def _integrate(par, ground, upright, options, arrays):
             if s != 0:
                 tilt, rate, peak_tilt = end_of_block(body, step, peak_tilt, P, work)
             if par.on_base:
-                base = end_of_base(par, found, base, branch, step, P)
+                base = end_of_base(par, event, base, branch, step, P)
                 peak_x = max(peak_x, abs(base.x))
-            if found == L.PASSAGE:
+            if event == L.PASSAGE:
                 tilt = s * par.gamma
                 if totals[L.UNSTABLE_TIME] < 0:
                     totals[L.UNSTABLE_TIME] = t + h
@@ -181,24 +181,24 @@ def _integrate(par, ground, upright, options, arrays):
                 held = totals[L.FRICTION], totals[L.NORMAL], totals[L.PEAK_ACCELERATION], peak_x, t + h
             if h > 0:
                 fresh, refused = False, False
-            tau = length if found == L.NONE and h == length - tau else tau + h
+            tau = length if event == L.NONE and h == length - tau else tau + h
             t = begin + tau
 
-            if found == L.UPLIFT:
+            if event == L.UPLIFT:
                 onset = value(P[L.ABSOLUTE if par.on_base else L.GROUND], used, h)
                 mode, s, tilt, rate = L.ROCK, -math.copysign(1.0, onset), 0.0, 0.0
                 fresh = abs(onset) < (gravity_at(par, upright, P, highest, h) + ONSET * par.g) * par.slope
                 if totals[L.UPLIFTS] < arrays.uplifts.shape[0]:
                     arrays.uplifts[int(totals[L.UPLIFTS])] = t
                 totals[L.UPLIFTS] += 1
-            elif found == L.IMPACT:
+            elif event == L.IMPACT:
                 level = value(P[L.GROUND], highest, h) if highest >= 0 else 0.0
                 gravity = gravity_at(par, upright, P, highest, h)
                 rate, v, stays = land(par, rate, base, gravity, level, rest_rate, t, arrays)
                 mode, s, tilt, base = L.ROCK, math.copysign(1.0, rate), 0.0, L.Base(base.x, v, base.z)
                 if stays:
                     mode, s = L.STICK, 0.0
-            elif found == L.OVERTURNING:
+            elif event == L.OVERTURNING:
                 tilt, peak_tilt = s * 0.5 * math.pi, 0.5 * math.pi
                 mode, will_overturn = L.FALLEN, True
                 break
@@ -223,7 +223,7 @@ def _lifted(par, totals):
 
 @inner
 def _is_final(par, options, body, base, peak_tilt, peak_x, totals):
-    """After the motion: (whether the run may end, whether the block will overturn, further peak tilt and impacts)."""
+    """Return, after the motion, (whether the run may end, will overturn?, further peak tilt, further impacts)."""
     if not options.record and not par.on_base:
         return settle(par, body)
     peaks = peak_tilt, peak_x, totals[L.PEAK_ACCELERATION] if options.record else -1.0
@@ -233,7 +233,7 @@ def _is_final(par, options, body, base, peak_tilt, peak_x, totals):
 
 @inner
 def _conclude(par, end_of_motion, body, base, totals):
-    """Whether the outcome at the end is certain; fills the rest of `totals`."""
+    """Determine whether the outcome at the end is certain; fill the rest of `totals`."""
     lifted, overturned = _lifted(par, totals), totals[L.MODE] == L.FALLEN
     certain = overturned or totals[L.STATUS] == L.DECIDED
     if totals[L.STATUS] == L.COMPLETE and not certain and totals[L.TIME] >= end_of_motion:
@@ -243,13 +243,13 @@ def _conclude(par, end_of_motion, body, base, totals):
     totals[L.LIFTED], totals[L.CERTAIN] = lifted, certain
 
 
-# Below all that it calls: at this point its key is taken, see _cache.py.
+# It stands below all that it calls, as the key of its compiled form is taken here, see `cache`.
 @entry
 def _run_rows(rows, pulses, ground, upright, options, into):
-    """upright : an argument of its own, see steps.py."""
+    """Run the rows. upright : an argument of its own, see `steps`."""
     P, work, impacts, uplifts, rests, history, totals = into
     for i in range(rows.shape[0]):
         numbers = tuple_of(rows[i], SIZE)
         par = L.Parameters(*numbers[:OWN], Constants(*numbers[OWN:]))  # type: ignore[call-arg]  # of one length
-        own = L.Ground(ground.kind, ground.dt, ground.samples, None, L.Shaking(*tuple_of(pulses[i], SHAKING)))
-        _integrate(par, own, upright, options, L.Arrays(P, work, impacts, uplifts, rests, history, totals[i]))
+        ground_of_run = L.Ground(ground.kind, ground.dt, ground.samples, None, L.Shaking(*tuple_of(pulses[i], SHAKING)))
+        _integrate(par, ground_of_run, upright, options, L.Arrays(P, work, impacts, uplifts, rests, history, totals[i]))

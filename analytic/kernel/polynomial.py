@@ -15,7 +15,7 @@ INVERSE = np.array([0.0] + [1.0 / k for k in range(1, 64)])
 
 @inner
 def value(f, order, t):
-    """f(t) by Horner's rule."""
+    """Return f(t) by Horner's rule."""
     total = f[order]
     for k in range(order - 1, -1, -1):
         total = total * t + f[k]
@@ -24,7 +24,7 @@ def value(f, order, t):
 
 @inner
 def bracketed_root(f, first, order, low, high):
-    """Root of f(t)/t^first in (low, high], where it falls from + to -: Newton's method from the far end, bracketed.
+    """Return the root of f(t)/t^first in (low, high], where it falls from + to -: Newton's method, bracketed.
 
     Just after an impact f is concave, so that Newton's method from the far end does not converge to the root at 0.
     """
@@ -55,7 +55,7 @@ def bracketed_root(f, first, order, low, high):
 
 @inner
 def first_root(f, order, h, work):
-    """First t in [0, h] at which f falls below 0, or -1; 0 if it falls at once.
+    """Return the first t in [0, h] at which f falls below 0, or -1; 0 if it falls at once.
 
     Leading zero coefficients are a root at 0 and are divided out (just after an impact, or at the third-order onset of
     uplift). Bernstein coefficients bound the polynomial, so that no crossing is missed, whatever their number.
@@ -99,7 +99,7 @@ def shifted(f, order, t):
 
 @inner
 def derivative(f, order, t):
-    """f'(t)."""
+    """Return f'(t)."""
     total = 0.0
     for k in range(order, 0, -1):
         total = total * t + k * f[k]
@@ -108,7 +108,7 @@ def derivative(f, order, t):
 
 @inner
 def bound(f, order, h):
-    """A bound on |f| over [0, h]."""
+    """Return a bound on |f| over [0, h]."""
     total, power = abs(f[0]), 1.0
     for k in range(1, order + 1):
         power *= h
@@ -118,7 +118,7 @@ def bound(f, order, h):
 
 @inner
 def largest(f, sign, order, h, best, rate, work):
-    """The larger of `best` and the maximum of sign f over [0, h]. rate : scratch for f'."""
+    """Return the larger of `best` and the maximum of sign f over [0, h]. rate : scratch for f'."""
     best = max(best, sign * f[0], sign * value(f, order, h))
     for k in range(order):
         rate[k] = sign * (k + 1) * f[k + 1]
@@ -140,7 +140,10 @@ def largest(f, sign, order, h, best, rate, work):
 
 @inner
 def _isolated_root(f, first, order, h, work):
-    """`first_root` for a polynomial that is not monotone: sign changes of Bernstein coefficients, with bisection."""
+    """Return the `first_root` of a polynomial that is not monotone.
+
+    Sign changes of its Bernstein coefficients count the roots in an interval, which is bisected.
+    """
     n = order - first
     starts, widths = work[:, MAX_ORDER + 1], work[:, MAX_ORDER + 2]
     coefficients, power, binomial = work[0], 1.0, 1.0
@@ -158,12 +161,12 @@ def _isolated_root(f, first, order, h, work):
         sign, changes = 0.0, 0
         for i in range(n + 1):
             if b[i] != 0:
-                now = 1.0 if b[i] > 0 else -1.0
-                if sign == 0 and now < 0:
+                this_sign = 1.0 if b[i] > 0 else -1.0
+                if sign == 0 and this_sign < 0:
                     return low
-                if sign != 0 and now != sign:
+                if sign != 0 and this_sign != sign:
                     changes += 1
-                sign = now
+                sign = this_sign
         if changes == 1:
             return bracketed_root(f, first, order, low, low + width)
         if changes == 0 or top >= BISECTIONS:

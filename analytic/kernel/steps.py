@@ -1,11 +1,11 @@
-"""Parts of a step of the kernel: interval of smooth ground motion, series, first event, end of step (compiled).
+"""Parts of a step of the kernel: ground motion, Taylor series, first event, end of step (compiled).
 
-`upright`: samples of the vertical motion, any for a pulse, None without one; what asks for it is decided when compiled.
+The series are those of the equations of `rocking`, coefficient by coefficient. Arrays hold coefficients in the time
+since the start of the step, lowest first; entry 0 (the state) is given, the rest is filled up to `order`. S and C are
+sin and cos of s gamma - phi, so that n = R S and c = R C.
 
-Taylor series of the motion over one step (compiled): the equations of rocking.py, coefficient by coefficient.
-
-Arrays hold coefficients in the time since the start of the step, lowest first; entry 0 (the state) is given, the
-rest is filled up to `order`. S and C are sin and cos of s gamma - phi, so n = R S and c = R C.
+`upright` : samples of the vertical motion; any array for a pulse, None without a vertical motion. Which of these it is
+is known when a function is compiled, so that runs without one lose no time.
 """
 
 import math
@@ -40,14 +40,14 @@ MOST_SHRINK = 1e-3
 _bearing_term = law_function("term")
 USUAL_LAW = NUMBERS["algebraic"]  # its series is unrolled
 
-# Kinds of ground motion within a segment: none, linear, and from PULSE on the series of `pulses.SERIES`.
+# Kinds of ground motion within a segment: none, linear, and from PULSE on the series of `motion.SERIES`.
 QUIET, LINEAR_GROUND, PULSE = range(3)
 _pulse_series = chosen(SERIES)
 
 
 @inner
 def allowed_step(f, order, tolerance, h):
-    """Largest step up to h whose last Taylor terms stay below tolerance times the size of f in that very step.
+    """Return the largest step up to h whose last Taylor terms stay below tolerance times the size of f in it.
 
     NaN where the series is not finite.
     """
@@ -68,7 +68,7 @@ def allowed_step(f, order, tolerance, h):
 
 @inner
 def hop_order(length, order, tolerance):
-    """Order for a swing of `length` [1/omega_r], at most `order`; the terms decrease about as (length)^k."""
+    """Return the order for a swing of `length` [1/omega_r], at most `order`; the terms decrease about as (length)^k."""
     if length >= 0.25:
         return order
     return min(order, max(5, int(math.log(0.01 * tolerance) / math.log(2 * length)) + 3))
@@ -76,7 +76,7 @@ def hop_order(length, order, tolerance):
 
 @inner
 def ground_series(order, kind, a0, a1, frequency, u, A):
-    """Coefficients of the ground acceleration; returns the highest one that is not zero, or -1.
+    """Fill the coefficients of the ground acceleration; return the order of the highest one that is not zero, or -1.
 
     LINEAR_GROUND: a0 + a1 t; else a0 f(u + frequency t) of a pulse.
     """
@@ -114,7 +114,7 @@ def _rigid_series(order, p2, g, highest, P, G):
 
 @inner
 def rigid_series(order, p2, g, highest, P, G):
-    """Rocking on rigid ground, eq. (4) with x = 0: phi'' = -p^2 (S + a_g/g C).
+    """Fill the series of rocking on rigid ground, eq. (4) with x = 0: phi'' = -p^2 (S + a_g/g C).
 
     With the series G of g + a_v, as many terms as a_g has, phi'' = -p^2/g (G S + a_g C).
     """
@@ -141,7 +141,7 @@ def _contact_series(order, law, par, factors, highest, P):
 
 @inner
 def contact_series(order, par, factors, highest, P):
-    """Full contact on the base, eq. (2): (m + m_b)(a_g + x'') + n_d f = 0. F[0] and q[0] are given."""
+    """Fill the series in full contact on the base, eq. (2): (m + m_b)(a_g + x'') + n_d f = 0; F[0], q[0] are given."""
     if order == SHORT_ORDER and par.law == USUAL_LAW:  # constants are unrolled: twice as fast
         _contact_series(SHORT_ORDER, USUAL_LAW, par, factors, highest, P)
     else:
@@ -192,7 +192,7 @@ def _base_series(order, law, par, factors, highest, P, G):
 
 @inner
 def base_series(order, par, factors, highest, P, G):
-    """Rocking on the base, eqs (3)-(6), with c phi'' + n phi'^2 written as (c phi')'.
+    """Fill the series of rocking on the base, eqs (3)-(6), with c phi'' + n phi'^2 written as (c phi')'.
 
     M X + m (c phi')' = -F;   m c X + J phi'' = -m g n;   X = a_g + x''. With the series G of g + a_v, as many terms as
     a_g has, G replaces g.
@@ -206,7 +206,7 @@ def base_series(order, par, factors, highest, P, G):
 # First trial length of a step of a rocking block [1/omega_r]: no step is longer at a useful tolerance.
 FARTHEST = 4.0
 
-# Guard against an endless loop of events at one time; never seen.
+# Events at one time before a run gives up, so that no loop is endless; never seen.
 PATIENCE = 1000
 # Steps shorter than this fraction of the time are below its rounding.
 ROUNDING = 4e-16
@@ -217,7 +217,7 @@ mark, begin_step, reached = law_function("mark"), law_function("begin"), law_fun
 
 @inlined
 def stretch_of_ground(ground, upright, segment, begin, order, duration):
-    """The next `Stretch` of ground motion, from `begin` [s]. order : of the series where the motion is no record."""
+    """Return the next `Stretch` of ground motion, from `begin` [s]. order : of the series of a pulse."""
     kind, a0, slope, lift, rise, end, shaking = QUIET, 0.0, 0.0, 0.0, 0.0, duration, ground.shaking
     if ground.kind == LINEAR_GROUND:
         if segment < ground.samples.shape[0] - 1:
@@ -240,7 +240,7 @@ def stretch_of_ground(ground, upright, segment, begin, order, duration):
 
 @inlined
 def ground_of_step(shaking, stretch, tau, h, A):
-    """Series of the ground acceleration `tau` into the stretch: (its highest order, step)."""
+    """Fill the series of the ground acceleration `tau` into the stretch; return (its highest order, step)."""
     kind = stretch.kind
     if shaking.frequency == 0 and kind != QUIET:  # a constant pulse, too
         kind = LINEAR_GROUND
@@ -253,7 +253,7 @@ def ground_of_step(shaking, stretch, tau, h, A):
 
 @inner
 def gravity_of_step(shaking, g, stretch, tau, G):
-    """Series of g + a_v, as `ground_of_step`."""
+    """Fill the series of g + a_v, as `ground_of_step`."""
     G[0], G[1], kind = 0.0, 0.0, stretch.kind
     if shaking.frequency == 0 and kind != QUIET:  # a constant pulse, too
         kind = LINEAR_GROUND
@@ -264,9 +264,9 @@ def gravity_of_step(shaking, g, stretch, tau, G):
 
 @inlined
 def bearing_of_step(par, body, base, branch, gravity, highest, P):
-    """Base and bearing at the start of a step; fills x, v, q and F of order 0.
+    """Prepare base and bearing at the start of a step: fill x, v, q and F of order 0.
 
-    gravity : g + a_v [m/s2]. Returns what `branch_of` does.
+    gravity : g + a_v [m/s2]. Returns the same as `branch_of`.
     """
     x, v, z = base
     P[L.X, 0], P[L.V, 0] = x, v
@@ -279,9 +279,9 @@ def bearing_of_step(par, body, base, branch, gravity, highest, P):
 
 @inlined
 def branch_of(par, moving, base, branch, P):
-    """(branch, factors of the bearing's series, the bearing's next corner) of a base that moves to the side `moving`.
+    """Return (branch, factors of the bearing's series, the bearing's next corner); fill q of order 0.
 
-    Fills q of order 0.
+    moving : the side to which the base moves.
     """
     (x, _, z), (direction, x_c, mark_c) = base, branch
     if moving != direction and moving != 0:
@@ -294,7 +294,7 @@ def branch_of(par, moving, base, branch, P):
 
 @inlined
 def contact_of_step(par, step, tolerance, P):
-    """Series in full contact; returns the step they allow [s]."""
+    """Fill the series in full contact; return the step that they allow [s]."""
     order, highest = step.order, step.highest
     if not par.on_base:
         for k in range(highest + 1, order + 1):
@@ -307,7 +307,10 @@ def contact_of_step(par, step, tolerance, P):
 
 @inlined
 def rocking_of_step(par, upright, kind, body, fresh, step, tolerance, P):
-    """Series while rocking; returns (order used, step [s]). kind : of the ground motion; fresh : just lifted."""
+    """Fill the series while rocking; return (order used, step [s]).
+
+    kind : of the ground motion; fresh : whether the block has just lifted.
+    """
     (s, tilt, rate), order, highest, w = body, step.order, step.highest, P[L.W]
     h = min(step.h, FARTHEST / math.sqrt(par.p2))
     angle, used, reach = s * par.gamma - tilt, order, h
@@ -341,27 +344,27 @@ def rocking_of_step(par, upright, kind, body, fresh, step, tolerance, P):
 
 @inner
 def first_event(shape, upright, body, refused, direction, step, P, work):
-    """(kind of the first event in the step, its time since the start; NONE and the step's length without one).
+    """Return (kind of the first event in the step, its time since the start); without one NONE and the step's length.
 
     refused : the last onset of uplift was a graze; direction : of the base velocity.
     """
     s, tilt, _ = body
-    found, h, order = L.NONE, step.h, step.order
+    kind, h, order = L.NONE, step.h, step.order
     if s == 0:
         root = find_uplift(shape, upright, refused, step, P, work)
         if root >= 0:
-            found, h = L.UPLIFT, root
+            kind, h = L.UPLIFT, root
     else:
         root = find_fall(P[L.PHI], s, 0.0, order, h, P[L.EVENT], work)
         if root >= 0:
-            found, h = L.IMPACT, root
-        found, h = find_passage(shape.gamma, s, tilt, (found, h), order, P, work)
-    return find_turn(direction, step.corner, (found, h), order, P, work)
+            kind, h = L.IMPACT, root
+        kind, h = find_passage(shape.gamma, s, tilt, (kind, h), order, P, work)
+    return find_turn(direction, step.corner, (kind, h), order, P, work)
 
 
 @inlined
 def read_step(par, upright, body, step, options, arrays, written):
-    """Write history, diagnostics and energy ledger of the step; returns the rows of the history written."""
+    """Write history, diagnostics and energy ledger of the step; return the rows of the history written."""
     rocking, moved = body.s != 0, step.h > 0
     if arrays.history.shape[0] > 0 and (moved or step.t == 0):
         written = write_history(par, body, step, options.output_step, arrays, written)
@@ -376,7 +379,7 @@ def read_step(par, upright, body, step, options, arrays, written):
 
 @inlined
 def end_of_block(body, step, peak_tilt, P, work):
-    """(tilt, rate, peak tilt) at the end of the step; of several peaks inside it the largest counts."""
+    """Return (tilt, rate, peak tilt) at the end of the step; of several peaks inside it the largest counts."""
     h, order, phi = step.h, step.order, P[L.PHI]
     tilt_end, rate_end = value(phi, order, h), value(P[L.W], order, h)
     if bound(phi, order, h) > peak_tilt:
@@ -385,14 +388,14 @@ def end_of_block(body, step, peak_tilt, P, work):
 
 
 @inlined
-def end_of_base(par, found, base, branch, step, P):
-    """The base at the end of the step, which is at the event `found`."""
+def end_of_base(par, event, base, branch, step, P):
+    """Return the base at the end of the step, which is at the `event`."""
     z, (direction, x_c, mark_c), h, order = base.z, branch, step.h, step.order
     x, v = value(P[L.X], order, h), value(P[L.V], order, h)
-    if found == L.REVERSAL:
+    if event == L.REVERSAL:
         v = 0.0
     travel = mark_c + direction * (x - x_c)
     z = reached(par.law, direction, z, P[L.Q], order, h, travel, par.constants)
-    if found == L.CORNER:
+    if event == L.CORNER:
         z = direction * step.corner
     return L.Base(x, v, z)

@@ -1,6 +1,6 @@
-"""The bearing laws, one file each. A new law is a file and a name in the first import; `Law` describes its contents.
+"""The bearing laws, one file each; compiled code identifies a law by its index in `LAWS`.
 
-Compiled code identifies a law by its index in `LAWS`.
+A new law is a file, and its name in the first import; `Law` describes what the file holds.
 """
 
 from collections import namedtuple
@@ -22,9 +22,9 @@ def _record(names: tuple[str, ...]) -> Any:
 
 
 # Constants of all laws: dk, f0, and those of each law; a law fills its own only.
-Constants = _record(("dk", "f0", *dict.fromkeys(name for law in LAWS for name in law.own)))
+Constants = _record(("dk", "f0", *dict.fromkeys(name for law in LAWS for name in law.constant_names)))
 
 
 def law_function(name: str) -> Any:
-    """Compiled function of (law's number, *arguments): the law's function `name`."""
+    """Return the compiled function of (law's number, *arguments) that calls the law's function `name`."""
     return chosen([getattr(law, name) for law in LAWS])

@@ -26,7 +26,7 @@ def constants(bearings: Given) -> dict[str, float]:
 
 @inner
 def virtual_travel(s: float, z: float, c: Constants) -> float:
-    """D_c: position on the limit curve of direction s [m] at which the hysteretic force is z.
+    """Return D_c: the position on the limit curve of direction s [m] at which the hysteretic force is z.
 
     With x_j as in eqs (10) and (12), a negative number would be raised to a power beyond 1.33 m of travel; this form is
     equivalent and avoids it. (The bracket of eq. (12) is misprinted; it must read 1 - x + x_j + 2 x0.)
@@ -37,7 +37,7 @@ def virtual_travel(s: float, z: float, c: Constants) -> float:
 
 @inner
 def on_branch(s: float, travel: float, c: Constants) -> float:
-    """z on the branch of direction s, eqs (9), (11) less their kb x."""
+    """Return z on the branch of direction s, eqs (9), (11) less their kb x."""
     return s * (c.dk * (travel ** (1 - c.alpha) - c.d0) / (1 - c.alpha) + c.f0)
 
 
@@ -59,7 +59,7 @@ def work(z: float, dx: float, c: Constants) -> float:
 
 @inner
 def recoverable(z: float, c: Constants) -> float:
-    """Along the path of eqs (11), (12) between the virtual travels D of z and of 0.
+    """Return the energy along the path of eqs (11), (12) between the virtual travels D of z and of 0.
 
     These are D^-a = D0 + a (f0 + z)/(ka - kb) with a = alpha - 1.
     """
@@ -75,14 +75,14 @@ def recoverable(z: float, c: Constants) -> float:
 
 @inner
 def begin(s: float, z: float, travel: float, c: Constants) -> tuple[float, tuple[float, float, float], float]:
-    """q is y^(1 - alpha) with y = D_c + s (x - x_c), the `travel`."""
+    """Return the start of a step; q is y^(1 - alpha) with y = D_c + s (x - x_c), the `travel`."""
     power = travel ** (1 - c.alpha) if s != 0 else 0.0
     return power, (s * (1.0 / travel), 2 - c.alpha, s * c.dk / (1 - c.alpha)), math.inf
 
 
 @inlined
 def term(k: int, factors: tuple[float, float, float], x: np.ndarray, v: np.ndarray, q: np.ndarray) -> float:
-    """y q' = (1 - alpha) y' q with y' = s v: k y_0 q_k = s sum((2 - alpha) v q - k x q)."""
+    """Return term k by y q' = (1 - alpha) y' q with y' = s v: k y_0 q_k = s sum((2 - alpha) v q - k x q)."""
     speed, travel = 0.0, 0.0
     for j in range(k):
         speed += v[j] * q[k - 1 - j]
@@ -100,7 +100,7 @@ def reached(s: float, z: float, q: np.ndarray, order: int, h: float, travel: flo
 LAW = Law(
     "algebraic",
     needs=("kb", "alpha"),
-    own=("alpha", "x0", "d0"),
+    constant_names=("alpha", "x0", "d0"),
     constants=constants,
     after_travel=after_travel,
     work=work,

@@ -1,4 +1,4 @@
-"""The bilinear law of most design codes for lead-rubber bearings: ka up to yield, kb after it, unloading at ka.
+"""The bilinear law of most design codes: ka up to yield, kb after it, unloading at ka.
 
 z' = (ka - kb) x' while |z| < f0, and z = +-f0 beyond. f0 is the characteristic strength Q_d = F_y (1 - kb/ka), the
 force at which the line of kb meets x = 0; the yield displacement is x_y = F_y/ka = f0/(ka - kb).
@@ -46,7 +46,7 @@ def begin(s: float, z: float, travel: float, c: Constants) -> tuple[float, tuple
 
 @inlined
 def term(k: int, factors: tuple[float, float, float], x: np.ndarray, v: np.ndarray, q: np.ndarray) -> float:
-    """q is z."""
+    """Return term k; q is z."""
     q[k] = factors[0] * x[k]
     return q[k]
 

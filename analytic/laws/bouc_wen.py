@@ -26,7 +26,7 @@ def work(z: float, dx: float, c: Constants) -> float:
 
 @inner
 def recoverable(z: float, c: Constants) -> float:
-    """Unloading follows dz/dx = (ka - kb)/2 (1 + z/f0)."""
+    """Return the energy of unloading, which follows dz/dx = (ka - kb)/2 (1 + z/f0)."""
     return 2 / c.dk * c.f0 * (z - c.f0 * math.log1p(z / c.f0))
 
 
@@ -37,7 +37,7 @@ def begin(s: float, z: float, travel: float, c: Constants) -> tuple[float, tuple
 
 @inlined
 def term(k: int, factors: tuple[float, float, float], x: np.ndarray, v: np.ndarray, q: np.ndarray) -> float:
-    """z' = (ka - kb)/2 v (1 - s z/f0); q is z."""
+    """Return term k by z' = (ka - kb)/2 v (1 - s z/f0); q is z."""
     total = 0.0
     for j in range(k):
         total += q[j] * v[k - 1 - j]
@@ -52,7 +52,7 @@ def branch(z: float, direction: float, c: Constants) -> Callable[[float, float],
 LAW = Law(
     "bouc-wen",
     needs=("kb", "alpha"),
-    own=algebraic.LAW.own,
+    constant_names=algebraic.LAW.constant_names,
     constants=algebraic.constants,
     after_travel=after_travel,
     work=work,

@@ -39,11 +39,11 @@ class Law:
     """One bearing law. Fields with a default are needed by some laws only.
 
     A law is symmetric: z(-x) = -z(x). ``begin`` is also called from Python, by its ``py_func``, so it calls
-    nothing that is `inner`. Names in ``own`` differ from those of the kernel's `Parameters`.
+    nothing that is `inner`. The ``constant_names`` differ from the fields of the kernel's `Parameters`.
 
     name : name in scene files.
     needs, ignores : keys of [bearings] beside ka that are required, and that may be there unused; others are errors.
-    own : names of its constants beside dk and f0.
+    constant_names : names of its own constants, beside dk and f0.
     constants(bearings) : dict of kb, dk, f0 and its own constants.
     memory : whether z depends on the path; then every reversal is an event.
     after_travel(z, dx, c) : z after monotonic travel dx [m].
@@ -66,7 +66,7 @@ class Law:
     recoverable: Callable
     begin: Any
     term: Callable
-    own: tuple[str, ...] = ()
+    constant_names: tuple[str, ...] = ()
     ignores: tuple[str, ...] = ()
     memory: bool = True
     mark: Callable = no_mark

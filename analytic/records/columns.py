@@ -1,4 +1,4 @@
-"""Columns of numbers: times [s] and accelerations, or accelerations alone at a step that is stated or given.
+"""Columns of numbers: times [s] and accelerations, or accelerations alone at a stated step.
 
 The columns are separated by blanks, tabs, semicolons or commas, with or without quotes and header. Loggers and programs
 write such files, and so do the networks of Taiwan (CWA), Japan (JMA) and Turkey (AFAD). A line may hold several pairs
@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import SceneError
-from .content import Asked, Content, Format
+from .content import Content, Format, Given
 from .statements import (
     SAME,
     Statements,
@@ -76,9 +76,12 @@ SMOOTHER, ALIKE = 0.7, 1.6
 
 @dataclass(frozen=True)
 class Sheet:
-    """Content of a file of columns: its rows, the titles and kinds of its columns, the other words of the header, the
-    statements in them and in the first title, the number of samples stated, the line that names a spectrum, the
-    separator (None: blanks), whether the rows hold one sequence of numbers, and the step [s] that the user gives."""
+    """Content of a file of columns.
+
+    Its rows, the titles and kinds of its columns, the other words of the header, the statements in them and in the
+    first title, the number of samples stated, the line that names a spectrum, the separator (None: blanks), whether the
+    rows hold one sequence of numbers, and the step [s] that the user gives.
+    """
 
     lines: Sequence[str]
     table: Table
@@ -94,22 +97,22 @@ class Sheet:
 
     @property
     def known(self) -> bool:
-        """Whether the step is known without times."""
+        """Return whether the step is known without times."""
         return self.given is not None or self.stated.step is not None
 
     @property
     def width(self) -> int:
-        """Number of columns."""
+        """Return the number of columns."""
         return len(self.table[0][1])
 
     @property
     def names(self) -> list[str]:
-        """The columns as messages name them."""
+        """Return the columns as messages name them."""
         titles = [name_of(word) for word in self.titles.words] or [""] * self.width
         return [f"{place} ({title})" if title else str(place) for place, title in enumerate(titles, 1)]
 
     def content(self, values: Sequence[float] | np.ndarray, step: float | None, place: int, name: bool) -> Content:
-        """The `Content` of values of a column, or of all columns one after the other."""
+        """Return the `Content` of values of a column, or of all columns one after the other."""
         words, last = self.words, self.words[-1][0] if self.words else None
         if self.titles.words:
             words, last = [*words, (self.titles.at, with_unit(self.titles, place))], self.titles.at
@@ -132,8 +135,8 @@ class Sheet:
         )
 
 
-def _read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
-    """The `Content` of each column of accelerations, or of the one asked for, or of accelerations alone.
+def _read(lines: Sequence[str], given: Given) -> tuple[Content, ...]:
+    """Return the `Content` of each column of accelerations, or of the one asked for, or of accelerations alone.
 
     Raises
     ------
@@ -141,8 +144,8 @@ def _read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
         Lines of unlike length, an unreadable number, decimal commas that cannot be told from separators, times that
         are not uniform or contradict a stated step, a statement inside the data, or no acceleration.
     """
-    sheet = _sheet(unquoted(lines), asked)
-    alone = asked.column is None and not sheet.titles.words[1:]
+    sheet = _sheet(unquoted(lines), given)
+    alone = given.column is None and not sheet.titles.words[1:]
     if alone and sheet.runs_on:
         values = fortran_values(sheet.lines, sheet.table[0][0] - 1)
         check_count("number of samples", sheet.count or 0, values)
@@ -156,11 +159,11 @@ def _read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
         if len(fields) != sheet.width:
             problem = f"holds {len(fields)} columns, the first line {sheet.width}"
             raise SceneError(f"line {at}", sheet.lines[at - 1].strip(), problem, REMEDY)
-    return _accelerations(sheet, times, asked.column)
+    return _accelerations(sheet, times, given.column)
 
 
-def _sheet(lines: Sequence[str], asked: Asked) -> Sheet:
-    """The `Sheet` of the lines of a file."""
+def _sheet(lines: Sequence[str], given: Given) -> Sheet:
+    """Return the `Sheet` of the lines of a file."""
     header, rows = split(lines)
     separator, table = parted(rows)
     if lines[-1].strip():
@@ -171,7 +174,7 @@ def _sheet(lines: Sequence[str], asked: Asked) -> Sheet:
     table = unpaired(table, titles.words)
     width = len(table[0][1])
     count = stated_count([*leading, *header])
-    runs_on = asked.column is None and separator is None and _runs_on(table, bool(titles.words), count)
+    runs_on = given.column is None and separator is None and _runs_on(table, bool(titles.words), count)
     titles = Titles() if runs_on else Titles(titles.at, titles.words[:width])
     words = [*leading, *((at, line) for at, line in header if at != titles.at)]
     # Statements in the other titles do not apply to the times.
@@ -183,12 +186,14 @@ def _sheet(lines: Sequence[str], asked: Asked) -> Sheet:
     if width > 2 and not titles.words and rises(table, 1):
         kinds[0] = NUMBERS
     kinds = [UNKNOWN if kind == NUMBERS and not counts(table, place) else kind for place, kind in enumerate(kinds)]
-    return Sheet(lines, table, titles, kinds, words, stated, count, spectrum, separator, runs_on, asked.dt)
+    return Sheet(lines, table, titles, kinds, words, stated, count, spectrum, separator, runs_on, given.dt)
 
 
 def _runs_on(table: Table, titled: bool, count: int | None) -> bool:
-    """Whether rows separated by blanks hold one sequence of numbers, of which the header states `count`: some numbers
-    touch, or there are no columns."""
+    """Return whether rows separated by blanks hold one sequence of numbers, of which the header states `count`.
+
+    Some numbers touch, or there are no columns.
+    """
     if count in (None, len(table)):
         return False
     if any(numbers_in(field) > 1 for _, fields in table for field in fields):
@@ -197,11 +202,11 @@ def _runs_on(table: Table, titled: bool, count: int | None) -> bool:
 
 
 def _check_header(sheet: Sheet) -> None:
-    """Refuse a header whose last line may be a damaged row, or that is a damaged PEER header."""
+    """Refuse a damaged PEER header, and one whose last line may be a damaged row."""
     numbers = sum(len(fields) for _, fields in sheet.table)
-    whole = sheet.stated.step is not None and sheet.count in (len(sheet.table), numbers)
+    complete = sheet.stated.step is not None and sheet.count in (len(sheet.table), numbers)
     for at, line in (*sheet.words, (sheet.titles.at, " ".join(sheet.titles.words))):
-        if re.search(r"\bNPTS\b", line, re.I) and not whole:
+        if re.search(r"\bNPTS\b", line, re.I) and not complete:
             problem, remedy = "names NPTS, but not as PEER AT2 does", "mend the line: NPTS= ..., DT= ... SEC"
             raise SceneError(f"line {at}", line, problem, remedy)
     for (at, line), (_, rest) in list(zip(sheet.words, sheet.stated.rest, strict=False))[-1:]:
@@ -217,8 +222,10 @@ def _check_header(sheet: Sheet) -> None:
 
 
 def _times(sheet: Sheet) -> list[int]:
-    """The columns of times: those with such a title, else the first one that does not number the rows, if it
-    increases."""
+    """Return the columns of times: those with such a title, else the first one that increases.
+
+    A column that numbers the rows is no time.
+    """
     named = [place for place, kind in enumerate(sheet.kinds) if kind == TIME]
     if named or sheet.width == 1:
         return named
@@ -237,8 +244,11 @@ def _times(sheet: Sheet) -> list[int]:
 
 
 def _check_no_period(sheet: Sheet, rising: int | None) -> None:
-    """Refuse a spectrum or a profile: a title that names a period or a frequency; or, of the column that only rises,
-    if one does, another quantity in its title, or a spectrum in the header."""
+    """Refuse a spectrum or a profile, which is no acceleration over time.
+
+    A title names a period or a frequency; or the column that rises, `rising`, has another quantity in its title, or the
+    header names a spectrum.
+    """
     for place, (title, kind) in enumerate(zip(sheet.titles.words, sheet.kinds, strict=False)):
         if kind in PERIODS or (place == rising and (kind in (DEPTH, *OTHERS) or has_unit(title))):
             problem = f"is {kind or 'of another unit'}, not a time"
@@ -249,41 +259,41 @@ def _check_no_period(sheet: Sheet, rising: int | None) -> None:
 
 
 def _only_rises(sheet: Sheet, place: int) -> bool:
-    """Whether a column increases monotonically; an entry that is not a number, as a damaged time, is refused."""
+    """Return whether a column increases monotonically; an entry that is not a number, as a damaged time, is refused."""
     values = [number(f"line {at}", fields[min(place, len(fields) - 1)]) for at, fields in sheet.table]
     return len(values) > 1 and all(before < after for before, after in itertools.pairwise(values))
 
 
-def _accelerations(sheet: Sheet, times: Sequence[int], wanted: int | str | None) -> tuple[Content, ...]:
-    """The `Content` of each column of accelerations, or of the one wanted."""
+def _accelerations(sheet: Sheet, times: Sequence[int], column: int | str | None) -> tuple[Content, ...]:
+    """Return the `Content` of each column of accelerations, or of the one wanted."""
     offered = [place for place, kind in enumerate(sheet.kinds) if place not in times and kind != NUMBERS]
     if not offered:
         raise SceneError("record", None, "holds times, but no column of accelerations", REMEDY)
-    chosen = None if wanted is None else _place(sheet, wanted)
-    named = len(offered) > 1 or wanted is not None
+    chosen = None if column is None else _place(sheet, column)
+    named = len(offered) > 1 or column is not None
     places = [chosen] if chosen in offered else offered
     steps = {at: at if at is None else _step(sheet, at) for at in {_nearest(times, place) for place in places}}
-    found: dict[int, Content] = {}
+    contents: dict[int, Content] = {}
     errors = []
     for place in places:
         try:
-            found[place] = _acceleration(sheet, steps[_nearest(times, place)], place, named)
+            contents[place] = _acceleration(sheet, steps[_nearest(times, place)], place, named)
         except SceneError as error:
             errors.append(error)
-    choice = f"column, {' or '.join(sheet.names[place] for place in found or offered)}"
-    if wanted is not None and chosen not in offered:
-        what = f"but the file has {sheet.width} columns" if chosen is None else f"is {sheet.kinds[chosen] or TIME}"
-        raise SceneError("motion.column", wanted, what, f"give {choice}")
-    if errors and found:
+    choice = f"column, {' or '.join(sheet.names[place] for place in contents or offered)}"
+    if column is not None and chosen not in offered:
+        problem = f"but the file has {sheet.width} columns" if chosen is None else f"is {sheet.kinds[chosen] or TIME}"
+        raise SceneError("motion.column", column, problem, f"give {choice}")
+    if errors and contents:
         problem = f"missing; not all columns are accelerations ({errors[0].key}: {errors[0].problem})"
         raise SceneError("motion.column", None, problem, f"add {choice}")
     if errors:
         raise errors[0]
-    return tuple(found.values())
+    return tuple(contents.values())
 
 
 def _acceleration(sheet: Sheet, step: float | None, place: int, named: bool) -> Content:
-    """The `Content` of a column; step: of its times [s], None without times."""
+    """Return the `Content` of a column; step: of its times [s], None without times."""
     _check_kind(sheet, place)
     values = [number(f"line {at}", fields[place]) for at, fields in sheet.table]
     if step is None:
@@ -292,7 +302,7 @@ def _acceleration(sheet: Sheet, step: float | None, place: int, named: bool) -> 
 
 
 def _nearest(times: Sequence[int], place: int) -> int | None:
-    """The column of times before a column, the first one without such; None where there are no times."""
+    """Return the column of times before a column, the first one without such; None where there are no times."""
     return max((at for at in times if at < place), default=times[0] if times else None)
 
 
@@ -303,22 +313,22 @@ def _check_kind(sheet: Sheet, place: int) -> None:
         raise SceneError(f"line {sheet.titles.at}, title", sheet.titles.words[place], problem, remedy)
 
 
-def _place(sheet: Sheet, wanted: int | str) -> int | None:
-    """The index of the column of that number or title; None without one."""
-    word = in_latin(str(wanted).strip()).casefold()
-    found = [place for place in range(sheet.width) if word == str(place + 1)] or [
+def _place(sheet: Sheet, column: int | str) -> int | None:
+    """Return the index of the column of that number or title; None without one."""
+    word = in_latin(str(column).strip()).casefold()
+    places = [place for place in range(sheet.width) if word == str(place + 1)] or [
         place
         for place, title in enumerate(sheet.titles.words)
         if word in (name_of(title).casefold(), title.strip().casefold())
     ]
-    if len(found) > 1:
-        choice = " or ".join(sheet.names[place] for place in found)
-        raise SceneError("motion.column", wanted, "names several columns", f"give column, {choice}, by its number")
-    return found[0] if found else None
+    if len(places) > 1:
+        choice = " or ".join(sheet.names[place] for place in places)
+        raise SceneError("motion.column", column, "names several columns", f"give column, {choice}, by its number")
+    return places[0] if places else None
 
 
 def _one_after_the_other(sheet: Sheet) -> list[float]:
-    """All numbers, shape (n,): one per line, or equally many in each line except the last.
+    """Return all numbers, shape (n,): one per line, or equally many in each line except the last.
 
     Channels side by side are refused: in sequence their numbers jump.
     """
@@ -340,13 +350,13 @@ def _one_after_the_other(sheet: Sheet) -> list[float]:
 
 
 def _check_leading(sheet: Sheet, values: Sequence[tuple[int, str]]) -> None:
-    """Refuse numbers without times whose first ones may be no accelerations, unless the header says how many are."""
+    """Refuse numbers without times that may begin with no acceleration, unless the header says how many there are."""
     if sheet.count != len(values):
         check_leading(values, sheet.given if sheet.stated.step is None else None)
 
 
 def _smooth(values: Sequence[float], width: int) -> bool:
-    """Whether numbers, `width` per line, continue smoothly from line to line."""
+    """Return whether numbers, `width` per line, continue smoothly from line to line."""
     if not 1 < width < len(values):
         return True
     along, across = np.abs(np.diff(values)), np.abs(np.array(values[width:]) - values[:-width])
@@ -355,7 +365,7 @@ def _smooth(values: Sequence[float], width: int) -> bool:
 
 
 def _step(sheet: Sheet, place: int) -> float:
-    """The step [s] of a column of times, or the stated one if the two agree."""
+    """Return the step [s] of a column of times, or the stated one if the two agree."""
     tokens = [fields[place] for _, fields in sheet.table]
     for at, fields in sheet.table:
         number(f"line {at}", fields[place])

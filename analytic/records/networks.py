@@ -1,27 +1,28 @@
-"""Formats of databases and networks whose numbers blanks or commas part: PEER AT2, ESM/DYNA, K-NET.
+"""Formats of databases and networks: PEER AT2, ESM/DYNA, K-NET, CSMIP, COSMOS, SMC.
+
+Blanks or commas part the numbers of the first three.
 
 PEER AT2, the old and the new headers: values in columns of Fortran after a line with NPTS and DT. ESM/DYNA 1.2 ASCII,
 also as AFAD writes it: lines KEY: value, then one value a line. NIED's K-NET and KiK-net ASCII: 17 lines of header,
 then counts; acceleration = (count - mean of all) times scale factor. K-NET CSV: a header of lines that begin with #,
 then a time stamp, a time [s] and three components [gal] a line, whose offsets the header states.
 
-Formats whose numbers stand in columns of equal width, as a Fortran format prints them: CSMIP, COSMOS and SMC.
-
-They are cut by position, not by blanks: numbers that fill their columns touch each other. A missing or an additional
-character shifts all that follows, which is detected.
+The numbers of the others stand in columns of equal width, as a Fortran format prints them. They are cut by position,
+not by blanks: numbers that fill their columns touch each other. A missing or an additional character shifts all that
+follows, which is detected.
 
 CSMIP, CDMG and CGS volume 2: A. F. Shakal and M. J. Huang 1985, Standard tape format for CSMIP strong-motion data
-tapes, OSMS 85-03. Of each channel 25 lines of text, 100 integers in 16I5, 100 reals in 8F10, the data in 8F10 (velocity
-and displacement follow), and a line /&.
+tapes, OSMS 85-03. Each channel has 25 lines of text, 100 integers in 16I5, 100 reals in 8F10, the data in 8F10
+(velocity and displacement follow), and a line /&.
 
-COSMOS: Strong-Motion Programs Board 2001, COSMOS strong motion data format, version 1.20. Of each channel text, 100
-integers, 100 reals, comments and data. Of the integers the second says what is measured; of the reals the 62nd is the
-step of these data [ms] (the 34th is that of the raw record), the 63rd their length [s] and the 64th their peak.
+COSMOS: Strong-Motion Programs Board 2001, COSMOS strong motion data format, version 1.20. Each channel has text, 100
+integers, 100 reals, comments and data. The second integer says what is measured. The 62nd real is the step of these
+data [ms] (the 34th is that of the raw record), the 63rd their length [s] and the 64th their peak.
 
 USGS SMC: Open-File Report 92-296 and D. M. Boore's SMCWrite. 11 lines of text, 48 integers in 8I10, 50 reals in 5E15.7,
-comments, then cm/s2 in 8E10.4 or 5E14.7. Of the integers the 16th counts the comments, the 17th the samples, the 18th
-flags a problem and the 47th says 8 where the data have 7 decimals; of the reals the second is the sampling frequency,
-the 30th and the 32nd are maximum and minimum.
+comments, then cm/s2 in 8E10.4 or 5E14.7. The 16th integer counts the comments, the 17th the samples, the 18th flags a
+problem and the 47th is 8 where the data have 7 decimals. The second real is the sampling frequency, the 30th and the
+32nd are maximum and minimum.
 """
 
 import re
@@ -32,7 +33,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import SceneError
-from .content import DAMAGED, HEADER_WIDTH, MARK, Asked, Content, Format, begun_by, first_of
+from .content import DAMAGED, HEADER_WIDTH, MARK, Content, Format, Given, begun_by, first_of
 from .statements import (
     NUMBER,
     SAME,
@@ -61,36 +62,36 @@ _OLD = re.compile(rf"\s*([0-9]+)[\s,]+({NUMBER})[\s,]+NPTS[\s,]+DT\b(?!\s*[=:])(
 
 
 def _is_peer(lines: Sequence[str]) -> bool:
-    """Whether the lines are a PEER AT2 file."""
+    """Return whether the lines are a PEER AT2 file."""
     return _peer_head(lines) is not None
 
 
-def _peer(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
-    """The `Content` of a PEER AT2 file.
+def _peer(lines: Sequence[str], given: Given) -> tuple[Content, ...]:
+    """Return the `Content` of a PEER AT2 file.
 
     Raises
     ------
     SceneError
         No acceleration, an unreadable number, or another count than stated.
     """
-    head, npts, old = _peer_head(lines)  # type: ignore[misc]  # `_is_peer` found it
+    head, npts, old_form = _peer_head(lines)  # type: ignore[misc]  # `_is_peer` found it
     where = f"line {head + 1}"
     numbered = [(at, line[:HEADER_WIDTH]) for at, line in enumerate(lines[: head + 1], 1)]
-    if old:
-        numbered[-1] = head + 1, f"dt = {old[2]} {old[3] or ''}"
-    found = read_statements(numbered)
+    if old_form:
+        numbered[-1] = head + 1, f"dt = {old_form[2]} {old_form[3] or ''}"
+    statements = read_statements(numbered)
     marked = MARK.fullmatch("".join(lines[head + 1 : head + 2])[:HEADER_WIDTH])
     values = fortran_values(lines, head + (2 if marked else 1))
     check_count(f"{where}, NPTS", count(f"{where}, NPTS", npts), values)
-    return (Content(found.step, values, stated_unit(found.rest, titles=head)),)
+    return (Content(statements.step, values, stated_unit(statements.rest, titles=head)),)
 
 
 def _peer_head(lines: Sequence[str]) -> tuple[int, str, re.Match[str] | None] | None:
-    """Index of the line with count and step, the count as printed, and the match of a line of the old form."""
+    """Return (index of the line with count and step, the count as printed, match of a line of the old form)."""
     for index, line in enumerate(lines[:_PEER_LINES]):
         line = line[:HEADER_WIDTH]
-        if old := _OLD.match(line):
-            return index, old[1], old
+        if old_form := _OLD.match(line):
+            return index, old_form[1], old_form
         npts = _NPTS.findall(line)
         if npts and _DT.search(line):
             if len(_DT.findall(line)) > 1 or len(npts) > 1:
@@ -106,12 +107,12 @@ _DYNA_REMEDY = "give a complete ESM/DYNA 1.2 ASCII file"
 
 
 def _is_dyna(lines: Sequence[str]) -> bool:
-    """Whether the lines are an ESM/DYNA file."""
+    """Return whether the lines are an ESM/DYNA file."""
     return bool(_DYNA_KEY.match(first_of(lines))) and any(line.startswith(_DYNA_SIGNS) for line in lines[:_DYNA_LINES])
 
 
-def _dyna(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
-    """The `Content` of an ESM/DYNA file.
+def _dyna(lines: Sequence[str], given: Given) -> tuple[Content, ...]:
+    """Return the `Content` of an ESM/DYNA file.
 
     Raises
     ------
@@ -138,7 +139,7 @@ def _dyna(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
 
 
 def _dyna_header(lines: Sequence[str]) -> tuple[dict[str, tuple[str, int]], int]:
-    """{key: (value, line number)} and the index of the first line after them."""
+    """Return {key: (value, line number)} and the index of the first line after them."""
     header: dict[str, tuple[str, int]] = {}
     begin = next((index for index, line in enumerate(lines) if line.strip()), 0)
     while begin < len(lines) and (match := _DYNA_KEY.match(lines[begin][:HEADER_WIDTH])):
@@ -162,20 +163,21 @@ _COUNT = re.compile(r"[+-]?[0-9]{1,9}")
 _KNET_REMEDY = "give the file as the network sends it, in ASCII or CSV"
 
 
-def _knet(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
-    """The `Content` of the one channel [gal], its mean removed.
+def _knet(lines: Sequence[str], given: Given) -> tuple[Content, ...]:
+    """Return the `Content` of the one channel [gal], its mean removed.
 
     Raises
     ------
     SceneError
-        A line of the header is missing, what is no whole number, or another count than duration and frequency make.
+        A line of the header is missing, a count is no whole number, or there are not as many as duration and frequency
+        make.
     """
     end = next((index for index, line in enumerate(lines[:_KNET_LINES]) if line.lower().startswith("memo.")), None)
     if end is None:
         raise SceneError("Memo.", None, "missing from the header", _KNET_REMEDY)
     header = [line[:HEADER_WIDTH] for line in lines[:end]]
-    frequency, duration = (number(key, _found(header, key, by)[1]) for key, by in _NUMBERS.items())
-    scale = _found(header, "Scale Factor", _SCALE)
+    frequency, duration = (number(key, _only_match(header, key, by)[1]) for key, by in _NUMBERS.items())
+    scale = _only_match(header, "Scale Factor", _SCALE)
     gal, steps = number("Scale Factor", scale[1]), number("Scale Factor", scale[2])
     for key, value in (("Sampling Freq(Hz)", frequency), ("Scale Factor", gal), ("Scale Factor", steps)):
         if not value:
@@ -194,7 +196,7 @@ def _knet(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
             values,
             Unit("gal", 0.01, "Scale Factor"),
             warnings=odd_peak(peak, "gal", values),
-            direction=_found(header, "Dir.", _DIRECTION)[1].strip(),
+            direction=_only_match(header, "Dir.", _DIRECTION)[1].strip(),
             note="mean removed",
         ),
     )
@@ -203,16 +205,16 @@ def _knet(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
 _NUMBERS = {"Sampling Freq(Hz)": _FREQUENCY, "Duration Time(s)": _DURATION}
 
 
-def _found(header: Sequence[str], key: str, pattern: re.Pattern[str]) -> re.Match[str]:
-    """The only line of the header that `pattern` matches."""
+def _only_match(header: Sequence[str], key: str, pattern: re.Pattern[str]) -> re.Match[str]:
+    """Return the match of the only line of the header that has the pattern."""
     return _only(key, [match for match in map(pattern.fullmatch, header) if match])
 
 
-def _only(key: str, found: Sequence[Any]) -> Any:
-    """The only one found of a key of the header."""
-    if len(found) != 1:
-        raise SceneError(key, None, "stated twice" if found else "missing from the header, or damaged", _KNET_REMEDY)
-    return found[0]
+def _only(key: str, matches: Sequence[Any]) -> Any:
+    """Return the only match of a key of the header."""
+    if len(matches) != 1:
+        raise SceneError(key, None, "stated twice" if matches else "missing from the header, or damaged", _KNET_REMEDY)
+    return matches[0]
 
 
 def _count(at: int, token: str) -> int:
@@ -223,17 +225,17 @@ def _count(at: int, token: str) -> int:
 
 def _check_places(lines: Sequence[str], first: int) -> None:
     """Refuse a line whose counts end elsewhere than those of the first one: a digit slipped in or was lost."""
-    usual = {found.end() for found in re.finditer(r"\S+", lines[0])} if lines else set()
+    usual = {match.end() for match in re.finditer(r"\S+", lines[0])} if lines else set()
     for at, line in enumerate(lines, first):
-        if not {found.end() for found in re.finditer(r"\S+", line)} <= usual:
+        if not {match.end() for match in re.finditer(r"\S+", line)} <= usual:
             raise SceneError(f"line {at}", line, "its counts do not stand below those of the first line", DAMAGED)
 
 
 _COMPONENT = re.compile(r"([^,()]+)\(gal\)", re.I)
 
 
-def _knet_csv(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
-    """The `Content` of each component [gal], its offset subtracted.
+def _knet_csv(lines: Sequence[str], given: Given) -> tuple[Content, ...]:
+    """Return the `Content` of each component [gal], its offset subtracted.
 
     Raises
     ------
@@ -262,8 +264,8 @@ def _knet_csv(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
     step = uniform_step([fields[1] for _, fields in rows])
     if abs(step * frequency - 1) > SAME:
         raise SceneError("SamplingFrequency(Hz)", frequency, f"but the times have a step of {step:.9g} s", DAMAGED)
-    whole = f"the header states {duration:g} s, the data have {len(rows) / frequency:g} s: check that the file is whole"
-    warnings = () if len(rows) == round(duration * frequency) else (whole,)
+    lasts = f"the header states {duration:g} s, the data have {len(rows) / frequency:g} s"
+    warnings = () if len(rows) == round(duration * frequency) else (f"{lasts}: check that the file is whole",)
     return tuple(
         Content(
             usable("SamplingFrequency(Hz)", 1 / frequency),
@@ -280,7 +282,7 @@ def _knet_csv(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
 
 
 def _below(header: Sequence[str], key: str) -> str:
-    """The line of the header below the only one that is the key."""
+    """Return the line of the header below the only one that is the key."""
     return _only(key, [after for line, after in zip(header, header[1:], strict=False) if line == key])
 
 
@@ -303,35 +305,35 @@ class Layout:
 
 
 def stated_layout(line: str) -> Layout | None:
-    """The `Layout` of the last Fortran format in brackets that a line holds, (8F10.5); None without one."""
-    found = _FORMAT.findall(line)
-    return Layout(*(int(part) for part in found[-1])) if found else None
+    """Return the `Layout` of the last Fortran format in brackets that a line holds, (8F10.5); None without one."""
+    formats = _FORMAT.findall(line)
+    return Layout(*(int(part) for part in formats[-1])) if formats else None
 
 
 def fixed_values(lines: Sequence[str], begin: int, count: int, layout: Layout) -> tuple[np.ndarray, int]:
-    """(`count` numbers from the line of index `begin` on, index of the next line that is not blank).
+    """Return (`count` numbers from the line of index `begin` on, index of the next line that is not blank).
 
     Raises
     ------
     SceneError
-        A line that is not full (the last one may hold fewer numbers), what is not a number that ends where its column
-        ends, or other digits after the point; names the line.
+        A line that is not full (the last one may hold fewer numbers), a field that is not a number ending where its
+        column ends, or other digits after the point; names the line.
     """
     values: list[float] = []
     usual, at = None, begin
     while len(values) < count:
-        wanted = min(layout.per_line, count - len(values))
+        expected = min(layout.per_line, count - len(values))
         text = lines[at].rstrip(" ") if at < len(lines) else ""
         where = f"line {at + 1}"
-        if len(text) != wanted * layout.width:
-            problem = f"not {wanted} numbers of {layout.width} characters; {count} samples are stated"
+        if len(text) != expected * layout.width:
+            problem = f"not {expected} numbers of {layout.width} characters; {count} samples are stated"
             raise SceneError(where, text, problem, DAMAGED)
         for left in range(0, len(text), layout.width):
             field = text[left : left + layout.width].lstrip(" ")
             values.append(number(where, field))
-            found = form_of(field)
-            usual = found if usual is None else usual
-            if found is None or found != usual or layout.decimals not in (None, found[0]):
+            form = form_of(field)
+            usual = form if usual is None else usual
+            if form is None or form != usual or layout.decimals not in (None, form[0]):
                 raise SceneError(where, field, "not printed as the other numbers are: a damaged number", DAMAGED)
         at += 1
     return np.array(values), next((index for index in range(at, len(lines)) if lines[index].strip()), len(lines))
@@ -341,9 +343,9 @@ _END = re.compile(r"\s*(?:end-of-data\b|/&)", re.I)  # the last line of a channe
 
 
 def _by_channel(name: str, first: re.Pattern[str], channel: Callable[..., Content]) -> Format:
-    """The `Format` of files of several channels, each of which begins with a line of the pattern `first`."""
+    """Return the `Format` of files of several channels, each of which begins with a line of the pattern `first`."""
 
-    def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
+    def read(lines: Sequence[str], given: Given) -> tuple[Content, ...]:
         begins = [index for index, line in enumerate(lines) if first.match(line[:HEADER_WIDTH])]
         ends = [*begins[1:], len(lines)]
         return tuple(channel(lines, *place) for place in zip(begins, ends, range(1, len(ends) + 1), strict=True))
@@ -354,8 +356,10 @@ def _by_channel(name: str, first: re.Pattern[str], channel: Callable[..., Conten
 def _data(
     lines: Sequence[str], at: int, end: int, count: int, layout: Layout, announced: re.Pattern[str]
 ) -> np.ndarray:
-    """The `count` numbers below the line of index `at`, of a channel that goes up to `end`: further data, which a line
-    of the pattern `announced` precedes, or the channel's last line follow."""
+    """Return the `count` numbers below the line of index `at`, in a channel that goes up to `end`.
+
+    The channel's last line follows them, or further data, which a line of the pattern `announced` precedes.
+    """
     values, behind = fixed_values(lines, at + 1, count, layout)
     if behind < end and not (announced.match(lines[behind][:HEADER_WIDTH]) or _END.match(lines[behind])):
         raise SceneError(f"line {at + 1}", count, "more numbers follow than these", DAMAGED)
@@ -374,7 +378,7 @@ _CSMIP_REMEDY = "give a CSMIP volume 2 file (.V2), or two columns, time [s] and 
 
 
 def _csmip_channel(lines: Sequence[str], begin: int, end: int, order: int) -> Content:
-    """The `Content` of the channel whose lines are those from index `begin` up to `end`.
+    """Return the `Content` of the channel whose lines are those from index `begin` up to `end`.
 
     Raises
     ------
@@ -386,14 +390,14 @@ def _csmip_channel(lines: Sequence[str], begin: int, end: int, order: int) -> Co
     if not named:
         raise SceneError(where, lines[begin].strip(), "names no channel, as Chan 1: 90 Deg", _CSMIP_REMEDY)
     data = next((index for index in range(begin, end) if _CSMIP_DATA.match(lines[index])), None)
-    found = _CSMIP_DATA.match(lines[data]) if data is not None else None
-    if data is None or found is None or found[2].lower() != "accel":
+    data_line = _CSMIP_DATA.match(lines[data]) if data is not None else None
+    if data is None or data_line is None or data_line[2].lower() != "accel":
         raise SceneError(where, None, f"no line N points of accel data follows for channel {named[1]}", _CSMIP_REMEDY)
     layout = stated_layout(lines[data][:HEADER_WIDTH]) or _CSMIP_LAYOUT
-    values = _data(lines, data, end, int(found[1]), layout, _CSMIP_DATA)
+    values = _data(lines, data, end, int(data_line[1]), layout, _CSMIP_DATA)
     peak = next((number("peak", match[1]) for match in map(_CSMIP_PEAK.match, lines[begin:data]) if match), None)
     return Content(
-        _csmip_step(lines, begin, data, found),
+        _csmip_step(lines, begin, data, data_line),
         values,
         stated_unit([(data + 1, lines[data][:HEADER_WIDTH])]),
         warnings=odd_peak(peak, "cm/s2", values),
@@ -402,16 +406,16 @@ def _csmip_channel(lines: Sequence[str], begin: int, end: int, order: int) -> Co
     )
 
 
-def _csmip_step(lines: Sequence[str], begin: int, data: int, found: re.Match[str]) -> float:
-    """The sampling interval [s]: the line before the data rounds to 3 decimals what the reals give to 7."""
+def _csmip_step(lines: Sequence[str], begin: int, data: int, data_line: re.Match[str]) -> float:
+    """Return the sampling interval [s]: the line before the data rounds to 3 decimals what the reals give to 7."""
     where = f"line {data + 1}, step"
-    rounded = interval(where, found[3], found[4])
+    rounded = interval(where, data_line[3], data_line[4])
     row, columns = _CSMIP_STEP
     text = lines[data - _CSMIP_REALS + row][columns].strip() if data - _CSMIP_REALS > begin else ""
     if not re.fullmatch(NUMBER, text) or number(where, text) <= 0:  # 0 and -999 stand for an unknown one
         return rounded
     exact = number(where, text)
-    if abs(exact - rounded) > 0.5000001 * 10.0 ** -len(found[3].partition(".")[2]):
+    if abs(exact - rounded) > 0.5000001 * 10.0 ** -len(data_line[3].partition(".")[2]):
         raise SceneError(
             f"line {data - _CSMIP_REALS + row + 1}, step", exact, f"but line {data + 1} says {rounded} s", DAMAGED
         )
@@ -436,7 +440,7 @@ _COSMOS_REMEDY = "give a COSMOS file of corrected accelerations (.V2c), or two c
 
 
 def _cosmos_channel(lines: Sequence[str], begin: int, end: int, order: int) -> Content:
-    """The `Content` of the channel whose lines go from index `begin` up to `end`; `order` counts the channels.
+    """Return the `Content` of the channel whose lines go from index `begin` up to `end`; `order` counts the channels.
 
     Raises
     ------
@@ -471,15 +475,15 @@ def _cosmos_channel(lines: Sequence[str], begin: int, end: int, order: int) -> C
     )
 
 
-def _match(pattern: re.Pattern[str], lines: Sequence[str], at: int, wanted: str) -> re.Match[str]:
-    found = pattern.match(lines[at][:HEADER_WIDTH]) if at < len(lines) else None
-    if not found:
-        raise SceneError(f"line {at + 1}", lines[at].strip() if at < len(lines) else None, f"not {wanted}", DAMAGED)
-    return found
+def _match(pattern: re.Pattern[str], lines: Sequence[str], at: int, expected: str) -> re.Match[str]:
+    match = pattern.match(lines[at][:HEADER_WIDTH]) if at < len(lines) else None
+    if not match:
+        raise SceneError(f"line {at + 1}", lines[at].strip() if at < len(lines) else None, f"not {expected}", DAMAGED)
+    return match
 
 
 def _header(lines: Sequence[str], at: int, pattern: re.Pattern[str]) -> tuple[Callable[[int], float], int]:
-    """(function that gives the number of an index, index of the line behind) of the header at the line of index `at`.
+    """Return (function that gives the number of an index, index of the line behind) of the header at the line `at`.
 
     Only the numbers asked for are read: networks fill in what they have.
     """
@@ -499,7 +503,7 @@ def _header(lines: Sequence[str], at: int, pattern: re.Pattern[str]) -> tuple[Ca
 
 
 def _unit(data: re.Match[str], at: int) -> Unit:
-    """The `Unit` that the line before the data names, with its code in brackets."""
+    """Return the `Unit` that the line before the data names, with its code in brackets."""
     factor = factor_of(data[3])
     if factor is None:
         raise SceneError(f"line {at + 1}, units", data[3], "not an acceleration", _COSMOS_REMEDY)
@@ -509,7 +513,7 @@ def _unit(data: re.Match[str], at: int) -> Unit:
 
 
 def _cosmos_step(milliseconds: float, length: float, count: int, where: str) -> float | None:
-    """The sampling interval [s], None where the reals give none; `length` [s] of the record checks it."""
+    """Return the sampling interval [s], None where the reals give none; `length` [s] of the record checks it."""
     if milliseconds <= 0:  # 0 and -999 stand for an unknown one
         return None
     dt = usable(f"{where}, step", milliseconds / 1000)
@@ -527,8 +531,8 @@ _SMC_LAYOUTS = {True: Layout(5, 14, 7), False: Layout(8, 10, 4)}
 _LARGEST = 1e30  # 1.7e38 stands for an unknown real
 
 
-def _smc(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
-    """The `Content` of the one channel.
+def _smc(lines: Sequence[str], given: Given) -> tuple[Content, ...]:
+    """Return the `Content` of the one channel.
 
     Raises
     ------
@@ -571,14 +575,14 @@ def _whole(value: float) -> int:
 
 
 def _table(lines: Sequence[str], at: int, rows: int, per_row: int) -> tuple[list[float], int]:
-    """(numbers of a header, index of the line behind)."""
-    found: list[float] = []
+    """Return (numbers of a header, index of the line behind)."""
+    numbers: list[float] = []
     for index in range(at, at + rows):
         tokens = lines[index].split() if index < len(lines) else []
         if len(tokens) != per_row:
             raise SceneError(f"line {index + 1}", " ".join(tokens), f"not {per_row} header values", DAMAGED)
-        found += [number(f"line {index + 1}", token) for token in tokens]
-    return found, at + rows
+        numbers += [number(f"line {index + 1}", token) for token in tokens]
+    return numbers, at + rows
 
 
 CSMIP = _by_channel("CSMIP volume 2", _CSMIP, _csmip_channel)

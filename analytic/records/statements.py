@@ -1,14 +1,12 @@
-"""Statements in the header of a record: sampling interval, number of samples, unit of its values, unit of its times.
+"""Statements in the header of a record, its printed numbers, and its times: step, count and units.
 
 A step is stated by its key, a sign and a number with a point or a comma, its unit in front of the sign or behind the
 number: "Sampling rate: 100 Hz", "INTERVALO DE MUESTREO (s): 0,01", "dt [ms] = 5". A rate without a unit is in Hz, an
 interval in seconds. Nothing is taken from sentences: where one speaks of sampling, a warning or the refusal says so.
+Without such a statement the step is found from a column of printed times.
 
-Spellings of units of acceleration, and the unit of a record from the file and the scene file.
-
-Strict reading of printed numbers: an ambiguous one is refused, never corrected.
-
-The sampling interval: stated by a header with its unit of time, or found from a column of printed times.
+Units of acceleration are read in many spellings; the unit of a record comes from the file or from the scene file.
+Printed numbers are read strictly: an ambiguous one is refused, never corrected.
 """
 
 import datetime
@@ -75,12 +73,12 @@ class Unit:
 
     @property
     def of_g(self) -> bool:
-        """Whether it is g or a part of it."""
+        """Return whether the unit is g or a part of it."""
         return self.factor in OF_G.values()
 
 
 def factor_of(word: str) -> float | None:
-    """Factor from a unit to m/s2, of "gal(cm/s/s)" too; None if the word is no acceleration."""
+    """Return the factor from a unit to m/s2, of "gal(cm/s/s)" too; None if the word is no acceleration."""
     head, bracket, inside = word.rpartition("(")
     if bracket and inside.endswith(")") and factor_of(head) is not None:
         return factor_of(head) if factor_of(head) == factor_of(inside[:-1]) else None
@@ -88,7 +86,9 @@ def factor_of(word: str) -> float | None:
 
 
 def resolve(unit: Unit | None, given: str | None, no_unit: str) -> Unit:
-    """The `Unit` of a record from its own words (or None) and from the scene file (a key of `UNITS`, or None).
+    """Return the `Unit` of a record from what the file and the scene file state.
+
+    unit : of the file, or None. given : a key of `UNITS`, or None.
 
     Raises
     ------
@@ -112,14 +112,17 @@ def resolve(unit: Unit | None, given: str | None, no_unit: str) -> Unit:
 
 
 def in_latin(line: str) -> str:
-    """A line of a header with plain words of units in Latin letters: "(см/с²)" is "(cm/s²)", "（ガル）" is "(gal)"."""
+    """Return a line of a header with plain words of units in Latin letters.
+
+    "(см/с²)" becomes "(cm/s²)", "（ガル）" becomes "(gal)".
+    """
     if line.isascii():
         return line
     return _OF_SCRIPTS.sub(lambda word: _SCRIPTS[word[0].lower()], line.translate(_SIGNS))
 
 
 def plain(word: str) -> str:
-    """A unit in one spelling: "CM/SEC**2", "cm/(s²)" and "cm/s^2" are all "cm/s2".
+    """Return a unit in one spelling: "CM/SEC**2", "cm/(s²)" and "cm/s^2" are all "cm/s2".
 
     A power without its base or number, or an open bracket, stays: such a word is damaged, and no unit.
     """
@@ -145,7 +148,7 @@ _NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)", re.I)
 
 
 def number(where: str, token: str) -> float:
-    """The number in `token`.
+    """Return the number in `token`.
 
     Raises
     ------
@@ -160,18 +163,18 @@ def number(where: str, token: str) -> float:
 
 
 def value_of(token: str) -> float:
-    """The number in `token`, nan where it is none."""
-    known = len(token) <= LONGEST and _NUMBER.fullmatch(token)
-    return float(token.replace("D", "E").replace("d", "e")) if known else math.nan
+    """Return the number in `token`, nan where it is none."""
+    readable = len(token) <= LONGEST and _NUMBER.fullmatch(token)
+    return float(token.replace("D", "E").replace("d", "e")) if readable else math.nan
 
 
 def numbers_in(token: str) -> int:
-    """How many numbers a token holds, which may touch each other."""
+    """Return how many numbers a token holds, which may touch each other."""
     return len(_NUMBER.findall(token))
 
 
 def fortran_values(lines: Sequence[str], begin: int) -> np.ndarray:
-    """All numbers from the line of index `begin` on, shape (n,), which one Fortran format printed.
+    """Return all numbers from the line of index `begin` on, shape (n,), which one Fortran format printed.
 
     Raises
     ------
@@ -181,7 +184,7 @@ def fortran_values(lines: Sequence[str], begin: int) -> np.ndarray:
     rows = [(f"line {at}", line.rstrip()) for at, line in enumerate(lines[begin:], begin + 1) if line.strip()]
     tokens = [(where, token) for where, line in rows for part in line.split() for token in _parted(where, part)]
     values = np.array([number(where, token) for where, token in tokens])
-    # The last line may be shorter; lines of one number are as long as that is.
+    # The last line may be shorter; a line of one number is as long as the number.
     widths = Counter(len(line) for _, line in rows[:-1] if len(line.split()) > 1)
     ((usual, _),) = Counter(form_of(token) for _, token in tokens).most_common(1) or [(None, 0)]
     for where, token in tokens:
@@ -194,17 +197,19 @@ def fortran_values(lines: Sequence[str], begin: int) -> np.ndarray:
 
 
 def check_last(where: str, table: Sequence[Sequence[str]]) -> None:
-    """Refuse the last number of a file that ends without the end of a line, if all others of its column share a form
-    that it has not: it is cut. `table`: the fields of all lines."""
-    *others, last = table
+    """Refuse the last number of a file that is cut: the file ends without the end of a line.
+
+    The number is cut if all others of its column share a form that it has not. `table`: the fields of all lines.
+    """
+    *rows, last = table
     place = len(last) - 1
-    forms = {form_of(row[place]) for row in others if place < len(row)}
-    if len(others) > 1 and len(forms) == 1 and form_of(last[place]) not in forms:
+    forms = {form_of(row[place]) for row in rows if place < len(row)}
+    if len(rows) > 1 and len(forms) == 1 and form_of(last[place]) not in forms:
         raise SceneError(where, last[place], "the last number is cut", "fetch the file again, or end its last line")
 
 
 def _parted(where: str, text: str) -> list[str]:
-    """Numbers that blanks do not separate, because a sign fills the column: "-.1230E+00-.4560E+00".
+    """Return the numbers of a text that blanks do not separate, because signs fill the columns: "-.1230E+00-.4560E+00".
 
     "-.10-100" may be an exponent without its letter: numbers in a row have points.
     """
@@ -217,14 +222,17 @@ def _parted(where: str, text: str) -> list[str]:
 
 
 def form_of(token: str) -> tuple[int, int, bool] | None:
-    """Digits after the point and of the exponent, and whether several stand before the point of a number that has an
-    exponent; None without a point."""
+    """Return the form of a printed number, None without a point.
+
+    It is (digits after the point, digits of the exponent, whether several stand before the point of a number with an
+    exponent).
+    """
     match = _DIGITS.fullmatch(token)
     return match and (len(match[2]), len(match[3] or ""), bool(match[3]) and len(match[1]) > 1)
 
 
 def printed_as(usual: tuple[int, int, bool] | None, token: str) -> bool:
-    """Whether a number has the usual form, but for an exponent of three digits, as tiny ones have: "1.2E-105"."""
+    """Return whether a number has the usual form, but for the three digits of a tiny one's exponent: "1.2E-105"."""
     form = form_of(token)
     if form == usual or form is None or usual is None or (form[1], usual[1]) != (3, 2):
         return form == usual
@@ -232,7 +240,7 @@ def printed_as(usual: tuple[int, int, bool] | None, token: str) -> bool:
 
 
 def odd_peak(stated: float | None, unit: str, values: Sequence[float] | np.ndarray) -> tuple[str, ...]:
-    """A sentence if the largest of the values is off by more than 1 % from the peak that the header states [unit]."""
+    """Return a sentence if the largest value is off by more than 1 % from the peak that the header states [unit]."""
     peak = float(np.abs(values).max()) if len(values) else 0.0
     if stated is None or not peak or abs(abs(stated) - peak) <= 0.01 * peak:
         return ()
@@ -240,7 +248,7 @@ def odd_peak(stated: float | None, unit: str, values: Sequence[float] | np.ndarr
 
 
 def count(where: str, token: str) -> int:
-    """A number of samples.
+    """Return a number of samples.
 
     Raises
     ------
@@ -268,7 +276,7 @@ _MILLISECONDS = (
 PER_SECOND = dict.fromkeys(("", *_SECONDS.split()), 1) | dict.fromkeys(_MILLISECONDS.split(), 1000)
 OTHER_TIMES = set("us µs usec ns min mins minute minutes h hr hrs hour hours day days samples".split())
 USABLE = (1e-7, 1e3)  # s: range of the step of a ground motion
-SAME = 1e-6  # of a step: two that differ by less are one, printed twice
+SAME = 1e-6  # relative difference of two steps below which they are one step, printed twice
 JITTER = 0.01  # of the step: clocks and single precision
 _WRITTEN_STEP = re.compile(rf"({NUMBER})([A-Za-zµ]*)")
 # A time stamp, 2030-01-02T03:04:15.020; a comma is a decimal sign unless it separates the fields.
@@ -279,15 +287,15 @@ _DATED = re.compile(r"[0-9]{1,4}([-/.])[0-9]{1,2}\1[0-9]{1,4}(?=[T\s;,])|[0-9]{1
 
 
 def interval(where: str, token: str, unit: str = "") -> float:
-    """Sampling interval [s] from a token (".02", "10ms") and a word for its unit, "" for seconds.
+    """Return the sampling interval [s] from a token (".02", "10ms") and a word for its unit, "" for seconds.
 
     Raises
     ------
     SceneError
         Not a number, not above 0, or a unit of time that is not known; names `where`.
     """
-    digits, own = match.groups() if (match := _WRITTEN_STEP.fullmatch(token)) else (token, None)
-    value, unit = number(where, digits), own or unit
+    digits, attached = match.groups() if (match := _WRITTEN_STEP.fullmatch(token)) else (token, None)
+    value, unit = number(where, digits), attached or unit
     if unit.lower() not in PER_SECOND:
         raise SceneError(
             where,
@@ -299,30 +307,32 @@ def interval(where: str, token: str, unit: str = "") -> float:
 
 
 def in_seconds(where: str, row: str) -> str:
-    """A row with the seconds since the day 0 in place of its first time stamp, of date and clock or of clock alone.
+    """Return a row with the seconds since the day 0 in place of its first time stamp.
+
+    A time stamp is a date and a clock, or a clock alone.
 
     Raises
     ------
     SceneError
         It begins with a date or a clock of another form; names `where`.
     """
-    found = _STAMP.search(row)
+    stamp = _STAMP.search(row)
     if _DATED.match(row) and not _STAMP.match(row):
         raise SceneError(where, row, "its time is a date or a clock of no known form", "write the times in seconds")
-    if not found:
+    if not stamp:
         return row
-    year, _, month, day, *clock, decimals = found.groups()
+    year, _, month, day, *clock, decimals = stamp.groups()
     try:
         days = datetime.date(int(year), int(month), int(day)).toordinal() if year else 0
     except ValueError as error:
-        raise SceneError(where, found[0], f"not a date ({error})", "write the times in seconds") from None
+        raise SceneError(where, stamp[0], f"not a date ({error})", "write the times in seconds") from None
     hours, minutes, seconds = map(int, clock)
-    whole = str(86_400 * days + 3600 * hours + 60 * minutes + seconds)
-    return row[: found.start()] + whole + (decimals or "") + row[found.end() :]
+    total = str(86_400 * days + 3600 * hours + 60 * minutes + seconds)
+    return row[: stamp.start()] + total + (decimals or "") + row[stamp.end() :]
 
 
 def usable(where: str, dt: float) -> float:
-    """The interval dt [s], refused outside the range of records."""
+    """Return the interval dt [s]; refuse one outside the range of records."""
     if dt <= 0:
         raise SceneError(where, dt, "not a sampling interval", "give a step above 0 s")
     if not USABLE[0] <= dt <= USABLE[1]:
@@ -331,7 +341,7 @@ def usable(where: str, dt: float) -> float:
 
 
 def resolved_step(stated: float | None, given: float | None) -> float:
-    """The interval [s] from the record's own words (or None) and from the user (or None).
+    """Return the interval [s] from the file (None: it states none) and from the user (or None).
 
     Raises
     ------
@@ -357,11 +367,11 @@ def resolved_step(stated: float | None, given: float | None) -> float:
 
 
 def uniform_step(tokens: Sequence[str]) -> float:
-    """The interval of equally spaced times [as printed], which rounding to the printed digits may have moved.
+    """Return the interval of equally spaced times [as printed], which rounding to the printed digits may have moved.
 
     The printed times are a uniform series if one line passes within half a unit of the last printed digit of all of
-    them; the step returned is that of a whole frequency, or else the roundest, that such a line has: times of 256 Hz
-    printed to 3 decimals give 1/256.
+    them. The step is that of a whole frequency, or else the roundest, that such a line has: times of 256 Hz printed to
+    3 decimals give 1/256.
 
     Parameters
     ----------
@@ -381,8 +391,8 @@ def uniform_step(tokens: Sequence[str]) -> float:
         if np.ptp(steps) <= 1e-6 * step:
             return float(f"{step:.12g}")
         for unit in (_printed_unit(tokens), np.full(len(times), JITTER * step)):
-            if unit.max() <= 0.5 * step and (found := _fit(times, unit, step)):
-                return found
+            if unit.max() <= 0.5 * step and (fitted := _fit(times, unit, step)):
+                return fitted
     usual = float(np.median(steps))
     worst = int(np.abs(steps - usual).argmax()) + 1
     raise SceneError(
@@ -394,23 +404,26 @@ def uniform_step(tokens: Sequence[str]) -> float:
 
 
 def exact(token: str) -> Decimal:
-    """The number that a token prints."""
+    """Return the number that a token prints."""
     return Decimal(token.replace("D", "E").replace("d", "e"))
 
 
 def _printed_unit(tokens: Sequence[str]) -> np.ndarray:
-    """Unit of the last printed digit of each time, shape (n,): all have as many decimals, or as many digits."""
+    """Return the unit of the last printed digit of each time, shape (n,).
+
+    All times have as many decimals, or as many digits.
+    """
     numbers = [exact(token).as_tuple() for token in tokens]
     digits, exponents = np.array([(len(number.digits), number.exponent) for number in numbers]).T
     return 10.0 ** np.maximum(exponents.min(), exponents + digits - digits.max())
 
 
 def _fit(times: np.ndarray, unit: np.ndarray, step: float) -> float | None:
-    """The roundest step of a line that passes within unit/2 of all times; None without such a line."""
+    """Return the roundest step of a line that passes within unit/2 of all times; None without such a line."""
     count = np.arange(len(times))
 
     def excess(h):
-        """By how much a line of slope h misses the intervals time +- unit/2; convex in h."""
+        """Return by how much a line of slope h misses the intervals time +- unit/2; convex in h."""
         off = times - h * count
         return (off - unit / 2).max() - (off + unit / 2).min()
 
@@ -421,12 +434,12 @@ def _fit(times: np.ndarray, unit: np.ndarray, step: float) -> float | None:
         excess, bounds=(step - reach, step + reach), method="bounded", options={"xatol": 1e-4 * reach}
     ).x
     allowed = 1e-3 * unit.max()
-    whole = max(round(1 / best), 1)  # most instruments sample at a whole frequency
+    frequency = max(round(1 / best), 1)  # most instruments sample at a whole frequency
     round_steps = (
         step for digits in range(1, 13) for step in (float(f"{best:.{digits}g}"), 1 / float(f"{1 / best:.{digits}g}"))
     )
-    # Where times lie half a unit off, as those of 800 Hz in six digits, one line alone passes: best comes near to it.
-    return next((step for step in (1 / whole, *round_steps, best) if excess(step) <= allowed), None)
+    # Where times lie half a unit off, as those of 800 Hz in six digits, only one line passes, and best is near it.
+    return next((step for step in (1 / frequency, *round_steps, best) if excess(step) <= allowed), None)
 
 
 TIMES = "time|t|zeit|tiempo|temps|zaman"  # words for it, folded
@@ -517,8 +530,11 @@ _OTHER = re.compile(rf"(?<![a-z])(?:{OTHER})(?![a-z])")
 
 @dataclass(frozen=True)
 class Statements:
-    """Statements of a header: sampling interval [s], None if not stated; its units of time per second; sentences on
-    words about sampling that are not understood; and its lines without the words read, for `stated_unit`."""
+    """Statements of a header.
+
+    Sampling interval [s], None if not stated; units of its times per second; sentences on words about sampling that are
+    not understood; and its lines without the words read, for `stated_unit`.
+    """
 
     step: float | None
     per_second: int
@@ -527,7 +543,7 @@ class Statements:
 
 
 def read_statements(header: Iterable[tuple[int, str]]) -> Statements:
-    """The `Statements` of the lines of a header, (line number, line).
+    """Return the `Statements` of the lines of a header, (line number, line).
 
     Raises
     ------
@@ -542,9 +558,9 @@ def read_statements(header: Iterable[tuple[int, str]]) -> Statements:
         for match in _STEP.finditer(text):
             where = f"line {at}, step"
             steps[where] = _agreed(where, _step(where, line, match), steps)
-        for pattern in (_STEP, _COUNT):
-            for match in pattern.finditer(text):
-                line, taken = (one[: match.start()] + " " * len(match[0]) + one[match.end() :] for one in (line, taken))
+        for match in (*_STEP.finditer(text), *_COUNT.finditer(text)):
+            blank = " " * len(match[0])
+            line, taken = (part[: match.start()] + blank + part[match.end() :] for part in (line, taken))
         if _SPOKEN.search(taken):
             unread.append(f"line {at} speaks of sampling in words that are not understood: {line[:60].strip()}")
         rest.append((at, line))
@@ -553,29 +569,29 @@ def read_statements(header: Iterable[tuple[int, str]]) -> Statements:
 
 
 def stated_count(header: Iterable[tuple[int, str]]) -> int | None:
-    """The number of samples that the lines of a header state; None where they state none, or several."""
+    """Return the number of samples that the lines of a header state; None where they state none, or several."""
     counts = {int(count) for _, line in header for count in _COUNT.findall(folded(" ".join(line.split())))}
     return counts.pop() if len(counts) == 1 else None
 
 
 def unused_factors(header: Iterable[tuple[int, str]]) -> tuple[str, ...]:
-    """Sentences on factors other than 1 that the lines of a header name: the values stay as they are printed."""
-    found = ((at, line, _FACTOR.search(folded(line))) for at, line in header)
+    """Return sentences on factors other than 1 that the header names: the values stay as they are printed."""
+    searched = ((at, line, _FACTOR.search(folded(line))) for at, line in header)
     return tuple(
         f"line {at} names a factor, and the numbers are taken without it: {line[:60]}"
-        for at, line, match in found
+        for at, line, match in searched
         if match and exact(match["factor"]) != 1
     )
 
 
 def folded(line: str) -> str:
-    """A line in lower case without accents, as long as the line itself; underscores part words."""
+    """Return a line in lower case without accents, as long as the line itself; underscores part words."""
     plain = "".join("i" if sign == "ı" else unicodedata.normalize("NFD", sign)[0] for sign in line)
     return "".join(sign.lower() if len(sign.lower()) == 1 else sign for sign in plain).replace("_", " ")
 
 
 def _step(where: str, line: str, match: re.Match[str]) -> tuple[float, float]:
-    """The step that a match states and the half of its last printed digit, 0 of a rate, both [s]."""
+    """Return the step that a match states and the half of its last printed digit, 0 for a rate, both [s]."""
     token = match["value"]
     if token is None:
         raise SceneError(where, line, "its sampling interval or rate is no number", "write dt = .01 s")
@@ -585,45 +601,46 @@ def _step(where: str, line: str, match: re.Match[str]) -> tuple[float, float]:
     if value <= 0:
         raise SceneError(where, value, "not a sampling interval or rate", "give one above 0")
     words = [word for word in (match["behind"], match["before"]) if word]
-    known = [word for word in words if word in PER_SECOND or re.fullmatch(_HERTZ, word)]
-    if words and not known:
+    recognised = [word for word in words if word in PER_SECOND or re.fullmatch(_HERTZ, word)]
+    if words and not recognised:
         raise SceneError(where, f"{token} {words[0]}", "not a time in s or ms, nor a rate in Hz", "write dt = .01 s")
-    if not known and match["rate"] and value < 1:
+    if not recognised and match["rate"] and value < 1:
         raise SceneError(where, line, "a rate below 1, without a unit", "write a rate in Hz, or dt = .01 s")
-    unit = known[0] if known else "hz" if match["rate"] else ""
+    unit = recognised[0] if recognised else "hz" if match["rate"] else ""
     if unit not in PER_SECOND:
         return usable(where, 1 / value), 0.0
     last_digit = 10.0 ** int(exact(token.replace(",", ".")).as_tuple().exponent)
     return usable(where, value / PER_SECOND[unit]), last_digit / 2 / PER_SECOND[unit]
 
 
-def _agreed(where: str, step: tuple[float, float], others: Mapping[str, tuple[float, float]]) -> tuple[float, float]:
-    """The step, refused if another is stated; an interval may be that of a rate, rounded as printed."""
-    for place, other in others.items():
-        rounding = 0.0 if step[1] and other[1] else step[1] + other[1]
-        if abs(step[0] - other[0]) > rounding + SAME * other[0]:
-            problem = f"but {place.removesuffix(', step')} states a step of {other[0]:.9g} s"
+def _agreed(where: str, step: tuple[float, float], stated: Mapping[str, tuple[float, float]]) -> tuple[float, float]:
+    """Return the step; refuse it if another is stated. An interval may be that of a rate, rounded as printed."""
+    for place, stated_step in stated.items():
+        rounding = 0.0 if step[1] and stated_step[1] else step[1] + stated_step[1]
+        if abs(step[0] - stated_step[0]) > rounding + SAME * stated_step[0]:
+            problem = f"but {place.removesuffix(', step')} states a step of {stated_step[0]:.9g} s"
             raise SceneError(where, step[0], problem, "correct the wrong one")
-    return step if where not in others else min(step, others[where], key=lambda one: one[1])
+    return step if where not in stated else min(step, stated[where], key=lambda step_and_rounding: step_and_rounding[1])
 
 
 def _per_second(header: Iterable[tuple[int, str]]) -> int:
-    """Units of time in a second, from the words of the header."""
-    found = {}
+    """Return the units of time in a second, from the words of the header."""
+    lines_by_unit = {}
     for at, line in header:
         for match in _TIME.finditer(folded(line)):
             word = match[1]
             if word in OTHER_TIMES:
                 raise SceneError(f"line {at}", match[0], "not a time in s or ms", "write the times in seconds")
             if word in PER_SECOND:
-                found[PER_SECOND[word]] = at
-    if len(found) > 1:
-        raise SceneError(f"line {max(found.values())}", None, "times in s and in ms", "correct the wrong unit of time")
-    return next(iter(found), 1)
+                lines_by_unit[PER_SECOND[word]] = at
+    if len(lines_by_unit) > 1:
+        last = f"line {max(lines_by_unit.values())}"
+        raise SceneError(last, None, "times in s and in ms", "correct the wrong unit of time")
+    return next(iter(lines_by_unit), 1)
 
 
 def stated_unit(header: Iterable[tuple[int, str]], titles: int | None = None) -> Unit | None:
-    """The unit that the lines of a header state, or None.
+    """Return the unit that the lines of a header state, or None.
 
     Parameters
     ----------
@@ -637,29 +654,31 @@ def stated_unit(header: Iterable[tuple[int, str]], titles: int | None = None) ->
     SceneError
         Two units, a velocity, a displacement, or a unit that is not known.
     """
-    found = acceleration = other = None
+    unit = acceleration = other_quantity = None
     for at, line in header:
         line = _spaced(line)
         names = _ACCELERATION.search(folded(line)), _OTHER.search(folded(line))
         acceleration = acceleration or names[0]
-        other = other or names[1] and (f"line {at}", names[1][0])
+        other_quantity = other_quantity or names[1] and (f"line {at}", names[1][0])
         for word, factor in _units_in(line, at == titles, any(names)):
             where = f"line {at}, unit"
             if factor is None:
                 problem, units = "not an acceleration in a unit that is known", ", ".join(UNITS)
                 raise SceneError(where, word, problem, f"write one of {units} in its place, if it is one")
-            if found and found.factor != factor:
-                raise SceneError(where, word, f"but {found.where} says {found.word}", "correct the wrong one")
-            found = found or Unit(word, factor, f"line {at}")
-    if other and not acceleration:
+            if unit and unit.factor != factor:
+                raise SceneError(where, word, f"but {unit.where} says {unit.word}", "correct the wrong one")
+            unit = unit or Unit(word, factor, f"line {at}")
+    if other_quantity and not acceleration:
         remedy = "give the acceleration file of this record; if it is one, let its header say so"
-        raise SceneError(*other, "not an acceleration", remedy)
-    return found
+        raise SceneError(*other_quantity, "not an acceleration", remedy)
+    return unit
 
 
 def _units_in(line: str, titles: bool, named: bool) -> Iterator[tuple[str, float | None]]:
-    """(word, its factor, None of one that is not known) of each unit in a line as `_spaced` writes it; named: an
-    acceleration or the like is named."""
+    """Return (word, its factor) of each unit in a line as `_spaced` writes it; the factor may be None.
+
+    It is None where the unit is not known. named: whether an acceleration or the like is named.
+    """
     read: list[tuple[int, int]] = []
     for pattern in (*_ANYWHERE, _UNKNOWN, _SUGGESTED if titles or named else _GALS, *([_SUFFIX] if titles else [])):
         for match in pattern.finditer(line):
@@ -671,7 +690,7 @@ def _units_in(line: str, titles: bool, named: bool) -> Iterator[tuple[str, float
 
 
 def _word(match: re.Match[str]) -> str:
-    """The unit matched, without what a sentence or a bracket put behind it."""
+    """Return the unit matched, without what a sentence or a bracket put behind it."""
     word = match[1]
     if word.count(")") > word.count("("):
         word = word[: word.rindex(")")] if word.count("(") else word[: word.index(")")]
@@ -679,7 +698,7 @@ def _word(match: re.Match[str]) -> str:
 
 
 def _spaced(line: str) -> str:
-    """The line with single blanks, none of them beside a sign of division or power."""
+    """Return the line with single blanks, none of them beside a sign of division or power."""
     line = " ".join(line.split())
     line = re.sub(r" ?\bper ", "/", line, flags=re.I)
     line = re.sub(r" squared\b| square\b", "2", line, flags=re.I)

@@ -1,4 +1,4 @@
-"""The shipped synthetic ground motion: a near-fault velocity pulse plus band-limited noise, made from a seed."""
+"""The shipped synthetic ground motion: a near-fault velocity pulse plus band-limited noise, by seed."""
 
 import math
 
@@ -26,7 +26,7 @@ DECIMALS = 9  # samples are rounded to 1e-9 m/s2, so that every FFT and libm giv
 
 
 def synthetic_motion(style: str = "duzce-like", seed: int = DEFAULT_SEED) -> SampledMotion:
-    """A synthetic near-fault ground motion; equal seeds give equal motions.
+    """Return a synthetic near-fault ground motion; equal seeds give equal motions.
 
     A velocity pulse (Mavroeidis and Papageorgiou 2003, eq. 3) of 0.70 to 0.82 m/s and period 0.95 to 1.36 s, with
     random length, phase and time, plus noise of random phases between 1 and 10 Hz under a gamma envelope. The noise is
@@ -78,7 +78,7 @@ def synthetic_motion(style: str = "duzce-like", seed: int = DEFAULT_SEED) -> Sam
 def pulse_acceleration(
     t: np.ndarray | float, speed: float, frequency: float, cycles: float, phase: float
 ) -> np.ndarray:
-    """Acceleration [m/s2] at time(s) t [s] from the centre of a velocity pulse, zero outside it.
+    """Return the acceleration [m/s2] at time(s) t [s] from the centre of a velocity pulse, zero outside it.
 
     v = speed/2 (1 + cos(2 pi f t/cycles)) cos(2 pi f t + phase) for |t| <= cycles/(2 f): Mavroeidis and
     Papageorgiou (2003), Bull. Seismol. Soc. Am. 93(3), eq. (3); speed [m/s], frequency f [Hz].
@@ -90,7 +90,7 @@ def pulse_acceleration(
 
 
 def _band_noise(frequencies: np.ndarray, uniform: np.ndarray) -> np.ndarray:
-    """Noise of flat spectrum between the BAND's edges, fourth-order roll-off outside, phases 2 pi uniform."""
+    """Return noise of flat spectrum between the BAND's edges, fourth-order roll-off outside, phases 2 pi uniform."""
     low, high = BAND
     inverse = np.divide(low, frequencies, out=np.full_like(frequencies, np.inf), where=frequencies > 0)
     gain = 1 / np.sqrt((1 + inverse**8) * (1 + (frequencies / high) ** 8))

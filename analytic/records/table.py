@@ -1,4 +1,4 @@
-"""Tables of numbers: the lines of a file split into header and fields, and what the titles of the columns name."""
+"""Tables of numbers: the lines of a file split into header and fields, and what the titles name."""
 
 import itertools
 import math
@@ -46,7 +46,7 @@ QUOTED = re.compile(r'(?:(?:[^"]*[,;\s])?"[^"]*"(?=[,;\s]|$))+(?:[,;\s][^"]*)?')
 
 LEADING = 6  # numbers of a list that may be no accelerations: its step, its number, a factor, zeros between them
 USUAL = 0.99  # share of the numbers of a list that are printed in one form, where there is one
-FAR = 10  # times as large as what follows it, a number is no part of the motion
+FAR = 10  # a number this many times as large as all that follow it is no part of the motion
 SAY_WHICH = "and say which: # dt = .01 s"
 OR_HOW_MANY = f"{SAY_WHICH}; or, if it is an acceleration, say above how many there are: # samples: 300"
 
@@ -54,23 +54,26 @@ Table = Sequence[tuple[int, list[str]]]  # line numbers and fields of the rows
 
 
 def unquoted(lines: Sequence[str]) -> Sequence[str]:
-    """The lines without quotes around the fields; if quoted numbers have decimal commas, the separator becomes a
-    semicolon."""
+    """Return the lines without quotes around the fields.
+
+    If quoted numbers have decimal commas, the separator becomes a semicolon.
+    """
     parts = {at: line.split('"') for at, line in enumerate(lines) if '"' in line and QUOTED.fullmatch(line.strip())}
     if not parts:
         return lines
-    commas = any("," in field for found in parts.values() for field in found[1::2] if DATA.match(field))
+    commas = any("," in field for pieces in parts.values() for field in pieces[1::2] if DATA.match(field))
     bare = list(lines)
-    for at, found in parts.items():
-        inside = [field if DATA.match(field) else re.sub("[,;]", "", field) for field in found[1::2]]
-        between = [text.replace(",", ";") if commas else text for text in found[::2]]
+    for at, pieces in parts.items():
+        inside = [field if DATA.match(field) else re.sub("[,;]", "", field) for field in pieces[1::2]]
+        between = [text.replace(",", ";") if commas else text for text in pieces[::2]]
         bare[at] = "".join(itertools.chain(*zip(between, [*inside, ""], strict=True)))
     return bare
 
 
 def split(lines: Sequence[str]) -> tuple[list[tuple[int, str]], list[tuple[int, str]]]:
-    """(line number, text) of the header, cut to `HEADER_WIDTH`, and of the rows of data, without comments and blank
-    lines.
+    """Return (line number, text) of the header, cut to `HEADER_WIDTH`, and of the rows of data.
+
+    Comments and blank lines are no rows.
 
     A comment inside the data that states a step or a unit is refused: there a second record begins.
     """
@@ -82,9 +85,10 @@ def split(lines: Sequence[str]) -> tuple[list[tuple[int, str]], list[tuple[int, 
         if not rows and RULER.fullmatch(text):
             continue
         if text.startswith(COMMENT):
+            comment = at, in_latin(text[:HEADER_WIDTH])
             if not rows:
-                header.append((at, in_latin(text[:HEADER_WIDTH])))
-            elif (found := read_statements([(at, in_latin(text[:HEADER_WIDTH]))])).step or stated_unit(found.rest):
+                header.append(comment)
+            elif (statements := read_statements([comment])).step or stated_unit(statements.rest):
                 raise SceneError(f"line {at}", text, "a statement inside the data", "give one record of the file")
         elif text and not rows and (at <= begin or not DATA.match(text) or HEADING.match(text)):
             header.append((at, in_latin(text[:HEADER_WIDTH])))
@@ -96,7 +100,10 @@ def split(lines: Sequence[str]) -> tuple[list[tuple[int, str]], list[tuple[int, 
 
 
 def _begin(lines: Sequence[str]) -> int:
-    """Number of the last line that states how many samples follow, if none up to there is one of numbers alone."""
+    """Return the number of the last line that states how many samples follow.
+
+    0 if a line up to there is one of numbers alone.
+    """
     top = [line[:HEADER_WIDTH] for line in lines[:HEADER_LINES]]
     begin = max((at for at, line in enumerate(top, 1) if stated_count([(at, line)]) is not None), default=0)
     rows = (line for line in top[:begin] if re.search("[0-9]", line) and not line.strip(SIGNS_OF_NUMBERS))
@@ -104,7 +111,7 @@ def _begin(lines: Sequence[str]) -> int:
 
 
 def parted(rows: Sequence[tuple[int, str]]) -> tuple[str | None, Table]:
-    """(separator, None of blanks; the fields of all rows, with decimal points)."""
+    """Return (separator, None for blanks; the fields of all rows, with decimal points)."""
     separator, decimal = _dialect(rows)
     plain = ((at, row.replace(",", ".") if decimal == "," else row) for at, row in rows)
     table = [(at, fields_of(row, separator)) for at, row in plain]
@@ -114,7 +121,7 @@ def parted(rows: Sequence[tuple[int, str]]) -> tuple[str | None, Table]:
 
 
 def _dialect(rows: Sequence[tuple[int, str]]) -> tuple[str | None, str]:
-    """(separator, decimal sign) of all rows; the separator of blanks is None."""
+    """Return (separator, decimal sign) of all rows; the separator of blanks is None."""
     texts = [row for _, row in rows]
     points = sum("." in text for text in texts)
     semicolon = ";" if any(";" in text for text in texts) else None
@@ -137,22 +144,25 @@ def _dialect(rows: Sequence[tuple[int, str]]) -> tuple[str | None, str]:
 
 
 def fields_of(row: str, separator: str | None) -> list[str]:
-    """The fields of a line."""
+    """Return the fields of a line."""
     return row.split() if separator is None else [field.strip() for field in row.split(separator)]
 
 
 def counted(table: Table) -> tuple[Table, list[tuple[int, str]]]:
-    """(rows, (line number, statement)) of a table that begins with the number of its values or rows, and perhaps their
-    step, as eqsig and many programs write; or the table as it is."""
+    """Return (rows, (line number, statement)) of a table whose first line gives the number of its values or rows.
+
+    The line may also give their step, as eqsig and many programs write. Without such a line the table is returned as it
+    is.
+    """
     (at, first), rest = table[0], table[1:]
     size, width = sum(len(fields) for _, fields in rest), max((len(fields) for _, fields in rest), default=0)
     if rest and len(first) < 3 and re.fullmatch("[0-9]{1,9}", first[0]) and value_of(first[-1]) >= 0:
-        known = int(first[0]) in (size, len(rest)) and any("." in field for _, fields in rest for field in fields)
-        if not known and len(first) == 2 and width != 2:
+        is_count = int(first[0]) in (size, len(rest)) and any("." in field for _, fields in rest for field in fields)
+        if not is_count and len(first) == 2 and width != 2:
             problem = f"may be the number of values and their step, but {size} values follow"
             raise SceneError(f"line {at}", " ".join(first), problem, "correct it, or begin the line with #")
         rising = width == 2 == len(first) and value_of(rest[0][1][0]) > int(first[0])
-        if known and not rising:
+        if is_count and not rising:
             return rest, [(at, f"samples: {first[0]}" + (f", dt = {first[1]} s" if len(first) == 2 else ""))]
     falls = len(first) == 2 == width and len(rest) > 2 and rises(rest, 0) and not rises(table, 0)
     if falls or len(first) == 1 < width:
@@ -164,8 +174,9 @@ def counted(table: Table) -> tuple[Table, list[tuple[int, str]]]:
 def check_leading(values: Sequence[tuple[int, str]], step: float | None) -> None:
     """Refuse a number at the head of a list, (line number, number), that may be no acceleration.
 
-    That is one other than 0 that is not printed as those below; says how many follow; or, first or behind numbers that
-    are rounder or far larger than those below, is the step that is given [s], or both rounder and far larger itself.
+    Such a number is not 0, and it is not printed as those below; or it says how many follow. The first one, and one
+    behind numbers that are rounder or far larger than those below, may also be the step that is given [s], or itself be
+    both rounder and far larger.
     """
     below = Counter(form_of(token) for _, token in values if value_of(token))
     decimals = sorted(map(_decimals, (token for _, token in values if value_of(token))))
@@ -177,7 +188,7 @@ def check_leading(values: Sequence[tuple[int, str]], step: float | None) -> None
         below -= Counter([form_of(token)])
         ((usual, often),) = below.most_common(1) or [(None, 0)]
         following = max((abs(value_of(later)) for _, later in values[place + 1 :][: LEADING - 1]), default=math.inf)
-        rounder, far = _decimals(token) < decimals[len(decimals) // 2] - 1, abs(value) >= FAR * following
+        rounder, far_larger = _decimals(token) < decimals[len(decimals) // 2] - 1, abs(value) >= FAR * following
         problem = ""
         if below.total() > 1 and often >= USUAL * below.total() and not printed_as(usual, token):
             problem = "not printed as the numbers below are"
@@ -185,21 +196,21 @@ def check_leading(values: Sequence[tuple[int, str]], step: float | None) -> None
             problem = "equal to the step that is given"
         elif count > 2 * LEADING and count - value in (0, 1, 2) and all(odd):
             problem = "as many as the numbers below"
-        elif rounder and far and all(odd):
+        elif rounder and far_larger and all(odd):
             problem = "rounder and far larger than the numbers below"
         if problem:
             problem += ", and may be their step, their number or a factor"
             raise SceneError(f"line {at}", token, problem, f"write it in a line that begins with #, {OR_HOW_MANY}")
-        odd.append(rounder or far)
+        odd.append(rounder or far_larger)
 
 
 def _decimals(token: str) -> int:
-    """Digits of a number behind the point, as many as it needs; fewer than 0 of a multiple of ten."""
+    """Return the digits of a number behind the point, as many as it needs; fewer than 0 for a multiple of ten."""
     return -int(exact(token).normalize().as_tuple().exponent)
 
 
 def unpaired(table: Table, titles: Sequence[str]) -> Table:
-    """The table of two columns, if each line holds several pairs of time and value, which rise along the lines.
+    """Return the table of two columns, if each line holds several pairs of time and value, which rise along the lines.
 
     Raises
     ------
@@ -207,8 +218,8 @@ def unpaired(table: Table, titles: Sequence[str]) -> Table:
         Few of the times do not rise: a damaged number. In columns side by side some number falls in each line.
     """
     width, last = len(table[0][1]), table[-1][1]
-    whole = all(len(fields) == width for _, fields in table[:-1]) and not len(last) % 2
-    if width < 4 or width % 2 or not whole or len({*titles[::2]}) > 1 or len({*titles[1::2]}) > 1:
+    complete = all(len(fields) == width for _, fields in table[:-1]) and not len(last) % 2
+    if width < 4 or width % 2 or not complete or len({*titles[::2]}) > 1 or len({*titles[1::2]}) > 1:
         return table
     falls, before = [], -math.inf
     for at, field in ((at, field) for at, fields in table for field in fields[::2]):
@@ -225,13 +236,13 @@ def unpaired(table: Table, titles: Sequence[str]) -> Table:
 
 
 def rises(table: Table, place: int) -> bool:
-    """Whether a column may be one of times: its numbers only rise."""
+    """Return whether a column may be one of times: its numbers only rise."""
     values = [value_of(fields[place]) if place < len(fields) else math.nan for _, fields in table]
     return len(values) > 1 and all(before < after for before, after in itertools.pairwise(values))
 
 
 def counts(table: Table, place: int) -> bool:
-    """Whether a column numbers the rows."""
+    """Return whether a column numbers the rows."""
     column = [fields[place] for _, fields in table if place < len(fields)]
     return (
         len(column) == len(table)
@@ -287,15 +298,18 @@ _RAW = ("count", "counts", "cts", "volt", "volts", "mv", "lsb", "adc", "digits")
 
 @dataclass(frozen=True)
 class Titles:
-    """The titles of the columns, none where none are, and the number of their line."""
+    """The titles of the columns, and the number of their line; empty where there are none."""
 
     at: int = 0
     words: tuple[str, ...] = ()
 
 
 def find_titles(header: Sequence[tuple[int, str]], separator: str | None, width: int) -> Titles:
-    """The `Titles` of `width` columns: the last line of the header, or the last but one with the units of the last."""
-    named = [(at, found.string[found.end() :]) for at, line in header if (found := SEQUENCE.match(line.lstrip(" #")))]
+    """Return the `Titles` of `width` columns.
+
+    They are the last line of the header, or the last but one with the units of the last.
+    """
+    named = [(at, match.string[match.end() :]) for at, line in header if (match := SEQUENCE.match(line.lstrip(" #")))]
     for at, line in named or header[-1:]:
         words = _parted(line, separator, width, _is_name)
         above = _parted(header[-2][1], separator, width, _is_name) if len(header) > 1 and not named else ()
@@ -307,13 +321,13 @@ def find_titles(header: Sequence[tuple[int, str]], separator: str | None, width:
 
 
 def _is_title(line: str) -> bool:
-    """Whether a line over one column is its title: it may be any words."""
+    """Return whether a line over one column is its title: it may be any words."""
     name = name_of(line)
     return " " not in name and (name.lower() in _RAW or _kind_of(line) in (ACCELERATED, *OTHERS))
 
 
 def _parted(line: str, separator: str | None, width: int, is_one: Callable[[str], bool]) -> tuple[str, ...]:
-    """The `width` titles, or what `is_one` asks for, that make up a line, the first perhaps ""; else none."""
+    """Return the `width` titles that make up a line, or what `is_one` asks for, the first perhaps ""; else none."""
     line = line.lstrip("#%!/ ").rstrip(",;\t ")
     for by in (*([re.escape(separator)] if separator else []), "[;,]", r"\t", " {2,}", "[;, ]+", r"[;, ]+(?![;, (\[])"):
         words = [word.strip(" \"'") for word in re.split(by, line)]
@@ -327,7 +341,7 @@ def _is_name(word: str) -> bool:
 
 
 def _is_unit(word: str) -> bool:
-    """Whether a field is a unit, "[s]" or "g", or the sign of none."""
+    """Return whether a field is a unit, "[s]" or "g", or the sign of none."""
     word = word.strip("()[]")
     return word == "-" or _is_time(word) or word.lower() in OTHER_TIMES or bool(known_unit(word))
 
@@ -337,12 +351,12 @@ def _is_time(word: str) -> bool:
 
 
 def name_of(title: str) -> str:
-    """A title without what stands in brackets: U(+) is U."""
+    """Return a title without the words in brackets: U(+) is U."""
     return " ".join(_BRACKETS.sub(" ", title).split())
 
 
 def kinds_of(titles: Titles, spectrum: bool) -> list[str]:
-    """What each column is by its title; `spectrum`: the file may hold one by other words of its header."""
+    """Return the kind of each column by its title; `spectrum`: the file may hold one by other words of its header."""
     kinds = [_kind_of(word) if word else NUMBERS for word in titles.words]
     names = [folded(name_of(word)) for word in titles.words]
     if spectrum or SPECTRUM in kinds:
@@ -362,7 +376,10 @@ def check_events(titles: Titles) -> None:
 
 
 def _kind_of(title: str) -> str:
-    """The kind that a title names; "t" and words of time are a time, and so are units of it in place of a name."""
+    """Return the kind that a title names.
+
+    "t" and words of time are a time, and so are units of time in place of a name.
+    """
     name = folded(name_of(title)).strip(" .")
     inside = [word.strip().lower() for word in _BRACKETS.findall(title)]
     if name in _ALONE or {"hz", "rad/s"} & set(inside):
@@ -376,7 +393,7 @@ def _kind_of(title: str) -> str:
 
 
 def time_words(title: str) -> str:
-    """A title of times and its unit as a sentence says it: "RelativeTime(ms)" has "time ms"."""
+    """Return a title of times and its unit as a sentence says it: "RelativeTime(ms)" has "time ms"."""
     title = _TIME_IN_A_WORD.sub("time", title, count=1)
     words = [title, *_BRACKETS.findall(title), re.split(r"[\s_,:/]+", name_of(title))[-1]]
     unit = next((word for word in map(str.strip, words) if _is_time(word) or word.lower() in OTHER_TIMES), None)
@@ -384,35 +401,35 @@ def time_words(title: str) -> str:
 
 
 def spectrum_in(words: Sequence[tuple[int, str]]) -> tuple[int, str] | None:
-    """The line of a header that names a spectrum, or whose first word is a period or a frequency, if one does."""
-    named = [one for one in words if _SPECTRUM.search(folded(one[1]))]
-    begun = [one for one in words[-1:] if _BEGINS_WITH_PERIODS.fullmatch(folded(one[1].lstrip("#%!/ ")))]
+    """Return the line of a header that names a spectrum, or whose first word is a period or a frequency, if any."""
+    named = [line for line in words if _SPECTRUM.search(folded(line[1]))]
+    begun = [line for line in words[-1:] if _BEGINS_WITH_PERIODS.fullmatch(folded(line[1].lstrip("#%!/ ")))]
     return next(iter(named + begun), None)
 
 
 def known_unit(word: str) -> str:
-    """A unit of acceleration or velocity, as titles write it too: "cms2" is "cm/s2"; "" of another word."""
+    """Return a unit of acceleration or velocity, as titles write it too: "cms2" is "cm/s2"; "" for another word."""
     word = word.strip().lower()
     if word[:1] in ("", ".", "'", '"'):  # the rest of a damaged word
         return ""
     if plain(word) in WORDS or plain(word) in NOT_ACCELERATIONS - {"m", "in", "ft"}:
         return word
-    length, per, squared = found.groups() if (found := _GLUED.fullmatch(word.replace("²", "2"))) else ("", "", "")
+    length, per, squared = glued.groups() if (glued := _GLUED.fullmatch(word.replace("²", "2"))) else ("", "", "")
     return f"{length}/s2" if squared else f"{length}/s" if per or length in ("cm", "mm") else ""
 
 
 def has_unit(title: str) -> bool:
-    """Whether a title has a unit of length, velocity or acceleration in brackets."""
+    """Return whether a title has a unit of length, velocity or acceleration in brackets."""
     return any(known_unit(word) or word.strip() in LENGTHS for word in _BRACKETS.findall(title))
 
 
 def with_unit(titles: Titles, place: int) -> str:
-    """A title with its unit in brackets: "acc_cms2" is "acc (cm/s2)".
+    """Return a title with its unit in brackets: "acc_cms2" is "acc (cm/s2)".
 
     Raises
     ------
     SceneError
-        It has a word where units stand that is none that is known, or one of another quantity.
+        A word stands where units stand, and is none that is known, or one of another quantity.
     """
     title = titles.words[place]
     if stated_unit([(titles.at, title)], titles.at):
@@ -444,5 +461,5 @@ def _asked(at: int, title: str, word: str) -> SceneError:
 
 
 def _numbered(titles: Titles, title: str) -> bool:
-    """Whether another title differs in its numbers alone: these count columns."""
+    """Return whether another title differs in its numbers alone: these count columns."""
     return sum(re.sub("[0-9]+", "", word) == re.sub("[0-9]+", "", title) for word in titles.words) > 1

@@ -1,5 +1,6 @@
-"""Motion of a block with Coulomb friction in each mode, coefficient by coefficient; its ends, and the mode that follows
-where they are no impact (compiled).
+"""Equations of a block with Coulomb friction in each mode, the ends of a mode, and the next mode (compiled).
+
+The series are filled coefficient by coefficient. Ends that are impacts are in `march`.
 
 Corner s = +1 or -1 lies at (n, -c) from the centre of mass, c = R cos(s gamma - phi), n = R sin(s gamma - phi).
 G = g + a_v, X = a_g + x'', x: base to ground; u: slip of the corner along the base, eta: its gap; H, N: force of the
@@ -53,7 +54,7 @@ GRAZE = 1e-6
 
 @inner
 def accelerations(par, contact, block, start):
-    """(phi'', u'', eta'', H, N) at an instant, by (S1) to (S4); start: what acts on block and base then."""
+    """Return (phi'', u'', eta'', H, N) at an instant, by (S1) to (S4); start: what acts on block and base then."""
     mode, s, sigma, tilt, rate = block.mode, block.s, block.sigma, block.tilt, block.rate
     gravity, ground, force = start
     m, mu, R = par.m, contact.mu, par.R
@@ -83,7 +84,7 @@ def accelerations(par, contact, block, start):
 
 @inner
 def weight_term(par, upright, k, highest, G):
-    """Term k of the series of g + a_v."""
+    """Return term k of the series of g + a_v."""
     if upright is None:
         return par.g if k == 0 else 0.0
     return G[k] if k <= max(highest, 0) else 0.0
@@ -153,7 +154,7 @@ def mode_series(order, par, contact, block, factors, highest, upright, P):
 
 @inner
 def _corner_series(order, par, block, P):
-    """Slip and gap of the corner: u' = drift - c phi', eta' = climb - n phi', velocities of the centre of mass."""
+    """Fill slip and gap of the corner: u' = drift - c phi', eta' = climb - n phi', velocities of the centre of mass."""
     w, S, C = P[L.W], P[L.S], P[L.C]
     for k in range(1, order + 1):
         across, up = 0.0, 0.0
@@ -169,7 +170,7 @@ def _corner_series(order, par, block, P):
 
 @inner
 def _admissible(par, contact, block, start, level):
-    _, slipping, rising, across, normal = found = accelerations(par, contact, block, start)
+    _, slipping, rising, across, normal = motion = accelerations(par, contact, block, start)
     if block.mode == FLIGHT:
         return rising > 0
     if normal < 0:
@@ -181,17 +182,17 @@ def _admissible(par, contact, block, start, level):
         return False
     if block.s == 0:  # the resultant is between the corners
         return abs(across) <= par.slope * normal
-    return not level or block.s * found[0] > 0
+    return not level or block.s * motion[0] > 0
 
 
 @inner
 def choose(par, contact, block, start):
-    """(block in its next mode, number of admissible modes), by the accelerations; one that slides goes on to slide.
+    """Return (block in its next mode, number of admissible modes), by the accelerations.
 
-    block.s : 0 for a block that lies level, with tilt rate 0. Without an admissible mode the friction is above the
-    bound of Painleve (`run.paradoxical_friction`).
+    A block that slides goes on to slide. block.s : 0 for a block that lies level, with tilt rate 0. Without an
+    admissible mode the friction is above the bound of Painleve (`run.paradoxical_friction`).
     """
-    level, found, count = block.s == 0, block, math.floor(0.0)
+    level, first, count = block.s == 0, block, math.floor(0.0)
     for which in range(10):  # in full contact, about its left corner, about its right one, in flight
         side, slips = which // 3, which % 3
         s, sigma = (0.0, -1.0, 1.0)[side % 3], (0.0, 1.0, -1.0)[slips]
@@ -204,13 +205,13 @@ def choose(par, contact, block, start):
         if _admissible(par, contact, tried, start, level):
             count += 1
             if count == 1:
-                found = tried
-    return found, count
+                first = tried
+    return first, count
 
 
 @inner
 def crossing(limit, side, refused, order, h, P, work):
-    """First time at which limit N + side H falls below 0 in the step, or -1."""
+    """Return the first time at which limit N + side H falls below 0 in the step, or -1."""
     event, across, normal = P[L.EVENT], P[L.H], P[L.N]
     for k in range(order + 1):
         event[k] = limit * normal[k] + side * across[k]
@@ -223,53 +224,56 @@ def crossing(limit, side, refused, order, h, P, work):
 
 @inner
 def tilt_event(par, block, step, P, work):
-    """(kind, time) of the first event of the tilt, which passes 0, the slenderness or pi/2; NONE and the step's end."""
-    found, h, order, s = L.NONE, step.h, step.order, block.s
+    """Return (kind, time) of the first event of the tilt: it passes 0, the slenderness or pi/2.
+
+    Without one NONE and the step's end.
+    """
+    kind, h, order, s = L.NONE, step.h, step.order, block.s
     root = find_fall(P[L.PHI], s, 0.0, order, h, P[L.EVENT], work)
     if root >= 0 and not (block.mode == FLIGHT and root == 0):
-        found, h = LEVEL if block.mode == FLIGHT else L.IMPACT, root
-    return find_passage(par.gamma, s, block.tilt, (found, h), order, P, work)
+        kind, h = LEVEL if block.mode == FLIGHT else L.IMPACT, root
+    return find_passage(par.gamma, s, block.tilt, (kind, h), order, P, work)
 
 
 @inner
 def contact_event(par, contact, block, refused, sooner, order, P, work):
-    """(kind, time, side) of the first event of the contact; sooner : (kind, time) of another one, else returned."""
-    (found, h), side, event = sooner, 0.0, P[L.EVENT]
+    """Return (kind, time, side) of the first event of the contact, or else `sooner`, (kind, time) of another event."""
+    (first, h), side, event = sooner, 0.0, P[L.EVENT]
     if block.mode == FLIGHT:
         root = find_fall(P[L.GAP], 1.0, 0.0, order, h, event, work)
         if root >= 0:
-            found, h = LANDING, root
+            first, h = LANDING, root
     elif block.sigma == 0:
         lifts = block.mode == STICK and par.slope <= contact.mu
         kind, limit = (L.UPLIFT, par.slope) if lifts else (CONE, contact.mu)
         for sign in (1.0, -1.0):
             root = crossing(limit, sign, refused == kind, order, h, P, work)
             if root >= 0:
-                found, h, side = kind, root, sign
+                first, h, side = kind, root, sign
     else:
         root = find_fall(P[L.SPEED], block.sigma, 0.0, order, h, event, work)
         if root >= 0:
-            found, h = STOP, root
+            first, h = STOP, root
         root = find_fall(P[L.N], 1.0, 0.0, order, h, event, work)
         if root >= 0 and refused != LOSS:
-            found, h = LOSS, root
-    return found, h, side
+            first, h = LOSS, root
+    return first, h, side
 
 
 @inner
 def next_event(par, contact, block, refused, direction, step, P, work):
-    """(kind of the first event in the step, its time since the start, side)."""
-    found, h, order = L.NONE, step.h, step.order
+    """Return (kind of the first event in the step, its time since the start, side)."""
+    kind, h, order = L.NONE, step.h, step.order
     if block.s != 0:
-        found, h = tilt_event(par, block, step, P, work)
-    found, h, side = contact_event(par, contact, block, refused, (found, h), order, P, work)
-    found, h = find_turn(direction, step.corner, (found, h), order, P, work)
-    return found, h, side
+        kind, h = tilt_event(par, block, step, P, work)
+    kind, h, side = contact_event(par, contact, block, refused, (kind, h), order, P, work)
+    kind, h = find_turn(direction, step.corner, (kind, h), order, P, work)
+    return kind, h, side
 
 
 @inner
 def impossible(par, contact, block, start):
-    """Whether the mode no longer holds at the start of a step, as after a jump of the ground's acceleration."""
+    """Return whether the mode no longer holds at the start of a step, as after a jump of the ground's acceleration."""
     mode = block.mode
     if mode == FLIGHT:
         return False
@@ -284,7 +288,7 @@ def impossible(par, contact, block, start):
 
 @inner
 def fresh_series(fresh, block, P):
-    """Sets to 0 what is 0 at an onset that was just located; returns whether it is no onset, but a graze."""
+    """Set to 0 what vanishes at an onset that was just located; return whether it is only a graze."""
     if fresh == CONE:
         P[L.SPEED, 0], P[L.SPEED, 1], P[L.SLIP, 1], P[L.SLIP, 2] = 0.0, 0.0, 0.0, 0.0
         return not block.sigma * P[L.SPEED, 2] > 0
@@ -298,21 +302,21 @@ def fresh_series(fresh, block, P):
 
 
 @inner
-def after_event(par, contact, block, found, side, start):
-    """(block in its mode after an event that is no impact, number of modes that were admissible)."""
+def after_event(par, contact, block, kind, side, start):
+    """Return (block in its mode after an event that is no impact, number of modes that were admissible)."""
     _, s, sigma, tilt, rate, slip, speed, gap, rise = block
     weak = 1e-9 * par.m * par.g
-    if found == CONE or found == L.UPLIFT:
+    if kind == CONE or kind == L.UPLIFT:
         _, _, _, _, normal = accelerations(par, contact, block, start)
         if normal < weak:
             return Block(FLIGHT, s if s != 0 else 1.0, 0.0, tilt, rate, slip, 0.0, 0.0, 0.0), 1
         # side N + H = 0 falls: H is -side limit N, and the block moves to side
-        if found == L.UPLIFT:
+        if kind == L.UPLIFT:
             return Block(ROCK, side, 0.0, 0.0, 0.0, slip, 0.0, 0.0, 0.0), 1
         return Block(SLIDE if s == 0 else SLIDE_ROCK, s, side, tilt, rate, slip, 0.0, 0.0, 0.0), 1
-    if found == STOP:
+    if kind == STOP:
         return choose(par, contact, Block(STICK, s, 0.0, tilt, rate, slip, 0.0, 0.0, 0.0), start)
-    if found == LOSS:
+    if kind == LOSS:
         return Block(FLIGHT, s if s != 0 else 1.0, 0.0, tilt, rate, slip, speed, 0.0, 0.0), 1
     # LEVEL: the other corner becomes the lower one; gap and slip are those of both, their rates are not
     b = par.R * math.sin(par.gamma)

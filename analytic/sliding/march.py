@@ -1,12 +1,12 @@
-"""March through the modes of a block that may slide: a Taylor series integrator with events, as the kernel (compiled).
+"""The march of a block that may slide through its modes, with its impacts (compiled).
 
-Modes, their equations and ends: `equations`, `impact`. Between two events all is smooth, and events are
-located as roots of the step's polynomials. The outcome is decided by the rules of `decision`.
+It is a Taylor series integrator with events, as the kernel is. The modes, their equations and ends are in `equations`.
+Between two events all is smooth, and events are located as roots of the step's polynomials. The outcome is decided by
+the rules of `decision`.
 
-Impact of a corner, or of both, on the support: plastic, with impulses inside Coulomb's cone (Moreau), compiled.
-
-h and b: height of the centre of mass and half width; with impulses P, Q of the support on the block, horizontal and
-upward, D the horizontal velocity of the centre of mass from the base and Y its vertical one, the jumps are
+An impact of a corner, or of both, on the support is plastic, with impulses inside Coulomb's cone (Moreau). h and b:
+height of the centre of mass and half width; with impulses P, Q of the support on the block, horizontal and upward, D
+the horizontal velocity of the centre of mass from the base and Y its vertical one, the jumps are
 
     (I1)  J_G [phi'] = -c P - n Q           (n, -c): the corner from the centre of mass, as in equations.py
     (I2)  [D] = P (1/m + 1/m_b)             on rigid ground 1/m_b = 0
@@ -81,9 +81,10 @@ EDGE = 1e-12
 
 @inner
 def one_corner(par, contact, c, n, sigma, before, given):
-    """After the impact of one corner alone: (`Velocity`, P, Q); sigma 0: it sticks, else it slips that way.
+    """Return (`Velocity`, P, Q) after the impact of one corner alone; sigma 0: it sticks, else it slips that way.
 
-    given : the restitution comes from the scene, a couple does what (I1) lacks."""
+    given : the restitution comes from the scene, and a couple supplies what (I1) lacks.
+    """
     moving, (rate, drift, climb) = par.m * contact.mb / par.M if par.on_base else par.m, before
     if sigma == 0:
         inertia = contact.centre + c * c * moving + n * n * par.m
@@ -101,7 +102,7 @@ def one_corner(par, contact, c, n, sigma, before, given):
 
 @inner
 def both_corners(par, contact, c, sigma, drift, climb):
-    """After an impact after which both corners stay: (drift, P, Q)."""
+    """Return (drift, P, Q) after an impact after which both corners stay."""
     moving, up = par.m * contact.mb / par.M if par.on_base else par.m, -par.m * climb
     across = -moving * drift if sigma == 0 else -sigma * contact.mu * up
     return (0.0 if sigma == 0 else drift + across / moving), across, up
@@ -109,18 +110,20 @@ def both_corners(par, contact, c, sigma, drift, climb):
 
 @inner
 def within(across, up, mu):
+    """Return whether the impulses lie inside Coulomb's cone."""
     return up >= 0 and abs(across) <= mu * up * (1 + EDGE)
 
 
 @inner
 def level_impact(par, contact, s, before):
-    """Impact of a block that comes down from side s: (kind, `Velocity` after it, P, number of admissible kinds).
+    """Return (kind, `Velocity` after it, P, number of admissible kinds) of the impact of a block that comes down.
 
-    A given restitution knows one kind, the new corner that sticks; kind is -1 where that is not admissible.
+    s : the side from which it comes. A given restitution knows one kind, the new corner that sticks; kind is -1 where
+    that is not admissible.
     """
     b, h, mu = par.R * math.sin(par.gamma), par.R * math.cos(par.gamma), contact.mu
     rate, drift, climb = before
-    r, kind, found, impulse, count = -s, -1, before, 0.0, 0
+    r, kind, velocity, impulse, count = -s, -1, before, 0.0, 0
     for sigma in (0.0, 1.0, -1.0):
         after, push, normal = one_corner(par, contact, h, r * b, sigma, before, contact.given)
         good = r * after.rate >= 0 and normal >= 0
@@ -132,9 +135,9 @@ def level_impact(par, contact, s, before):
         if good:
             count += 1
             if count == 1:
-                kind, found, impulse = NEW_STICKS if sigma == 0 else NEW_SLIPS, after, push
+                kind, velocity, impulse = NEW_STICKS if sigma == 0 else NEW_SLIPS, after, push
     if contact.given:
-        return kind, found, impulse, 1
+        return kind, velocity, impulse, 1
     for sigma in (0.0, 1.0, -1.0):
         across, push, normal = both_corners(par, contact, h, sigma, drift, climb)
         tilting = abs(contact.centre * rate - h * push) / b  # (I1): difference of the impulses of the corners
@@ -144,13 +147,13 @@ def level_impact(par, contact, s, before):
             count += 1
             if count == 1:
                 kind, impulse = BOTH_STICK if sigma == 0 else BOTH_SLIP, push
-                found = Velocity(0.0, across, 0.0)
-    return kind, found, impulse, count
+                velocity = Velocity(0.0, across, 0.0)
+    return kind, velocity, impulse, count
 
 
 @inner
 def kinetic(par, contact, velocity, v):
-    """Kinetic energy [J]."""
+    """Return the kinetic energy [J]."""
     rate, drift, climb = velocity
     moving = par.m * ((v + drift) ** 2 + climb**2) + contact.centre * rate**2
     return 0.5 * (moving + contact.mb * v * v if par.on_base else moving)
@@ -158,7 +161,10 @@ def kinetic(par, contact, velocity, v):
 
 @inner
 def struck(par, contact, block, base, rest_rate, at, t, into):
-    """(block, base, status) after an impact. at : what acts then, a `Start`; its force is that before the impact."""
+    """Return (block, base, status) after an impact.
+
+    at : what acts then, a `Start`; its force is that before the impact.
+    """
     impacts, totals, v, s = into.impacts, into.totals, base.v, block.s
     c, n = par.R * math.cos(s * par.gamma - block.tilt), par.R * math.sin(s * par.gamma - block.tilt)
     before = Velocity(block.rate, block.speed + c * block.rate, block.rise + n * block.rate)
@@ -195,7 +201,7 @@ def struck(par, contact, block, base, rest_rate, at, t, into):
 
 @inner
 def landed(par, contact, c, n, before):
-    """(`Velocity`, P) after the impact of the lower corner of a block in flight: it sticks, or slips."""
+    """Return (`Velocity`, P) after the impact of the lower corner of a block in flight: it sticks, or slips."""
     after, push, normal = one_corner(par, contact, c, n, 0.0, before, False)
     if not within(push, normal, contact.mu):
         for sigma in (1.0, -1.0):
@@ -207,7 +213,7 @@ def landed(par, contact, c, n, before):
 
 @inner
 def settled(par, contact, block, rest_rate, start):
-    """(block after an impact in its next mode, what the base gains, number of admissible modes).
+    """Return (block after an impact in its next mode, velocity that the base gains, number of admissible modes).
 
     A block so slow that its further swings end at once lies level. Their impulses are left: where it sticks the base
     takes its momentum; where it slides their normal impulse, m b times the rate less than the weight's, takes as much
@@ -235,7 +241,7 @@ def settled(par, contact, block, rest_rate, start):
 
 
 def arrays(capacity, outputs):
-    """Workspace of a run: `capacity` events of a kind are kept, and rows of the history."""
+    """Return the workspace of a run, with room for `capacity` events of a kind and `outputs` rows of the history."""
     return L.Marched(
         np.zeros((L.ROWS, MAX_ORDER + 2)),
         np.empty(SCRATCH),
@@ -248,14 +254,14 @@ def arrays(capacity, outputs):
 
 @inner
 def state_series(block, P):
-    """State of the block as entries 0."""
+    """Set entries 0 of the series to the state of the block."""
     P[L.PHI, 0], P[L.W, 0], P[L.SLIP, 0], P[L.SPEED, 0] = block.tilt, block.rate, block.slip, block.speed
     P[L.GAP, 0], P[L.RISE, 0] = block.gap, block.rise
 
 
 @inner
 def usable_step(par, block, order, h, tolerance, P):
-    """The step that the series allow [s]."""
+    """Return the step that the series allow [s]."""
     if block.s != 0:
         h = allowed_step(P[L.W], order, tolerance, min(h, FARTHEST / math.sqrt(par.p2)))
     if block.sigma != 0 or block.mode == FLIGHT:
@@ -269,7 +275,7 @@ def usable_step(par, block, order, h, tolerance, P):
 
 @inner
 def acting(par, base, upright, highest, h, P):
-    """What acts at h [s] in the step, a `Start`."""
+    """Return what acts at h [s] in the step, a `Start`."""
     ground = value(P[L.GROUND], highest, h) if highest >= 0 else 0.0
     force = par.count * (par.kb * base.x + base.z + par.damping * base.v)
     return Start(gravity_at(par, upright, P, highest, h), ground, force)
@@ -277,7 +283,7 @@ def acting(par, base, upright, highest, h, P):
 
 @inner
 def bearing_of_step(par, contact, block, base, branch, start, highest, P):
-    """As `steps.bearing_of_step`: (branch, factors of the bearing's series, the bearing's next corner)."""
+    """Return (branch, factors of the bearing's series, the bearing's next corner), as `steps.bearing_of_step`."""
     P[L.X, 0], P[L.V, 0], P[L.F, 0], moving = base.x, base.v, start.force, math.copysign(1.0, base.v)
     if base.v == 0:  # that of the first derivative that is not zero
         _, _, _, across, _ = accelerations(par, contact, block, start)
@@ -289,8 +295,8 @@ def bearing_of_step(par, contact, block, base, branch, start, highest, P):
 
 
 @inner
-def end_of_step(par, block, found, step, P, totals, work):
-    """The block at the end of a step, in its old mode; keeps peaks and the way that it slid."""
+def end_of_step(par, block, event, step, P, totals, work):
+    """Return the block at the end of a step, in its old mode; keep peaks and the path that it slid."""
     tilt, rate, order, h = block.tilt, block.rate, step.order, step.h
     if block.s != 0:
         tilt, rate, totals[L.PEAK_TILT] = end_of_block(L.Body(block.s, tilt, rate), step, totals[L.PEAK_TILT], P, work)
@@ -307,27 +313,27 @@ def end_of_step(par, block, found, step, P, totals, work):
     totals[L.PEAK_SLIP] = max(totals[L.PEAK_SLIP], abs(slip))
     if block.mode >= ROCK:
         totals[L.LIFTED] = 1.0
-    if found == L.PASSAGE:
+    if event == L.PASSAGE:
         tilt = block.s * par.gamma
         if totals[L.UNSTABLE_TIME] < 0:
             totals[L.UNSTABLE_TIME] = step.t + h
-    elif found == L.IMPACT or found == LEVEL:
+    elif event == L.IMPACT or event == LEVEL:
         tilt = 0.0
-    elif found == STOP:
+    elif event == STOP:
         speed = 0.0
     return Block(block.mode, block.s, block.sigma, tilt, rate, slip, speed, gap, rise)
 
 
 @inner
 def fallen(block, none):
-    """The block at |tilt| = pi/2; none : 0."""
+    """Return the block at |tilt| = pi/2; none : 0."""
     tilt = block.s * 0.5 * math.pi
     return Block(none + FALLEN, block.s, 0.0, tilt, block.rate, block.slip, block.speed, block.gap, block.rise)
 
 
 @inner
 def noted(block, last, t, into):
-    """Stores the time at which a mode began; returns the mode."""
+    """Store the time at which a mode began; return the mode."""
     changes, totals = into.changes, into.totals
     if block.mode != last:
         number = int(totals[L.CHANGES])
@@ -339,7 +345,7 @@ def noted(block, last, t, into):
 
 @inner
 def read(par, contact, upright, block, step, options, into, written):
-    """Write the step to history, diagnostics and ledger; returns the rows of the history written."""
+    """Write the step to history, diagnostics and ledger; return the rows of the history written."""
     P, rows = into.P, into.history
     first, written = written, write_history(par, block, step, options.output_step, into, written)
     for k in range(first, written):
@@ -353,30 +359,30 @@ def read(par, contact, upright, block, step, options, into, written):
 
 @inner
 def forces(par, contact, block, step, P, totals, work):
-    """Peak absolute base acceleration, friction demand |H|/N and least N/(m g) within the step."""
+    """Read peak absolute base acceleration, friction demand |H|/N and least N/(m g) within the step."""
     h, order = step.h, step.order
     row, last = (L.ABSOLUTE, order) if par.on_base else (L.GROUND, step.highest)
-    known = totals[L.PEAK_ACCELERATION]
-    if last >= 0 and bound(P[row], last, h) > known:
-        known = largest(P[row], 1.0, last, h, known, P[L.EVENT], work)
-        totals[L.PEAK_ACCELERATION] = largest(P[row], -1.0, last, h, known, P[L.EVENT], work)
+    known_peak = totals[L.PEAK_ACCELERATION]
+    if last >= 0 and bound(P[row], last, h) > known_peak:
+        known_peak = largest(P[row], 1.0, last, h, known_peak, P[L.EVENT], work)
+        totals[L.PEAK_ACCELERATION] = largest(P[row], -1.0, last, h, known_peak, P[L.EVENT], work)
     if block.sigma != 0:
         totals[L.FRICTION] = contact.mu
     demand, demand_before, lift, lift_before = 0.0, 0.0, 0.0, 0.0
     for probe in range(PROBES + 1):
         across, normal = value(P[H], order, h * probe / PROBES), value(P[N], order, h * probe / PROBES)
         held = normal > 0 and block.sigma == 0 and block.mode != FLIGHT
-        here, low = abs(across) / normal if held else 0.0, -normal / (par.m * par.g)
+        ratio, low = abs(across) / normal if held else 0.0, -normal / (par.m * par.g)
         if probe > 1:
-            reached = min(top(demand_before, demand, here), contact.mu)  # where it is more, an event ends the step
+            reached = min(top(demand_before, demand, ratio), contact.mu)  # where it is more, an event ends the step
             totals[L.FRICTION] = max(totals[L.FRICTION], reached)
             totals[L.NORMAL] = min(totals[L.NORMAL], -top(lift_before, lift, low))
-        demand_before, demand, lift_before, lift = demand, here, lift, low
+        demand_before, demand, lift_before, lift = demand, ratio, lift, low
 
 
 @inner
 def ledger(par, upright, block, step, P, totals):
-    """Work of ground, bearings and friction within the step [J]."""
+    """Read the work of ground, bearings and friction within the step [J]."""
     h, order, highest, momentum, part = step.h, step.order, step.highest, P[L.PRODUCT_A], P[L.PRODUCT_B]
     if highest >= 0:  # -int a_g (M x' + m drift) + a_v m climb dt
         for k in range(order + 1):
@@ -394,7 +400,7 @@ def ledger(par, upright, block, step, P, totals):
 
 @inner
 def at_rest(resting, block, base, totals):
-    """After the motion: whether the block lies still for good, and no peak of the base can grow."""
+    """Return whether, after the motion, the block lies still for good, and no peak of the base can grow."""
     level, acceleration = L.Body(0.0, 0.0, 0.0), totals[L.PEAK_ACCELERATION]
     peaks = totals[L.PEAK_TILT], totals[L.PEAK_X], acceleration if acceleration > 0 else -1.0
     return block.mode == STICK and block.s == 0 and peaks_are_final(resting, level, base, peaks)
@@ -402,7 +408,7 @@ def at_rest(resting, block, base, totals):
 
 @inner
 def remaining(par, contact, block, base):
-    """Energy [J] that can still reach the block; see `decision`."""
+    """Return the energy [J] that can still reach the block; see `decision`."""
     angle = block.s * par.gamma - block.tilt if block.s != 0 else par.gamma
     c, n = par.R * math.cos(angle), par.R * math.sin(angle)
     velocity = Velocity(block.rate, block.speed + c * block.rate, block.rise + n * block.rate)
@@ -414,7 +420,10 @@ def remaining(par, contact, block, base):
 
 @inner
 def conclude(par, resting, contact, end_of_motion, block, base, held, totals):
-    """Whether the outcome is certain; fills the rest of `totals`. held : peaks before a last fall, and its time."""
+    """Determine whether the outcome is certain; fill the rest of `totals`.
+
+    held : peaks before a last fall, and its time.
+    """
     mode, status = block.mode, totals[L.STATUS]
     certain = mode == FALLEN or status == L.DECIDED
     if not certain and status == L.COMPLETE and totals[L.TIME] >= end_of_motion:
@@ -440,10 +449,10 @@ def conclude(par, resting, contact, end_of_motion, block, base, held, totals):
 # One long function, as two loops share their state.
 @entry
 def march(par, resting, contact, ground, upright, options, into):
-    """One run from rest or from the start that `par` holds; fills totals, impacts, modes and history of `into`.
+    """March through one run from rest or from the start that `par` holds.
 
-    resting : `par` with the smaller of slope and friction in place of the slope: what a level block bears at rest.
-    upright : an argument of its own, see steps.py.
+    Fills totals, impacts, modes and history of `into`. resting : `par` with the smaller of slope and friction in place
+    of the slope: what a level block bears at rest. upright : an argument of its own, see `steps`.
     """
     P, work, totals, shaking = into.P, into.work, into.totals, ground.shaking
     base, branch, none = L.Base(par.x, par.v, par.z), L.Branch(0.0, par.x, 1.0), math.floor(0.0)
@@ -497,34 +506,34 @@ def march(par, resting, contact, ground, upright, options, into):
                 break
             last = noted(block, last, t, into)
             step = L.Step(t, h, order, highest, start.gravity, factors, corner)
-            found, h, side = next_event(par, contact, block, refused, branch.direction, step, P, work)
+            event, h, side = next_event(par, contact, block, refused, branch.direction, step, P, work)
             idle = idle + 1 if tau + h <= tau else none
             if idle > PATIENCE:
                 status = L.STUCK
                 break
             step = L.Step(t, h, order, highest, start.gravity, factors, corner)
             written = read(par, contact, upright, block, step, options, into, written)
-            block = end_of_step(par, block, found, step, P, totals, work)
+            block = end_of_step(par, block, event, step, P, totals, work)
             if par.on_base:
-                base = end_of_base(par, found, base, branch, step, P)
+                base = end_of_base(par, event, base, branch, step, P)
                 totals[L.PEAK_X] = max(totals[L.PEAK_X], abs(base.x))
             if abs(block.tilt) <= par.gamma:
                 held = totals[L.FRICTION], totals[L.NORMAL], totals[L.PEAK_ACCELERATION], totals[L.PEAK_X], step.t + h
             if h > 0:
                 fresh, refused = none + L.NONE, none + L.NONE
-            tau = length if found == L.NONE and h == length - tau else tau + h
+            tau = length if event == L.NONE and h == length - tau else tau + h
             t, previous, count = begin + tau, block, 1
-            if found == L.OVERTURNING:
+            if event == L.OVERTURNING:
                 block = fallen(block, none)
                 break
             start = acting(par, base, upright, highest, h, P)
-            if found == L.IMPACT or found == LANDING:
+            if event == L.IMPACT or event == LANDING:
                 block, base, status = struck(par, contact, block, base, rest_rate, start, t, into)
                 last = none - 1
-            elif found >= CONE or found == L.UPLIFT:
-                block, count = after_event(par, contact, block, found, side, start)
-                if found == CONE or found == L.UPLIFT or found == LOSS:
-                    fresh = none + (LOSS if block.mode == FLIGHT else found)
+            elif event >= CONE or event == L.UPLIFT:
+                block, count = after_event(par, contact, block, event, side, start)
+                if event == CONE or event == L.UPLIFT or event == LOSS:
+                    fresh = none + (LOSS if block.mode == FLIGHT else event)
             if status == L.COMPLETE and count != 1:
                 status = L.NO_MODE
             if not (math.isfinite(block.tilt) and math.isfinite(base.x) and math.isfinite(block.slip)):

@@ -1,4 +1,4 @@
-"""The response of a block that slides: when the march is needed, the march, and what it found."""
+"""The response of a block that may slide: when the march is needed, its result, and what it cannot determine."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 # share of the friction the march decides, at 3 to 12 times the kernel's CPU time.
 NEAR = 0.9
 GIVEN = "block.restitution"
-ABOVE = 1.0006  # factor of a limit that is told in four digits, so that what is told is beyond it
+ABOVE = 1.0006  # factor by which a limit is exceeded, so that the four digits in a message lie beyond it
 
 
 def contact_of(scene: Scene) -> L.Contact | None:
-    """The numbers of the contact; None without a friction."""
+    """Return the numbers of the contact; None without a friction."""
     if scene.friction is None:
         return None
     mass = scene.base.mass if scene.base else math.inf
@@ -38,7 +38,7 @@ def contact_of(scene: Scene) -> L.Contact | None:
 
 
 def slipping_friction(par: Parameters) -> float:
-    """mu_c: horizontal over vertical impulse of the impact of a block that does not slide, the friction that it needs.
+    """Return mu_c, the friction that the impact of a block that does not slide needs: horizontal over vertical impulse.
 
     (1 - e) (h - arm)/((1 + e) b), from the velocities of the centre of mass before and after it and the base's jump,
     eq. (8): with e of eq. (7) m b h/(J_G + m h^2 + J_G m/m_b), on rigid ground without the last term. That is always
@@ -49,16 +49,16 @@ def slipping_friction(par: Parameters) -> float:
 
 
 def paradoxical_friction(par: Parameters, contact: L.Contact) -> float:
-    """Friction above which a sliding corner may have no motion, or several (Painleve): 2 sqrt(k (1 + k)).
+    """Return the friction above which a sliding corner may have no motion, or several (Painleve): 2 sqrt(k (1 + k)).
 
-    k = J_G/(m R^2); 4/3 for a rectangle.
+    k = J_G/(m R^2); the friction is 4/3 for a rectangle.
     """
     k = contact.centre / (par.m * par.R**2)
     return 2 * math.sqrt(k * (1 + k))
 
 
 def is_needed(par: Parameters, contact: L.Contact, totals: np.ndarray) -> bool:
-    """Whether the kernel's run, with its totals (record), is no answer as it exceeds the friction.
+    """Return whether the kernel's run, with its totals (record), exceeds the friction and is therefore no answer.
 
     A block that falls slides at the end of its fall.
     """
@@ -76,7 +76,7 @@ def ready(par: Parameters, contact: L.Contact, ground: Ground, options: Options)
 def marched(
     par: Parameters, contact: L.Contact, ground: Ground, options: Options, rows: int = 0
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """(totals, impacts, changes of mode, history) of a march, by the slots of `layout`."""
+    """Return (totals, impacts, changes of mode, history) of a march, by the slots of `layout`."""
     resting, capacity = par._replace(slope=min(par.slope, contact.mu)), options.capacity if options.record else 0
     while True:
         into = arrays(capacity, rows)
@@ -91,25 +91,28 @@ def marched(
     return totals, tables[0], tables[1], tables[2]
 
 
-def stays(found: np.ndarray) -> bool:
-    """Whether a march is sound and the block neither slid nor fell: unless it jumps, the kernel's run is the answer."""
-    sound = found[L.STATUS] in (L.COMPLETE, L.DECIDED)
-    return bool(sound and found[L.PATH] == 0 and found[L.MODE] != L.FALLEN)
+def stays(totals: np.ndarray) -> bool:
+    """Return whether a march is sound and the block neither slid nor fell.
+
+    Unless the block jumps, the kernel's run is then the answer.
+    """
+    sound = totals[L.STATUS] in (L.COMPLETE, L.DECIDED)
+    return bool(sound and totals[L.PATH] == 0 and totals[L.MODE] != L.FALLEN)
 
 
 def outcome(par: Parameters, contact: L.Contact, ground: Ground, options: Options, totals: np.ndarray) -> None:
-    """March a run of many, and write what it found over the kernel's `totals`."""
-    found, *_ = marched(par, contact, ground, options._replace(record=False))
-    if totals[L.NORMAL] > 0 and stays(found):
+    """March one run of many, and write its result over the kernel's `totals`."""
+    result, *_ = marched(par, contact, ground, options._replace(record=False))
+    if totals[L.NORMAL] > 0 and stays(result):
         return
-    fallen, undetermined = found[L.MODE] == L.FALLEN, problem(par, contact, found) is not None
-    totals[L.STATUS] = L.STUCK if undetermined or found[L.STATUS] not in (L.COMPLETE, L.DECIDED) else L.COMPLETE
+    fallen, undetermined = result[L.MODE] == L.FALLEN, problem(par, contact, result) is not None
+    totals[L.STATUS] = L.STUCK if undetermined or result[L.STATUS] not in (L.COMPLETE, L.DECIDED) else L.COMPLETE
     slots = [L.LIFTED, L.CERTAIN, L.PEAK_TILT, L.PEAK_X, L.IMPACTS, L.PATH, L.PEAK_SLIP]
-    totals[slots], totals[L.WILL_OVERTURN] = found[slots], fallen
+    totals[slots], totals[L.WILL_OVERTURN] = result[slots], fallen
 
 
 def problem(par: Parameters, contact: L.Contact, totals: np.ndarray) -> tuple[str, str] | None:
-    """(key, problem) where the motion of the block is not determined; for what to do see `remedies`."""
+    """Return (key, problem) where the motion of the block is not determined, else None; for remedies see `remedies`."""
     limit, bound, when = slipping_friction(par), paradoxical_friction(par, contact), totals[L.TIME]
     given = {
         L.GIVEN_LEAVES: f"needs, at the impact at {when:.6g} s, a friction of {limit:.4g} (it is {contact.mu:.4g})",
@@ -128,9 +131,9 @@ def problem(par: Parameters, contact: L.Contact, totals: np.ndarray) -> tuple[st
 
 
 def remedies(key: str, scene: Scene, par: Parameters, contact: L.Contact, ground: Ground, options: Options) -> str:
-    """What to give instead, in words; each is tried, the motion of the block is then determined.
+    """Return what to give instead, in words; each is tried, and with it the motion of the block is determined.
 
-    A friction is named that suffices for the impacts, or one at the bound of Painleve. Without a friction the motion is
+    It names a friction that suffices for the impacts, or one at the bound of Painleve. Without a friction the motion is
     always determined.
     """
 
@@ -138,14 +141,14 @@ def remedies(key: str, scene: Scene, par: Parameters, contact: L.Contact, ground
         totals, *_ = marched(par, contact, ground, options._replace(record=False, output_step=0.0))
         return totals[L.STATUS] in (L.COMPLETE, L.DECIDED) and problem(par, contact, totals) is None
 
-    words, of, own = [], "a friction of " if key == GIVEN else "", max(momentum_restitution(scene), 0.0)
-    if key == GIVEN and tried(par._replace(e=own), contact._replace(given=False)):
+    words, prefix, momentum = [], "a friction of " if key == GIVEN else "", max(momentum_restitution(scene), 0.0)
+    if key == GIVEN and tried(par._replace(e=momentum), contact._replace(given=False)):
         words.append("leave it out")
     least, most = (
         float(f"{mu:.4g}") for mu in (slipping_friction(par) * ABOVE, paradoxical_friction(par, contact) / ABOVE)
     )
     if least > contact.mu and tried(par, contact._replace(mu=least)):
-        words.append(f"give {of}{least:.4g} or more")
+        words.append(f"give {prefix}{least:.4g} or more")
     if key != GIVEN and most < contact.mu and tried(par, contact._replace(mu=most)):
         words.append(f"give {most:.4g} or less")
     if key != GIVEN and tried(par._replace(tilt=0.0, rate=0.0), contact):
@@ -156,10 +159,11 @@ def remedies(key: str, scene: Scene, par: Parameters, contact: L.Contact, ground
 def slid(
     scene: Scene, par: Parameters, contact: L.Contact, ground: Ground, options: Options
 ) -> tuple[float, np.ndarray, list[np.ndarray], np.ndarray, Sliding] | None:
-    """(CPU seconds, totals, (impacts, uplifts, rests, history with the slip), changes of `stored`, `Sliding`) of a
-    block that may slide.
+    """March a block that may slide; return None where the kernel's run is the answer.
 
-    None where the kernel's run is the answer.
+    Returns
+    -------
+    (CPU seconds, totals, [impacts, uplifts, rests, history with the slip], changes of `stored`, `Sliding`)
 
     Raises
     ------
@@ -172,8 +176,8 @@ def slid(
     totals, impacts, changes, table = marched(par, contact, ground, options, rows)
     if totals[L.NORMAL] > 0 and stays(totals):
         return None
-    if found := problem(par, contact, totals):
-        key, words = found
+    if undetermined := problem(par, contact, totals):
+        key, words = undetermined
         value = scene.friction if key == "friction" else scene.block.restitution
         remedy = remedies(key, scene, par, contact, ground, options)
         raise SceneError(key, value, words, remedy, scene.name or None)
@@ -198,7 +202,10 @@ def slid(
 
 
 def stored(scene: Scene, par: Parameters, state: Iterable[float]) -> np.ndarray:
-    """(kinetic, potential) energy [J] in the ground's frame. state : tilt, its rate, x, x', slip rate, rise, gap."""
+    """Return (kinetic, potential) energy [J] in the ground's frame.
+
+    state : tilt, its rate, x, x', slip rate, rise, gap.
+    """
     (tilt, rate, x, v, speed, rise, gap), R, gamma = state, par.R, par.gamma
     angle = math.copysign(gamma, tilt if tilt != 0 else rate) - tilt
     drift, climb = speed + R * math.cos(angle) * rate, rise + R * math.sin(angle) * rate

@@ -392,7 +392,7 @@ def motions_of(
     left: list[str] = []
     if records is not None:
         with named_by_options({"directions": "--directions"}):
-            others, left = folder_motions(records, directions=directions, own=scene.motion, units=units)
+            others, left = folder_motions(records, directions=directions, scene_motion=scene.motion, units=units)
         found = {name: [*motions] for name, motions in others.items()}
         for line in left:
             say(line)

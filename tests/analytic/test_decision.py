@@ -113,7 +113,7 @@ def test_free_rocking_is_decided_at_once_but_its_swings_are_shown():
     ],
 )
 def test_free_rocking_on_the_ground_is_settled_as_it_goes_on(tilt, rate, impacts):
-    """By its energy; the impact may take what is above the barrier. Beyond its balance a return is left open."""
+    """Its energy decides; an impact may take what is above the barrier. Beyond its balance a return is left open."""
     scene = Scene(block=BLOCK, start=Start(tilt=tilt, tilt_rate=rate))
     certain, overturns, peak, count = from_python(settle)(parameters(scene), Body(1.0, tilt, rate))
     response = simulate(scene, history=False)
@@ -124,7 +124,7 @@ def test_free_rocking_on_the_ground_is_settled_as_it_goes_on(tilt, rate, impacts
 
 @pytest.fixture(scope="module")
 def toppling():
-    """A block on rigid ground under the synthetic motion, and the times at which it is beyond its slenderness."""
+    """Return a block on rigid ground under the synthetic motion, and the times when it is beyond its slenderness."""
     scene = load_scene("caryatid-rigid")
     history = simulate(scene).history
     return scene, history.time[np.abs(history.tilt) > 1.05 * scene.block.slenderness]
@@ -198,7 +198,7 @@ def test_the_model_warns_where_its_contact_would_have_to_pull():
 
 
 def test_a_base_that_could_still_make_its_block_slide_is_not_decided():
-    """On the base of a standing block, whose motion would not lift it but slides it at a friction of .01."""
+    """The motion of the base would not lift the standing block, but slides it at a friction of .01."""
     scene = load_scene("caryatid-isolated").with_(motion=None, start=Start(base_displacement=0.02))
     run = simulate_time_stepping(scene.with_(duration=0.5), step=1e-3)
     assert is_decided(scene, run) and is_decided(scene.with_(friction=0.5), run)
@@ -212,7 +212,7 @@ UPLIFT = 9.81 * math.tan(SLENDERNESS)
 
 
 def scene_of(kind, radius, on_base, duration):
-    """A block, on request with a base and bearings of twice its rocking period, all scaled with the radius."""
+    """Return a block, on request with a base and bearings of twice its rocking period, all scaled with the radius."""
     made, omega = {"block": Block(mass=100.0, radius=radius, slenderness=SLENDERNESS)}, math.sqrt(0.75 * 9.81 / radius)
     if on_base:
         kb = (omega / 2) ** 2 * 150 / 4

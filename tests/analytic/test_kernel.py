@@ -32,6 +32,7 @@ from analytic import (
 )
 from analytic.bearing_scan import displacement_spectrum
 from analytic.checks import closed_form
+from analytic.kernel import layout
 from analytic.kernel import march as kernel
 from analytic.kernel.cache import digest
 from analytic.kernel.compiled import compiling, entry, inner
@@ -57,7 +58,7 @@ def end_state(scene, tolerance):
 
 
 def impacts_until(response, rate):
-    """Number and time of the first impact that leaves less than `rate` [rad/s]."""
+    """Return number and time of the first impact that leaves less than `rate` [rad/s]."""
     return next((n, impact.time) for n, impact in enumerate(response.impacts, 1) if abs(impact.rate_after) < rate)
 
 
@@ -84,8 +85,8 @@ def test_a_run_may_end_in_any_swing_however_short(number):
     known = P, 0.25, 1 - 1.5 * math.sin(0.25) ** 2, 0.9 * 0.25
     begin, end = closed_form.free_rocking(*known, number + 1).times[-2:]
     duration = float(begin + 0.3 * (end - begin))
-    found = simulate(problem_a(duration)).end
-    assert (found.time, found.tilt) == (
+    state = simulate(problem_a(duration)).end
+    assert (state.time, state.tilt) == (
         duration,
         pytest.approx(closed_form.free_rocking_tilt(*known, duration), rel=1e-5),
     )
@@ -113,7 +114,7 @@ def test_boundaries(table, slenderness, ratio):
 
 @pytest.mark.parametrize("amplitude", [1.2, 2.0, 5.0])
 def test_the_shortest_rectangular_pulse_that_overturns_a_slender_block(amplitude):
-    """Without an impact: log(a/(a - 1))/p (Housner 1963), a over g gamma."""
+    """Without an impact its length is log(a/(a - 1))/p (Housner 1963), a over g gamma."""
     shortest = math.log(amplitude / (amplitude - 1)) / 2.14
     for factor in (1 - 1e-4, 1 + 1e-4):
         scene = under_a_pulse(amplitude, math.pi / (factor * shortest * 2.14), 1e-4, "rectangular")
@@ -293,12 +294,12 @@ SLENDER = caryatid_block(0.18)
 
 
 def mixed_scenes():
-    """Rigid and isolated, pulses, two records and free motion, with and without vertical motion, in no order."""
+    """Return rigid and isolated scenes in no order: pulses, records, no motion, with and without vertical motion."""
     pulses = PulseMotion("ricker", 4.0, 5.0), PulseMotion("one-cosine", 5.0, 7.0), PulseMotion("rectangular", 4.0, 3.0)
     rigid = [Scene(block=SLENDER, motion=motion, duration=12.0) for motion in (rough(1, 4.0), *pulses, rough(2, 6.0))]
     rigid[2:2] = [Scene(block=SLENDER, start=Start(tilt=0.02 * k), duration=12.0) for k in range(5)]
     bearings = [bearings_of(law, count=4) for law in ("algebraic", "bilinear")]
-    scenes = [scene.with_(base=BASE, bearings=one) for one in bearings for scene in rigid[::-1]] + rigid
+    scenes = [scene.with_(base=BASE, bearings=part) for part in bearings for scene in rigid[::-1]] + rigid
     shaken = [(scene, scene.motion) for scene in scenes if scene.motion]
     return [scene.with_(motion=replace(motion, vertical=motion.scaled(0.5))) for scene, motion in shaken] + scenes
 
@@ -309,12 +310,12 @@ def test_simulate_many_equals_one_at_a_time():
     assert len(set(many.overturns)) == 2  # the set holds both outcomes
     assert not many.failed.any()
     for i, scene in enumerate(scenes):
-        one = simulate(scene, tolerance=1e-14, history=False)
-        assert many.overturns[i] == (one.outcome == "overturns")
-        assert many.lifted[i] == (one.outcome != "stands")
-        assert many.peak_tilt[i] == pytest.approx(one.peak_tilt, rel=1e-8, abs=1e-12)
+        single = simulate(scene, tolerance=1e-14, history=False)
+        assert many.overturns[i] == (single.outcome == "overturns")
+        assert many.lifted[i] == (single.outcome != "stands")
+        assert many.peak_tilt[i] == pytest.approx(single.peak_tilt, rel=1e-8, abs=1e-12)
         if not many.overturns[i]:
-            assert many.peak_base_displacement[i] == pytest.approx(one.peak_base_displacement, rel=1e-9)
+            assert many.peak_base_displacement[i] == pytest.approx(single.peak_base_displacement, rel=1e-9)
 
 
 def test_workers_are_as_many_as_are_asked_for_and_do_not_change_a_bit(monkeypatch):
@@ -322,9 +323,9 @@ def test_workers_are_as_many_as_are_asked_for_and_do_not_change_a_bit(monkeypatc
     monkeypatch.setattr(
         batch, "ThreadPoolExecutor", lambda workers: pools.append(workers) or ThreadPoolExecutor(workers)
     )
-    one, two = simulate_many(scenes, workers=1), simulate_many(scenes, workers=2)
+    serial, parallel = simulate_many(scenes, workers=1), simulate_many(scenes, workers=2)
     for name in ("overturns", "peak_tilt", "peak_base_displacement", "impacts"):
-        assert np.array_equal(getattr(one, name), getattr(two, name))
+        assert np.array_equal(getattr(serial, name), getattr(parallel, name))
     assert set(pools) == {2}  # one worker needs no thread
 
 
@@ -341,7 +342,7 @@ def test_an_overturning_map_is_that_of_full_runs(shape, vertical, fine):
     scene = Scene(block=BLOCK, duration=60.0)
     frequencies, amplitudes = np.linspace(1.5, 7, 23)[::fine], np.linspace(1.05, 9, 29)[::fine]
     phase = 0.7 if vertical else 0.0
-    found = overturning_map(
+    outcomes = overturning_map(
         scene.with_(duration=None if vertical else 60.0),
         shape,
         frequencies,
@@ -354,21 +355,21 @@ def test_an_overturning_map_is_that_of_full_runs(shape, vertical, fine):
     for a, f in itertools.product(amplitudes * GRAVITY * math.tan(0.25), frequencies * scene.rocking_frequency):
         up = PulseMotion(shape, vertical * a, f, phase=phase) if vertical else None
         full.append(simulate(scene.with_(motion=PulseMotion(shape, a, f, vertical=up)), history=False, tolerance=1e-16))
-    assert found.overturns.ravel().tolist() == [one.outcome == "overturns" for one in full]
-    assert found.peak_tilt.ravel() == pytest.approx([one.peak_tilt for one in full], rel=1e-9)
+    assert outcomes.overturns.ravel().tolist() == [response.outcome == "overturns" for response in full]
+    assert outcomes.peak_tilt.ravel() == pytest.approx([response.peak_tilt for response in full], rel=1e-9)
 
 
 def test_a_rocking_spectrum_runs_until_decided_and_is_that_of_full_runs():
     motion, periods = rough(5, 5.0, duration=8.0), np.linspace(0.8, 7.0, 21)
     cut = SampledMotion(motion.dt, motion.samples[: round(4.0 / motion.dt)])  # in the strong shaking
-    found = rocking_spectrum(cut, periods, 0.25)
-    assert found.decided.all() and 0 < found.overturns.sum() < len(periods)
+    outcomes = rocking_spectrum(cut, periods, 0.25)
+    assert outcomes.decided.all() and 0 < outcomes.overturns.sum() < len(periods)
     for i, period in enumerate(periods):
         block = Block(mass=1.0, radius=0.75 * GRAVITY * (period / (2 * math.pi)) ** 2, slenderness=0.25)
-        one = simulate(Scene(block=block, motion=cut, duration=cut.end + 60.0), history=False)
-        assert found.overturns[i] == (one.outcome == "overturns")
+        response = simulate(Scene(block=block, motion=cut, duration=cut.end + 60.0), history=False)
+        assert outcomes.overturns[i] == (response.outcome == "overturns")
         # to rounding, and what the motion makes of it where the block hardly rocks
-        assert found.peak_tilt[i] == pytest.approx(one.peak_tilt, abs=1e-8)
+        assert outcomes.peak_tilt[i] == pytest.approx(response.peak_tilt, abs=1e-8)
     short = rocking_spectrum(cut, periods, 0.25, duration=0.9 * cut.end)
     assert not short.decided[~short.overturns].any()
 
@@ -377,7 +378,7 @@ def test_a_rocking_spectrum_runs_until_decided_and_is_that_of_full_runs():
 
 
 def native(function):
-    """Machine code of a compiled function itself, without its wrappers."""
+    """Return the machine code of a compiled function itself, without its wrappers."""
     (text,) = function.inspect_llvm().values()
     bodies = [part.partition("\n}")[0] for part in text.split("\ndefine ")[1:]]
     return "".join(
@@ -386,7 +387,7 @@ def native(function):
 
 
 def test_no_reference_is_counted_in_what_is_compiled_without():
-    """Where an array is handed on and kept, numba counts a reference, an atomic operation; not here."""
+    """Where an array is passed on and kept, numba counts a reference, an atomic operation; here it does not."""
 
     def hand_on(array, other, first):
         kept = array if first else other
@@ -394,12 +395,12 @@ def test_no_reference_is_counted_in_what_is_compiled_without():
             kept = other if kept[1] > 0 else array
         return kept[0]
 
-    found = {}
+    counts = {}
     for name, decorate in (("counted", njit), ("entry", entry)):
         function = decorate(hand_on)
         function(np.ones(3), np.ones(3), True)
-        found[name] = "NRT_incref" in native(function) or "atomicrmw" in native(function)
-    assert found == {"counted": True, "entry": False}
+        counts[name] = "NRT_incref" in native(function) or "atomicrmw" in native(function)
+    assert counts == {"counted": True, "entry": False}
 
 
 def test_an_inner_function_makes_no_array_and_is_not_called_from_python():
@@ -423,7 +424,7 @@ def test_the_collector_is_as_before_after_compiling(switch, enabled):
 
 
 def test_an_inner_function_is_no_machine_code_but_in_its_entry():
-    """numba would optimise and emit it at every level of calls, for some half of the time."""
+    """numba would optimise and emit it at every level of calls, which takes about half of the time."""
 
     @inner
     def twice(x):
@@ -440,7 +441,7 @@ def test_an_inner_function_is_no_machine_code_but_in_its_entry():
     assert called(2.0) == 9.0
     linked = [next(iter(function.overloads.values())) for function in (twice, four_times)]
     engine = cpu_target.target_context.codegen()._engine
-    assert [engine.is_symbol_defined(one.fndesc.mangled_name) for one in linked] == [False, False]
+    assert [engine.is_symbol_defined(overload.fndesc.mangled_name) for overload in linked] == [False, False]
     (whole,) = called.overloads.values()
     assert engine.is_symbol_defined(whole.fndesc.mangled_name)
 
@@ -471,8 +472,16 @@ def key_of(text, without=None, module="analytic.made"):
     return digest(scope["outer"])
 
 
+def test_a_module_that_is_moved_or_renamed_counts(monkeypatch):
+    """A stored form finds functions and classes by their modules: one from before the move would not load."""
+    assert key_of(PLAIN, module="analytic.moved") != key_of(PLAIN)
+    before = digest(kernel._run_rows)
+    monkeypatch.setattr(layout, "__name__", "analytic.moved")
+    assert digest(kernel._run_rows) != before
+
+
 def test_an_entry_stands_below_what_it_calls():
-    """Its key is taken where it stands: what comes later would not count, and a stale kernel would run."""
+    """Its key is taken where it stands: a function below would not count, and a stale kernel would run."""
     with pytest.raises(NameError, match="inner, read by .*outer, stands below the entry: move the entry down"):
         key_of(PLAIN, without="inner")
     assert kernel._run_rows._cache._impl.locator.get_source_stamp() == digest(kernel._run_rows)
@@ -501,13 +510,8 @@ def test_constants_operations_defaults_closures_and_what_is_called_count(before,
     assert key_of(PLAIN.replace(before, after)) != key_of(PLAIN)
 
 
-def test_a_module_that_was_renamed_counts():
-    """The compiled form keeps types by the name of their module: it could not be read."""
-    assert key_of(PLAIN, module="analytic.renamed") != key_of(PLAIN)
-
-
 def test_the_peak_of_tiny_swings_is_that_of_the_history():
-    """Found by an invariant on drawn scenes: 2.7 % of a peak of 8e-4 of the slenderness, at the default tolerance."""
+    """An invariant on drawn scenes found this: a peak of 8e-4 of the slenderness was 2.7 % too small."""
     block = Block(mass=1000.0, radius=0.3, slenderness=0.1759013689508464)
     motion = PulseMotion("one-cosine", 1.8307934873923872, 17.87122919784876)
     response = simulate(Scene(block=block, motion=motion, duration=0.8563998150923371))

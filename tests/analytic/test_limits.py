@@ -1,4 +1,4 @@
-"""A run that does not get on ends with an error that names the part of the scene to blame."""
+"""A run that does not end is refused with an error that names the part of the scene to blame."""
 
 import math
 import re
@@ -54,7 +54,7 @@ STIFF = {
 
 @pytest.fixture
 def small(monkeypatch):
-    """A hundredth of the steps: what is refused is not less stiff for that."""
+    """Allow a hundredth of the steps: the scene that is refused need not be as stiff."""
     monkeypatch.setattr(budget, "STEPS", budget.STEPS // 100)
     monkeypatch.setattr(budget, "MOST_STEPS", budget.MOST_STEPS // 100)
 
@@ -71,7 +71,7 @@ def test_what_does_not_get_on_is_named(small, scene, words):
 
 
 def test_the_frequency_named_is_that_of_the_base_under_a_block_that_follows_it(small):
-    """Of its mass what does not rock with it: M - (m R cos(gamma))^2/J."""
+    """The mass that counts does not rock with the block: M - (m R cos(gamma))^2/J."""
     scene = isolated(law="linear", count=4, ka=1e19)
     block = scene.block
     free = scene.total_mass - (block.mass * block.radius * math.cos(block.slenderness)) ** 2 / block.inertia
@@ -169,50 +169,50 @@ SLIDER = Scene(
 
 @pytest.mark.parametrize("solver", ["kernel", "exudyn", "pybullet", "mujoco"])
 def test_a_block_that_slips_beyond_its_half_width_is_said_by_every_solver(solver):
-    """A slip of 2.9 m of a block .3 m wide; not one of .06 m under a short pulse."""
+    """A block .3 m wide slips by 2.9 m; under a short pulse by .06 m only."""
     response = answer(solver, SLIDER)
     half = SLIDER.block.half_width
-    (told,) = [one for one in response.warnings if one.quantity == "peak_slip"]
-    assert told.kind == "limit"
-    assert (told.value, told.limit) == (response.sliding.peak, half) and told.value > 10 * half
+    (warning,) = [caution for caution in response.warnings if caution.quantity == "peak_slip"]
+    assert warning.kind == "limit"
+    assert (warning.value, warning.limit) == (response.sliding.peak, half) and warning.value > 10 * half
     short = SLIDER.with_(motion=PulseMotion("rectangular", 1.5, 8.0))
     less = answer(solver, short)
-    assert 0 < less.sliding.peak < half and "peak_slip" not in [one.quantity for one in less.warnings]
+    assert 0 < less.sliding.peak < half and "peak_slip" not in [caution.quantity for caution in less.warnings]
 
 
 def test_a_block_that_falls_slips_as_it_falls_and_that_is_no_warning():
     falls = SLIDER.with_(motion=None, duration=None, block={"slenderness": 0.15}, start=Start(tilt=0.16), friction=0.03)
     response = simulate(falls)
     assert response.outcome == "overturns" and response.sliding.peak > falls.block.half_width
-    assert "peak_slip" not in [one.quantity for one in response.warnings]
+    assert "peak_slip" not in [caution.quantity for caution in response.warnings]
 
 
 @pytest.mark.parametrize(
-    "changes, told",
+    "changes, warned",
     [
         ({"bearings": {"x_max": None}}, []),
         ({"bearings": {"x_max": 1.0}}, []),
         ({"motion": None, "start": {"base_displacement": 0.06}}, ["limit"]),
     ],
 )
-def test_within_it_nothing_is_said_and_nothing_changes_and_the_start_counts(changes, told):
+def test_within_it_nothing_is_said_and_nothing_changes_and_the_start_counts(changes, warned):
     scene = SCENE.with_(**changes)
-    response, limited = (simulate(one, history=False) for one in (scene, scene.with_(bearings={"x_max": 0.05})))
-    assert [warning.kind for warning in response.warnings] == told and response.end == limited.end
+    response, limited = (simulate(variant, history=False) for variant in (scene, scene.with_(bearings={"x_max": 0.05})))
+    assert [warning.kind for warning in response.warnings] == warned and response.end == limited.end
 
 
 @pytest.mark.parametrize("tilt, over", [(0.28, True), (-0.28, True), (0.279999, False), (-0.279999, False)])
 def test_a_start_beyond_the_balance_is_said_of_the_scene_and_falls(tilt, over):
     scene = Scene(block=SCENE.block, start=Start(tilt=1.001 * tilt if over else tilt))
     assert (simulate(scene).outcome == "overturns") == over
-    told = scene_warnings(scene.with_(start={"tilt": tilt}))
-    assert [(one.quantity, one.value, one.limit) for one in told] == [("start.tilt", tilt, 0.28)] * over
+    warnings = scene_warnings(scene.with_(start={"tilt": tilt}))
+    assert [(each.quantity, each.value, each.limit) for each in warnings] == [("start.tilt", tilt, 0.28)] * over
 
 
 def test_a_base_that_nothing_holds_is_said_of_the_scene():
-    (told,) = scene_warnings(SCENE.with_(bearings=None))
-    assert told.text.startswith("No friction is modelled under the base, and it has no bearings")
-    assert not any(scene_warnings(one) for one in (SCENE, SCENE.with_(base=None, bearings=None)))
+    (warning,) = scene_warnings(SCENE.with_(bearings=None))
+    assert warning.text.startswith("No friction is modelled under the base, and it has no bearings")
+    assert not any(scene_warnings(sound) for sound in (SCENE, SCENE.with_(base=None, bearings=None)))
     assert not any(scene_warnings(load_scene(name)) for name in shipped_scenes())
 
 
@@ -223,7 +223,7 @@ FALLING = Scene(block=caryatid_block(0.2), base=BASE, bearings=BEARINGS, motion=
 
 
 def test_a_swing_within_one_step_has_its_peak():
-    """Review A4: 9.0e-5 was reported."""
+    """A peak of 9.0e-5 was once reported."""
     scene = Scene(block=caryatid_block(0.28), motion=PulseMotion("one-sine", 2.8711, 4.0))
     response = simulate(scene, output_step=1e-4)
     assert response.peak_tilt == pytest.approx(np.abs(response.history.tilt).max(), rel=1e-6)
@@ -258,8 +258,8 @@ def test_acceleration_and_contact_forces_are_those_of_a_fine_history(motion):
 
 
 def contact(scene, history):
-    """(|absolute acceleration|, |H|/N, N/(m g)) at the rows of a history."""
-    model, found = RockingModel.of(scene), []
+    """Return (|absolute acceleration|, |H|/N, N/(m g)) at the rows of a history."""
+    model, forces = RockingModel.of(scene), []
     for tilt, rate, force, ground in zip(
         history.tilt, history.tilt_rate, history.bearing_force, history.ground_acceleration, strict=True
     ):
@@ -269,13 +269,13 @@ def contact(scene, history):
             spin, push = model.accelerations(side, tilt, rate, ground, force, 0.0)
             absolute = push + ground
             horizontal, normal = model.contact_forces(side, tilt, rate, spin, absolute, 0.0)
-        found.append((abs(absolute), abs(horizontal) / normal, normal / (model.m * model.g)))
-    return np.array(found).T
+        forces.append((abs(absolute), abs(horizontal) / normal, normal / (model.m * model.g)))
+    return np.array(forces).T
 
 
 @pytest.mark.parametrize("scale", [0.7, 1.0, -1.3])
 def test_peaks_of_the_base_end_at_the_last_passage_of_the_slenderness(scale):
-    """Review A5: the fall from there to pi/2, where a block would slide, is not the base's."""
+    """The fall from there to pi/2, in which a block would slide, does not count for the base."""
     scene = FALLING.with_(motion=FALLING.motion.scaled(scale))
     response = simulate(scene, output_step=1e-4)
     beyond = np.abs(response.history.tilt) > scene.block.slenderness
@@ -289,12 +289,12 @@ def test_peaks_of_the_base_end_at_the_last_passage_of_the_slenderness(scale):
     assert many.friction_demand[0] == pytest.approx(response.friction_demand, rel=1e-9)
     assert simulate_many([scene]).peak_base_displacement[0] == pytest.approx(before, rel=1e-3)
     second, coarse = simulate_twin(scene, rtol=1e-11), simulate_time_stepping(scene, step=1e-4)
-    for one, names, accuracy in (
+    for other, names, accuracy in (
         (second, ("peak_base_displacement", "unstable_time", "fall_time", "overturning_time"), 1e-7),
         (second, ("peak_base_acceleration", "friction_demand", "min_normal_ratio"), 1e-2),  # at its steps
         (coarse, ("peak_base_displacement", "peak_base_acceleration", "fall_time"), 1e-3),
     ):
-        assert [getattr(one, name) for name in names] == pytest.approx(
+        assert [getattr(other, name) for name in names] == pytest.approx(
             [getattr(response, name) for name in names], rel=accuracy
         )
 
@@ -309,9 +309,9 @@ def test_a_limit_that_only_the_fall_goes_beyond_is_not_warned_of():
     response = simulate(scene)
     whole, peak = np.abs(response.history.base_displacement).max(), response.peak_base_displacement
     assert response.outcome == "overturns" and whole > 1.05 * peak
-    for limit, told in ((0.5 * (whole + peak), False), (0.99 * peak, True)):
+    for limit, warned in ((0.5 * (whole + peak), False), (0.99 * peak, True)):
         warnings = simulate(scene.with_(bearings={"x_max": limit})).warnings
-        assert any(one.kind == "limit" for one in warnings) == told
+        assert any(caution.kind == "limit" for caution in warnings) == warned
 
 
 def test_a_block_that_comes_back_from_beyond_the_unstable_point_falls_at_its_last_passage():

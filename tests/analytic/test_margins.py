@@ -38,58 +38,62 @@ def by_name(scene, **keywords):
 
 
 def test_a_released_block_overturns_where_its_tilt_reaches_the_slenderness():
-    found = by_name(block_scene(start=Start(tilt=0.26)))
-    assert found["start"].up == pytest.approx(0.28 / 0.26 - 1, abs=1e-7)
-    assert found["start"].beyond(found["start"].up) == "overturns"
-    assert (found["start"].outcome, found["start"].down) == ("rocks", None)
-    assert found["slenderness"].down == pytest.approx(0.26 / 0.28 - 1, abs=1e-7)
-    assert found["size"].nearest is None and len(found["size"].bands) == 1
-    assert found["size"].reached("tilt") and not found["size"].reached("overturns")
-    assert found["start"].change("tilt") is None and found["start"].change("lifts") is None
-    assert list(found)[:2] == ["slenderness", "start"], "the nearest comes first"
-    assert not {"motion", "ka", "base mass"} & set(found)
+    changes = by_name(block_scene(start=Start(tilt=0.26)))
+    assert changes["start"].up == pytest.approx(0.28 / 0.26 - 1, abs=1e-7)
+    assert changes["start"].beyond(changes["start"].up) == "overturns"
+    assert (changes["start"].outcome, changes["start"].down) == ("rocks", None)
+    assert changes["slenderness"].down == pytest.approx(0.26 / 0.28 - 1, abs=1e-7)
+    assert changes["size"].nearest is None and len(changes["size"].bands) == 1
+    assert changes["size"].reached("tilt") and not changes["size"].reached("overturns")
+    assert changes["start"].change("tilt") is None and changes["start"].change("lifts") is None
+    assert list(changes)[:2] == ["slenderness", "start"], "the nearest comes first"
+    assert not {"motion", "ka", "base mass"} & set(changes)
 
 
 def test_a_standing_block_rocks_from_its_uplift_acceleration_on():
     """The uplift acceleration of a block on rigid ground is g tan(slenderness)."""
     a = 2.5
     scene = block_scene(motion=PulseMotion("rectangular", a, 12.0))
-    found = by_name(scene)
-    assert found["motion"].up == pytest.approx(G * math.tan(0.28) / a - 1, abs=1e-7)
-    assert found["slenderness"].down == pytest.approx(math.atan(a / G) / 0.28 - 1, abs=1e-7)
+    changes = by_name(scene)
+    assert changes["motion"].up == pytest.approx(G * math.tan(0.28) / a - 1, abs=1e-7)
+    assert changes["slenderness"].down == pytest.approx(math.atan(a / G) / 0.28 - 1, abs=1e-7)
     assert Contact.of(scene, simulate(scene.with_(duration=None), history=False)).friction_demand == pytest.approx(
         a / G, rel=1e-12
     )
 
 
 def test_a_standing_block_slides_where_the_ground_exceeds_its_friction():
-    """Its friction demand is a/g; below a friction of tan(slenderness) it slides and never lifts."""
+    """The friction demand is a/g; below a friction of tan(slenderness) the block slides and never lifts."""
     a, friction = 2.5, 0.26
-    found = by_name(block_scene(motion=PulseMotion("rectangular", a, 12.0), friction=friction))
-    assert found["motion"].change("slides") == found["motion"].up == pytest.approx(friction * G / a - 1, abs=1e-7)
-    assert [outcome for _, _, outcome in found["motion"].outcomes] == ["stands", "slides"]
-    assert found["friction"].change("slides") == found["friction"].down == pytest.approx(a / G / friction - 1, abs=1e-7)
-    assert found["slenderness"].down == pytest.approx(math.atan(a / G) / 0.28 - 1, abs=1e-7)
-    assert found["slenderness"].beyond(found["slenderness"].down) == "rocks"
+    changes = by_name(block_scene(motion=PulseMotion("rectangular", a, 12.0), friction=friction))
+    assert changes["motion"].change("slides") == changes["motion"].up == pytest.approx(friction * G / a - 1, abs=1e-7)
+    assert [outcome for _, _, outcome in changes["motion"].outcomes] == ["stands", "slides"]
+    assert (
+        changes["friction"].change("slides")
+        == changes["friction"].down
+        == pytest.approx(a / G / friction - 1, abs=1e-7)
+    )
+    assert changes["slenderness"].down == pytest.approx(math.atan(a / G) / 0.28 - 1, abs=1e-7)
+    assert changes["slenderness"].beyond(changes["slenderness"].down) == "rocks"
 
 
 def test_a_block_that_lifts_slides_from_shentons_acceleration_on():
     """Under a jump of A g it lifts at A = tan(slenderness), and slides at once where A exceeds Shenton's, q = 3/4."""
     a, friction = 2.5, math.tan(0.28) + 1e-4
-    found = by_name(block_scene(motion=PulseMotion("rectangular", a, 12.0), friction=friction))["motion"]
+    margin = by_name(block_scene(motion=PulseMotion("rectangular", a, 12.0), friction=friction))["motion"]
     sine, cosine, q = math.sin(0.28), math.cos(0.28), 0.75
     shenton = friction * (1 - q * sine**2) - q * sine * cosine
     shenton /= 1 - q * cosine**2 - friction * q * sine * cosine
-    assert found.change("lifts") == pytest.approx(G * math.tan(0.28) / a - 1, abs=1e-7)
-    assert found.change("slides") == pytest.approx(G * shenton / a - 1, abs=1e-7)
-    assert found.beyond(found.up) == "rocks" and found.leaves_model is None
+    assert margin.change("lifts") == pytest.approx(G * math.tan(0.28) / a - 1, abs=1e-7)
+    assert margin.change("slides") == pytest.approx(G * shenton / a - 1, abs=1e-7)
+    assert margin.beyond(margin.up) == "rocks" and margin.leaves_model is None
 
 
 @pytest.mark.parametrize("amplitude, change", [(9.5, G / 9.5 - 1), (11.0, 0.0)])
 def test_a_block_leaves_the_model_where_the_ground_falls_away_as_fast_as_it(amplitude, change):
     motion = PulseMotion("one-sine", 0.0, 6.0, vertical=PulseMotion("one-sine", amplitude, 6.0))
-    (found,) = margins(block_scene(motion=motion), only=("motion",))
-    assert found.leaves_model == pytest.approx(change, abs=1e-7)
+    (margin,) = margins(block_scene(motion=motion), only=("motion",))
+    assert margin.leaves_model == pytest.approx(change, abs=1e-7)
 
 
 @pytest.mark.parametrize("span, step", [(1.0, 0.0025), (2.0, 1 / 49), (9.0, 0.1)])
@@ -99,7 +103,7 @@ def test_no_quantity_comes_to_nothing(span, step):
 
 
 def reached(scene, tilt):
-    """The limit states that a run of its own reaches."""
+    """Return the limit states that a run of the scene reaches."""
     response = simulate(scene, history=False)
     states = {
         "slides": response.sliding is not None and response.sliding.path > 0,
@@ -133,8 +137,8 @@ def test_bands_are_what_runs_in_them_and_just_within_their_ends_reach(scene, onl
             within = min(1e-4, 0.25 * width)
             for change in (band.low + within, *(band.low + np.linspace(0.1, 0.9, 5) * width), band.high - within):
                 assert reached(changed(scene, margin.quantity, change), 0.3) == band.reached, (margin.quantity, change)
-        for one, other in itertools.pairwise(margin.bands):
-            assert one.high == other.low and (one.reached, one.holds) != (other.reached, other.holds)
+        for band, other in itertools.pairwise(margin.bands):
+            assert band.high == other.low and (band.reached, band.holds) != (other.reached, other.holds)
 
 
 def test_only_bearings_with_a_limit_have_a_stroke_and_only_a_friction_slides():
@@ -143,9 +147,9 @@ def test_only_bearings_with_a_limit_have_a_stroke_and_only_a_friction_slides():
     assert limit_states(scene) == LIMIT_STATES[1:]
     without = scene.with_(bearings={"x_max": None}, motion=scene.motion.scaled(3.0))
     assert limit_states(without) == limit_states(load_scene("caryatid-rigid")) == ("lifts", "tilt", "overturns")
-    found = by_name(without, span=0.01, step=5e-3)
-    assert not any(margin.reached("stroke") for margin in found.values())
-    assert {"base mass", "ka", "kb", "alpha"} < set(found) and "yield force" not in found
+    changes = by_name(without, span=0.01, step=5e-3)
+    assert not any(margin.reached("stroke") for margin in changes.values())
+    assert {"base mass", "ka", "kb", "alpha"} < set(changes) and "yield force" not in changes
 
 
 @pytest.mark.parametrize(
@@ -158,7 +162,7 @@ def test_settings_out_of_range_are_refused(keywords):
 
 
 def test_a_narrow_band_frays_the_boundary():
-    """Between overturning after an impact and without one lies a narrow band of standing amplitudes (Zhang, Makris)."""
+    """Between overturning with and without an impact lies a narrow band of standing amplitudes (Zhang, Makris)."""
     scene = Scene(block=BLOCK, motion=PulseMotion("one-sine", 1.1 * GAP * THRESHOLD, 7.8))
     fine = by_name(scene, span=0.16)["motion"]
     coarse = by_name(scene, span=0.16, step=0.04)["motion"]
@@ -171,7 +175,7 @@ STANDS, ROCKS, TILTS, OVERTURNS = (), ("lifts",), ("lifts", "tilt"), ("lifts", "
 
 
 def banded(*bands):
-    """A margin with bands of (low, reached), the last up to 0.2."""
+    """Return a margin with bands of (low, reached), the last up to 0.2."""
     ends = [low for low, _ in bands[1:]] + [0.2]
     parts = (Band(low, high, reached, holds=True) for (low, reached), high in zip(bands, ends, strict=True))
     return Margin("size", 1.0, "m", tuple(parts))
@@ -212,22 +216,24 @@ def test_before_a_frayed_boundary_the_scan_is_finer():
 
 
 def test_a_range_ends_where_the_model_refuses_the_changed_scene_and_says_why():
-    """Released beyond its balance the block falls; from 6.7 % less it lands, where its friction is below (8)'s."""
-    found = by_name(block_scene(start=Start(tilt=0.3), friction=0.2), step=1e-3)
-    start, slenderness = found["start"], found["slenderness"]
+    """Released beyond its balance the block falls; from 6.7 % less it lands, where its friction is below mu_c."""
+    changes = by_name(block_scene(start=Start(tilt=0.3), friction=0.2), step=1e-3)
+    start, slenderness = changes["start"], changes["slenderness"]
     assert start.outcome == "overturns" and "friction = 0.2: below 0.2113" in start.ends_down and not start.ends_up
     assert -1 + 0.28 / 0.3 <= start.bands[0].low < -1 + 0.28 / 0.3 + 1e-3
     assert "friction = 0.2: below" in slenderness.ends_up and slenderness.bands[-1].high == pytest.approx(0.071)
-    assert found["friction"].ends_down == found["friction"].ends_up == "" and found["friction"].bands[0].low == -0.2
+    assert (
+        changes["friction"].ends_down == changes["friction"].ends_up == "" and changes["friction"].bands[0].low == -0.2
+    )
 
 
 @pytest.mark.parametrize("restitution, last", [(0.9, 0.111), (0.95, 0.0525)])
 def test_a_range_ends_at_the_last_whole_step_that_is_a_scene_and_says_why(restitution, last):
-    """e of (7) is at most 1."""
-    found = by_name(block_scene(restitution=restitution, start=Start(tilt=0.1)))["restitution"]
-    assert found.ends_up.startswith("block.restitution = 1.") and not found.ends_down
-    assert (found.bands[0].low, found.bands[-1].high) == (-0.2, pytest.approx(last, abs=1e-9))
-    assert restitution * (1 + found.bands[-1].high) <= 1 < restitution * (1 + found.bands[-1].high + STEP)
+    """The restitution of eq. (7) is at most 1."""
+    margin = by_name(block_scene(restitution=restitution, start=Start(tilt=0.1)))["restitution"]
+    assert margin.ends_up.startswith("block.restitution = 1.") and not margin.ends_down
+    assert (margin.bands[0].low, margin.bands[-1].high) == (-0.2, pytest.approx(last, abs=1e-9))
+    assert restitution * (1 + margin.bands[-1].high) <= 1 < restitution * (1 + margin.bands[-1].high + STEP)
 
 
 def test_a_scene_that_the_model_refuses_has_no_margins():
@@ -251,9 +257,9 @@ def cautions(what):
 
 @pytest.mark.parametrize("share", [-0.0302, 0.0302])
 def test_uplift_is_where_the_pulse_reaches_g_tan_gamma(share):
-    found = cautions(shaken(UPLIFT / (1 + share)))["outcome"]
-    assert found.value == pytest.approx(share, abs=5e-4)
-    assert (found.limit, found.kind) == (0.05, "motion")
+    caution = cautions(shaken(UPLIFT / (1 + share)))["outcome"]
+    assert caution.value == pytest.approx(share, abs=5e-4)
+    assert (caution.limit, caution.kind) == (0.05, "motion")
 
 
 def test_a_scene_at_six_tenths_of_uplift_carries_no_sentence():
@@ -266,22 +272,22 @@ def test_a_scene_at_six_tenths_of_uplift_carries_no_sentence():
 def test_a_cliff_is_said_and_single_runs_show_it():
     ground = synthetic_motion("duzce-like", 26).scaled(0.55)
     what = shaken(1.0).with_(motion=ground)
-    found = cautions(what)["peak tilt"]
-    own, other = (
+    caution = cautions(what)["peak tilt"]
+    tilt_here, other = (
         simulate(what.with_(motion=ground.scaled(1 + change)), history=False).peak_tilt_ratio
-        for change in (0.0, found.value)
+        for change in (0.0, caution.value)
     )
-    assert max(own, other) >= max(5 * min(own, other), 0.01)
-    assert f"{own:.3g} of the slenderness" in found.text and f"{other:.3g} at" in found.text
+    assert max(tilt_here, other) >= max(5 * min(tilt_here, other), 0.01)
+    assert f"{tilt_here:.3g} of the slenderness" in caution.text and f"{other:.3g} at" in caution.text
 
 
 def test_the_changes_are_even_and_hold_the_scene_itself():
     what = shaken(1.5 * UPLIFT)
-    changes, found = nearby(what)
+    changes, outcomes = nearby(what)
     assert changes == pytest.approx(np.linspace(-0.05, 0.05, len(changes)), abs=1e-12)
     assert (
         changes[len(changes) // 2] == 0
-        and found.peak_tilt[len(changes) // 2] == simulate(what, history=False).peak_tilt
+        and outcomes.peak_tilt[len(changes) // 2] == simulate(what, history=False).peak_tilt
     )
 
 
@@ -293,15 +299,15 @@ def test_a_scene_that_costs_too_much_is_refused(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    "own, other, told",
+    "tilt_here, other, warned",
     [(0.02, 0.098, False), (0.02, 0.102, True), (0.102, 0.02, True), (0.0015, 0.0098, False), (0.0015, 0.0102, True)],
 )
-def test_a_peak_tilt_five_times_as_large_is_told_unless_it_is_small(own, other, told):
-    """Tilts over the slenderness; below a hundredth of it nothing is promised."""
+def test_a_peak_tilt_five_times_as_large_is_told_unless_it_is_small(tilt_here, other, warned):
+    """The tilts are over the slenderness; below a hundredth of it engines are not tested."""
     what = shaken(1.5 * UPLIFT)
-    changes, found = nearby(what)
-    tilts = np.full(len(changes), own * GAMMA)
+    changes, outcomes = nearby(what)
+    tilts = np.full(len(changes), tilt_here * GAMMA)
     tilts[0] = other * GAMMA
     still = np.zeros(len(changes), dtype=bool)
-    said = cliffs(what, changes, replace(found, peak_tilt=tilts, lifted=~still, overturns=still, failed=still))
-    assert [(one.quantity, one.value) for one in said] == [("peak tilt", -0.05)] * told
+    warnings = cliffs(what, changes, replace(outcomes, peak_tilt=tilts, lifted=~still, overturns=still, failed=still))
+    assert [(caution.quantity, caution.value) for caution in warnings] == [("peak tilt", -0.05)] * warned

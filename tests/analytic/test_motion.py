@@ -54,9 +54,9 @@ def test_scaled_takes_both_and_digests_tell_them_apart(motion):
 
 
 def test_a_digest_is_of_the_samples_and_their_step():
-    one, other = SampledMotion(0.1, [1.0, -2.0], "a"), SampledMotion(0.1, [1.0, np.nextafter(-2.0, 0)])
-    assert one.digest() == SampledMotion(0.1, [1.0, -2.0], "b").digest()
-    assert len({one.digest(), other.digest(), SampledMotion(0.2, [1.0, -2.0]).digest()}) == 3
+    motion, other = SampledMotion(0.1, [1.0, -2.0], "a"), SampledMotion(0.1, [1.0, np.nextafter(-2.0, 0)])
+    assert motion.digest() == SampledMotion(0.1, [1.0, -2.0], "b").digest()
+    assert len({motion.digest(), other.digest(), SampledMotion(0.2, [1.0, -2.0]).digest()}) == 3
 
 
 @pytest.mark.parametrize("shape", PULSES)
@@ -112,13 +112,13 @@ PAIRED = {  # (step, samples) of both, what they become, and what is said
 }
 
 
-@pytest.mark.parametrize("level, up, samples, upright, said", PAIRED.values(), ids=PAIRED)
-def test_two_components_are_brought_to_one_step_and_length(level, up, samples, upright, said):
+@pytest.mark.parametrize("level, up, samples, upright, notes", PAIRED.values(), ids=PAIRED)
+def test_two_components_are_brought_to_one_step_and_length(level, up, samples, upright, notes):
     motion = paired(SampledMotion(*level, "H", ("odd",)), SampledMotion(*up, "V", ("odder",)))
     assert (motion.dt, motion.label, motion.vertical.dt) == (0.1, "H, vertical V", 0.1)
     assert (motion.samples.tolist(), motion.vertical.samples.tolist()) == (pytest.approx(samples), upright)
     first, second, *more = motion.warnings
-    assert (first, second, bool(more)) == ("odd", "odder", bool(said)) and said in "".join(more)
+    assert (first, second, bool(more)) == ("odd", "odder", bool(notes)) and notes in "".join(more)
     assert motion.vertical.warnings == () and motion.vertical.vertical is None
 
 
@@ -128,10 +128,10 @@ def test_the_coarser_one_is_resampled_to_the_finer_step_and_that_is_said(coarse,
     level = SampledMotion(coarse, rng.normal(size=11), "level")
     up = SampledMotion(fine, rng.normal(size=round(10 * coarse / fine) + 1), "up")
     for motion in (paired(level, up), paired(up, level)):
-        found = motion if motion.label.startswith("level") else motion.vertical
+        resampled = motion if motion.label.startswith("level") else motion.vertical
         times = np.arange(0, level.end * (1 - 1e-9), fine)
         assert motion.dt == motion.vertical.dt == fine
-        assert found.samples[: len(times)] == pytest.approx(level.acceleration(times), rel=1e-12, abs=1e-12)
+        assert resampled.samples[: len(times)] == pytest.approx(level.acceleration(times), rel=1e-12, abs=1e-12)
         assert motion.warnings[0].startswith(f"level: resampled from {coarse:.6g} s to the {fine:.6g} s of the other")
 
 
@@ -140,7 +140,7 @@ FIRST_SHIPPED = [-0.096058605, 5.05215, 0.513379882]  # m/s2, of the default see
 
 
 def velocity(motion):
-    """Ground velocity [m/s] at the samples, shape (n,): exact for a piecewise linear acceleration."""
+    """Return the ground velocity [m/s] at the samples, shape (n,): exact for a piecewise linear acceleration."""
     steps = 0.5 * (motion.samples[1:] + motion.samples[:-1]) * motion.dt
     return np.concatenate([[0.0], np.cumsum(steps)])
 

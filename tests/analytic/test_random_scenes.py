@@ -31,7 +31,7 @@ ROUND_OFF = 1e-9
 
 
 def assert_sound(scene):
-    """The kernel's run of `scene` ends, with finite numbers, the model's impacts and an energy balance."""
+    """Assert that the kernel's run of `scene` ends with finite numbers, the model's impacts and an energy balance."""
     response = simulate(scene, history=False)
     ledger, model = response.energy, RockingModel.of(scene)
     assert response.failure is None and (response.outcome == "overturns" or response.end.time == scene.duration)
@@ -39,13 +39,13 @@ def assert_sound(scene):
     assert np.isfinite([*peaks, *astuple(response.end), *astuple(ledger)]).all()
     scale = max(_energy_scale(scene, response), *map(abs, astuple(ledger)))
     assert abs(ledger.imbalance) <= IMBALANCE_LIMIT * scale
-    for one in response.impacts:  # they never add energy: test_rocking
-        expected = pytest.approx(model.impact(one.rate_before), rel=1e-9, abs=1e-15)
-        assert (one.rate_after, one.base_velocity_jump) == expected
+    for impact in response.impacts:  # they never add energy: test_rocking
+        expected = pytest.approx(model.impact(impact.rate_before), rel=1e-9, abs=1e-15)
+        assert (impact.rate_after, impact.base_velocity_jump) == expected
 
 
 def _energy_scale(scene, response):
-    """Energies that came and went within the run without a trace in the ledger's final sums [J]."""
+    """Return the energies that came and went within the run and leave no trace in the ledger's final sums [J]."""
     block, bearings, start = scene.block, scene.bearings, scene.start
     scale = 0.5 * block.inertia * start.tilt_rate**2 + 0.5 * scene.total_mass * start.base_velocity**2
     if bearings:
@@ -94,7 +94,7 @@ def sampled(values, dt=0.01):
 
 
 def sound(response):
-    """Finite, not failed, and energy neither made nor lost unaccounted."""
+    """Return the response: finite, not failed, and without energy gained or lost unaccounted for."""
     assert response.outcome != "failed", response.failure
     energy = response.energy
     assert np.isfinite([*astuple(response.end), *astuple(energy)]).all()
@@ -114,7 +114,7 @@ def test_rest_inside_a_motion_lifts_again(solve):
 @SOLVERS
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_third_order_onset_takes_its_side_from_the_acceleration(solve, sign):
-    """phi = -s p^2 cos(gamma) a' t^3/(6 g) after the uplift: against the acceleration, with the third power of time."""
+    """After the uplift phi = -s p^2 cos(gamma) a' t^3/(6 g): against the acceleration, with the third power of time."""
     ramp = SampledMotion(0.01, sign * np.linspace(0.9, 1.2, 101) * THRESHOLD)
     for after in (0.01, 0.02):
         response = sound(solve(Scene(block=BLOCK, motion=ramp, duration=1 / 3 + after)))
@@ -141,8 +141,8 @@ def test_every_crossing_within_a_step_is_found_and_not_the_trivial_root(lowest, 
         shape = np.polynomial.polynomial.polyfromroots(left if roots else [0.5, 0.5])
         power = lowest or min(k, 1)
         f[power : power + len(shape)] = shape * np.sign(shape[0])
-        found = first(f, power + len(shape) - 1, 1.0 - start, work)
-        assert found == pytest.approx(left[0] if roots else -1.0, rel=accuracy)
+        root = first(f, power + len(shape) - 1, 1.0 - start, work)
+        assert root == pytest.approx(left[0] if roots else -1.0, rel=accuracy)
 
 
 @SOLVERS
@@ -200,7 +200,7 @@ CARRIED = SLIDING.with_(bearings=LRB, block={"slenderness": 0.15})
 
 
 def shaken(seed, peak=4.0):
-    """Rough motions, the vertical one with more of high frequency."""
+    """Return rough motions; the vertical one has more of high frequency."""
     return replace(rough(seed, peak, 4.0), vertical=rough(seed + 100, 0.7 * peak, 4.0, frequency=3.0))
 
 
@@ -210,7 +210,7 @@ def pulse(shape, amplitude, frequency, vertical, phase=0.0):
 
 
 def heaving(amplitude, frequency, duration=4.0, dt=0.005):
-    """No horizontal motion, a vertical sine."""
+    """Return a motion that is horizontally 0 and vertically a sine."""
     t = np.arange(0, duration, dt)
     return SampledMotion(dt, 0 * t, vertical=SampledMotion(dt, amplitude * np.sin(frequency * t)))
 
@@ -242,12 +242,12 @@ def state(response):
 
 
 def impact_times(response, rate=0.0):
-    """Of the impacts that leave more than a rate."""
+    """Return the times of the impacts that leave more than a rate."""
     return [impact.time for impact in response.impacts if abs(impact.rate_after) > rate]
 
 
 def kernel_and_twin(scene):
-    """Their responses, which agree."""
+    """Return the responses of both, which agree."""
     run = simulate(scene, history=False, tolerance=1e-15)
     twin = simulate_twin(scene, rtol=1e-12, history=False)
     assert (run.outcome, run.impact_count) == (twin.outcome, twin.impact_count)
@@ -257,7 +257,7 @@ def kernel_and_twin(scene):
 
 
 def scale_of(scene, response):
-    """Energy [J] that an imbalance is measured against."""
+    """Return the energy [J] that an imbalance is measured against."""
     block = scene.block
     tipping = block.mass * GRAVITY * block.radius * (1 - math.cos(block.slenderness))
     return max(abs(response.energy.input), tipping)
@@ -286,7 +286,7 @@ def test_a_constant_vertical_acceleration_is_another_gravity(scene, change):
     other = simulate(scene.with_(motion=still, gravity=GRAVITY + change))
     assert held.outcome == other.outcome == "rocks"
     # the rate below which impacts are summed goes with the scene's own gravity
-    times = [impact_times(one, 1e-6) for one in (held, other)]
+    times = [impact_times(response, 1e-6) for response in (held, other)]
     assert len(times[0]) > 2 and times[0] == pytest.approx(times[1], rel=1e-12)
     np.testing.assert_allclose(state(held), state(other), rtol=1e-11, atol=1e-13)
     assert held.uplifts == pytest.approx(other.uplifts, rel=1e-12)
@@ -316,15 +316,15 @@ def test_a_block_that_would_jump_is_said():
 def test_a_weight_that_vanishes_while_the_block_stands_lifts_it_once():
     # nothing pushes a base that slides freely: the threshold of uplift passes through 0 with the weight
     motions = [pulse("one-sine", 0.5, 3.0 + 0.01 * k, 1.5 * GRAVITY, 0.02 * k) for k in range(300)]
-    found = simulate_many([SLIDING.with_(motion=motion, duration=1.5) for motion in motions], workers=1)
-    assert found.lifted.all() and not found.failed.any()
+    outcomes = simulate_many([SLIDING.with_(motion=motion, duration=1.5) for motion in motions], workers=1)
+    assert outcomes.lifted.all() and not outcomes.failed.any()
 
 
 def test_bearings_that_carry_it_are_said():
     scene = SCENES["sine, on bearings"]
     level = scene.with_(motion=replace(scene.motion, vertical=None))
-    for one, told in ((scene, True), (level, False), (scene.with_(bearings=None), False)):
-        assert (Caution("model", RIGID_BEARINGS) in simulate(one).warnings) == told
+    for shaken, warned in ((scene, True), (level, False), (scene.with_(bearings=None), False)):
+        assert (Caution("model", RIGID_BEARINGS) in simulate(shaken).warnings) == warned
 
 
 def test_it_is_over_before_a_run_may_end():

@@ -55,7 +55,7 @@ def test_a_restitution_that_is_given_is_the_scenes_and_changes_no_formula(base, 
 
 
 def impact_by_momentum(case, rate):
-    """(phi'+, jump of x') from two balances alone: linear momentum, and the block's about its new corner.
+    """Return (phi'+, jump of x') from two balances alone: linear momentum, and the block's about its new corner.
 
     The block returns from phi > 0, so it turns from its right corner to its left one; clockwise is positive.
     """
@@ -77,8 +77,8 @@ def test_impact_follows_from_momentum(slenderness, base):
 
 
 @given(st.floats(0.02, 1.5), st.floats(1e-3, 1e6), st.floats(0.0, 1.0) | st.none())
-def test_impact_never_adds_energy(slenderness, base, own):
-    case = scene(slenderness, base, restitution=own)
+def test_impact_never_adds_energy(slenderness, base, restitution):
+    case = scene(slenderness, base, restitution=restitution)
     model, w = RockingModel.of(case), -0.8
     after, jump = model.impact(w)
     h = case.block.half_height
@@ -128,7 +128,7 @@ ISOLATED = load_scene("caryatid-isolated")
 
 
 def agrees_with_the_simulation(jump_length):
-    """Eq. (8) against every impact of a rocking run: x'+ - x'- = -e_x phi'-."""
+    """Check eq. (8) against every impact of a rocking run: x'+ - x'- = -e_x phi'-."""
     scene = ISOLATED.with_(block={"slenderness": 0.15})
     run = simulate(scene, history=False)
     assert run.impact_count > 20

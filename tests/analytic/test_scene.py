@@ -1,4 +1,4 @@
-"""Scene files: what they give, and one clear message for every mistake."""
+"""Scene files: the scenes that they give, and one clear message for every mistake."""
 
 import math
 import pickle
@@ -78,12 +78,12 @@ def test_least_file(tmp_path):
 
 
 def with_motion(folder, lines):
-    """The motion of a scene whose [motion] holds these lines."""
+    """Return the motion of a scene whose [motion] holds these lines."""
     return load_scene(write_scene(folder, SCENE.replace('synthetic = "duzce-like"', lines))).motion
 
 
 def refusal(folder, text):
-    """The error that a scene file of this text gives."""
+    """Return the error that a scene file of this text gives."""
     with pytest.raises(SceneError) as caught:
         load_scene(write_scene(folder, text))
     return caught.value
@@ -104,7 +104,7 @@ UP = 'vertical_channel = "Up"\nscale = 0.5'
 # lines of [motion], label, samples, those of the vertical motion
 RECORDS = [
     ('record = "records/h.txt"\nunits = "cm/s2"\nscale = 3', "h.txt x 3", [0.03, 0.06], None),
-    *((f'record = "r.v2"\nchannel = {one}', "r.v2, channel 2 (Up)", TWICE, None) for one in ("2", '"2"', '"Up"')),
+    *((f'record = "r.v2"\nchannel = {number}', "r.v2, channel 2 (Up)", TWICE, None) for number in ("2", '"2"', '"Up"')),
     (
         'record = "h.txt"\nvertical = "v.txt"\nunits = "cm/s2"\nscale = 3',
         "h.txt x 3, vertical v.txt x 3",
@@ -251,7 +251,7 @@ def test_the_motion_is_told_with_other_mistakes(tmp_path, changes, keys):
         assert before in text
         text = text.replace(before, after)
     error = refusal(tmp_path, text)
-    assert [one.key for one in (error, *error.others)] == keys
+    assert [mistake.key for mistake in (error, *error.others)] == keys
 
 
 # Scenes: derived quantities, changes, digests, refusals.

@@ -36,7 +36,7 @@ CARYATID, SLENDER = caryatid_block(0.28), caryatid_block(0.15)
 
 
 def count_to(run, rate):
-    """Number of impacts until |w+| < rate."""
+    """Return the number of impacts until |w+| < rate."""
     return next(n for n, impact in enumerate(run.impacts, 1) if abs(impact.rate_after) < rate)
 
 
@@ -178,7 +178,7 @@ def test_two_crossings_within_one_step_are_found():
 
 
 def order(steps, errors):
-    """Slope of log error over log step, least squares."""
+    """Return the slope of log error over log step, by least squares."""
     return np.polyfit(np.log(steps), np.log(errors), 1)[0]
 
 
@@ -229,7 +229,7 @@ def test_isolated_rocking_tends_to_the_twin(law):
 
 
 def test_a_free_base_takes_the_momentum_of_the_impacts():
-    """Of eq. (8): horizontal momentum m (x' + R cos(gamma - |tilt|) tilt') + m_b x' stays 0."""
+    """By eq. (8) the horizontal momentum m (x' + R cos(gamma - |tilt|) tilt') + m_b x' stays 0."""
     block = Block(mass=3000.0, radius=1.0, slenderness=0.2)
     scene = Scene(block=block, base=Base(mass=300.0), start=Start(tilt=0.1), duration=2.0)
     run = simulate_time_stepping(scene, step=1e-4)
@@ -254,7 +254,7 @@ G = 9.81
 
 
 def test_a_block_that_hops_slips_when_it_lands():
-    """Under a_v = -2 g it flies, and lands with -m eta' and at most mu of it to brake the slip."""
+    """Under a_v = -2 g it flies, and lands with the impulse -m eta'; at most mu of that brakes the slip."""
     a, mu, T = 4.0, 0.2, 0.1
     pulse = PulseMotion("rectangular", a, math.pi / T, vertical=PulseMotion("rectangular", -2 * G, math.pi / T))
     v = a * T - mu * G * math.sqrt(2) * T
@@ -268,7 +268,7 @@ def test_a_block_that_hops_slips_when_it_lands():
 @pytest.mark.parametrize("side", [1, -1])
 @pytest.mark.parametrize("share", [0.0, 0.4, 0.9, 1.1, 50.0])
 def test_an_impact_is_that_of_the_momentum_equations(base, side, share):
-    """With friction above mu_c eqs (7), (8); below it the restitution of an impact that slips, on any base."""
+    """With a friction above mu_c it obeys eqs (7), (8); below it has the restitution of a slipping impact."""
     step, rate = 1e-8, 1.0
     m, J, b, h = STOCKY.mass, STOCKY.centre_inertia, STOCKY.half_width, STOCKY.half_height
     mu = m * b * h / (J + m * h**2 + (J * m / base.mass if base else 0.0)) * share
@@ -297,7 +297,7 @@ def isolated(law="algebraic", friction=0.25, sign=1, **changes):
 
 @pytest.mark.parametrize("law", NAMES)
 def test_without_slip_it_tends_to_the_model(law):
-    """Of all bearing laws, with damping and vertical motion.
+    """The scenes have all bearing laws, damping and vertical motion.
 
     Where a corner gapes by rounding or curvature, it is free for a step, in which it slips by up to g step^2.
     """
@@ -309,18 +309,18 @@ def test_without_slip_it_tends_to_the_model(law):
     for step in (1e-4, 1e-5):
         run = slid(scene, step=step)
         assert (run.outcome, len(run.impacts)) == ("rocks", 1) and run.sliding.path < G * scene.duration * step
-        found = run.peak_tilt, run.peak_base_displacement, run.end.tilt, run.end.base_displacement
+        values = run.peak_tilt, run.peak_base_displacement, run.end.tilt, run.end.base_displacement
         exact = model.peak_tilt, model.peak_base_displacement, model.end.tilt, model.end.base_displacement
-        assert found == pytest.approx(exact, abs=2 * step)
+        assert values == pytest.approx(exact, abs=2 * step)
 
 
 def test_its_impacts_and_its_history_are_those_of_the_model():
-    """Of a block that sticks; without a duration it runs until it is decided."""
+    """The block sticks; without a duration it runs until the outcome is decided."""
     scene = problem_a(7.0).with_(friction=5.0)
     model, run = simulate(scene, output_step=1e-4), simulate_time_stepping(scene, step=1e-4)
     assert len(run.impacts) == len(model.impacts) == 10
-    for one, other in zip(run.impacts[:5], model.impacts, strict=False):
-        assert (one.time, one.rate_before, one.rate_after) == pytest.approx(
+    for impact, other in zip(run.impacts[:5], model.impacts, strict=False):
+        assert (impact.time, impact.rate_before, impact.rate_after) == pytest.approx(
             (other.time, other.rate_before, other.rate_after), abs=2e-3
         )
     for name in ("time", "tilt", "base_displacement", "bearing_force", "ground_acceleration"):
@@ -360,7 +360,7 @@ LONGER = ("ricker", "viscous", "bouc-wen")
     "kind", [pytest.param(kind, marks=pytest.mark.long if kind in LONGER else ()) for kind in KINDS]
 )
 def test_it_tends_to_the_march_in_scenes_of_each_kind(kind):
-    """With a sixteenth of the step a third of the error or less, or 1e-5 (m, rad, s): first order, not monotone."""
+    """With a sixteenth of the step the error is a third or less, or 1e-5 (m, rad, s): first order, not monotone."""
     rng, compared = np.random.default_rng([55, KINDS.index(kind)]), 0
     while compared < 3:
         scene = slider_of(kind, rng)
@@ -383,7 +383,7 @@ def test_it_tends_to_the_march_in_scenes_of_each_kind(kind):
 
 
 def test_every_turn_of_a_base_on_linear_bearings_is_a_peak():
-    """A law without memory ends no interval there, so that one holds several."""
+    """A law without memory ends no interval at a turn, so that one interval holds several."""
     scene = load_scene("caryatid-isolated").with_(
         motion=PulseMotion("one-sine", 3.0, 4.0), bearings={"law": "linear", "count": 4, "ka": 2e4}, duration=3.0
     )

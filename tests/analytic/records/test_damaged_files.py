@@ -1,5 +1,6 @@
-"""Damaged files are refused in one message, or read as what they were made of but for what the damage itself changed:
-records by their numbers, scenes by a strict reader of their own. And the kept files that once broke something.
+"""Damaged files are refused in one message, or read as the undamaged file, but for what the damage itself changed.
+
+Records are judged by their numbers, scenes by a strict reader of their own. Files that once broke something are kept.
 """
 
 import difflib
@@ -60,7 +61,7 @@ duration = 20.0
 
 
 def scenes():
-    """(name, text) of undamaged scene files."""
+    """Return (name, text) of undamaged scene files."""
     return [
         ("pulse", SCENE.format(motion='pulse = "one-cosine"\namplitude = -2.0\nfrequency = 3')),
         ("synthetic", SCENE.format(motion='synthetic = "duzce-like"\nseed = 5')),
@@ -81,25 +82,27 @@ DEFAULTS = {
 }
 
 
-def read(path, content, reader, **said):
-    """What the project's reader makes of the content; None where it refuses it, in one message. Soon, either way."""
+def read(path, content, reader, **options):
+    """Return what the project's reader makes of the content, soon; None where it refuses it in one message."""
     path.write_bytes(content)
     begin = time.process_time()
     try:
-        found = reader(path, **said)
+        result = reader(path, **options)
     except SceneError as error:
-        found = None
+        result = None
         for line in str(error).split("\n"):
             assert line.startswith((f"{path}: ", "and ")) and line.isprintable() and len(line) < LONGEST_MESSAGE
         assert error.key is not None and error.remedy
     assert time.process_time() - begin < HANG
-    return found
+    return result
 
 
 def changed(text, damaged):
-    """(lines that damage took away, lines that it put in), but for case and the letter of exponents; each with its
-    neighbours, with which it may have changed places."""
-    before, after = (re.split("[\r\n]+", one.upper().replace("D", "E")) for one in (text, damaged))
+    """Return (lines that damage took away, lines that it put in), but for case and the letter of exponents.
+
+    Each stands with its neighbours, with which it may have changed places.
+    """
+    before, after = (re.split("[\r\n]+", content.upper().replace("D", "E")) for content in (text, damaged))
     pieces = difflib.SequenceMatcher(None, before, after, autojunk=False).get_opcodes()
     other = [piece[1:] for piece in pieces if piece[0] != "equal"]
     gone = [line for begin, end, _, _ in other for line in before[max(begin - 1, 0) : end + 1]]
@@ -107,19 +110,21 @@ def changed(text, damaged):
 
 
 def numbers_in(lines):
-    """The numbers of lines, and those of decimal commas."""
+    """Return the numbers of lines, and those of decimal commas."""
     text = "\n".join(lines)
     return [float(word) for sign in ",." for word in NUMBERS.findall(text.replace(",", sign)) if len(word) < 300]
 
 
 def tally(numbers):
-    """How often each number is there, to eleven digits."""
+    """Return how often each number occurs, to eleven digits."""
     return Counter(float(f"{number:.10e}") + 0.0 for number in numbers)
 
 
 def explained(motion, truth, text, damaged):
-    """Whether a record is the one it was made as, but for numbers in lines that damage took away or put in: a law of
-    conservation, which knows no rule of any format."""
+    """Return whether a record is the undamaged one, but for numbers in lines that damage took away or put in.
+
+    This is a law of conservation, which knows no rule of any format.
+    """
     numbers, unit, step = truth
     lines = changed(text, damaged)
     gone, come = map(numbers_in, lines)
@@ -128,12 +133,12 @@ def explained(motion, truth, text, damaged):
     mean = np.mean(after[-len(motion.samples) :])  # of counts, which the reader of K-NET removes
     scales = [gal / count / 100 for gal, count in itertools.pairwise(come) if gal and count]  # K-NET states its own
     for factor, offset in itertools.product((*units, *scales), (0.0, mean, *OFFSETS, *come)):
-        found = motion.samples / factor
-        held, found = tally(numbers), tally(np.round(found + offset, 6) if offset else found)
-        if not found - held - tally(come) and not held - found - tally(gone):
+        samples = motion.samples / factor
+        held, samples = tally(numbers), tally(np.round(samples + offset, 6) if offset else samples)
+        if not samples - held - tally(come) and not held - samples - tally(gone):
             stated = [1000 * step, step / 1000, *come]
             steps = {*stated, *(number / 1000 for number in stated), *(1 / number for number in stated if number)}
-            return abs(motion.dt - step) <= TIMES * step or any(math.isclose(motion.dt, one) for one in steps)
+            return abs(motion.dt - step) <= TIMES * step or any(math.isclose(motion.dt, other) for other in steps)
     return any("the header states" in words for words in motion.warnings)
 
 
@@ -147,21 +152,21 @@ def same_scene(scene, tables):
     parts = {table: getattr(scene, table) for table in ("block", "base", "bearings", "start", "motion")}
     if any((parts[table] is None) != (table not in tables) for table in ("block", "base", "bearings", "motion")):
         return False
-    found = {"gravity": scene.gravity, "friction": scene.friction, "run.duration": scene.duration}
+    fields = {"gravity": scene.gravity, "friction": scene.friction, "run.duration": scene.duration}
     motion = parts.pop("motion")
     for table, part in parts.items():
-        found |= {f"{table}.{key}": getattr(part, key) for key in type(part).model_fields} if part else {}
+        fields |= {f"{table}.{key}": getattr(part, key) for key in type(part).model_fields} if part else {}
     if "pulse" in tables.get("motion", {}):
-        said = {"start": 0.0, "scale": 1.0} | tables["motion"]
-        pulse = said["pulse"], said["amplitude"] * said["scale"], said["frequency"], said["start"]
+        stated = {"start": 0.0, "scale": 1.0} | tables["motion"]
+        pulse = stated["pulse"], stated["amplitude"] * stated["scale"], stated["frequency"], stated["start"]
         if (motion.shape, motion.amplitude, motion.frequency, motion.start) != pulse:
             return False
-    return all(value == expected.get(key) for key, value in found.items())
+    return all(value == expected.get(key) for key, value in fields.items())
 
 
-@pytest.mark.parametrize("name, text, said, truth", records(), ids=[name for name, *_ in records()])
-def test_undamaged_records_hold_the_numbers_they_were_made_of(tmp_path, name, text, said, truth):
-    motion = read(tmp_path / "file", text.encode(), read_record, **said)
+@pytest.mark.parametrize("name, text, options, truth", records(), ids=[name for name, *_ in records()])
+def test_undamaged_records_hold_the_numbers_they_were_made_of(tmp_path, name, text, options, truth):
+    motion = read(tmp_path / "file", text.encode(), read_record, **options)
     assert (motion is None) == ("refused" in name)
     if motion is not None:
         numbers, unit, step = truth
@@ -175,32 +180,32 @@ def test_undamaged_scenes_are_judged_the_same(tmp_path, scene):
 
 
 def judged_record(path, record, content):
-    """Whether the project refuses a damaged record, or reads what it was made as, or differs from that."""
-    _, text, said, truth = record
-    motion = read(path, content, read_record, **said)
+    """Return whether the project refuses a damaged record, reads what it was made as, or differs from that."""
+    _, text, options, truth = record
+    motion = read(path, content, read_record, **options)
     if motion is None:
         return "refused"
     return "same" if explained(motion, truth, text, content.decode("utf-8", "replace")) else "differ"
 
 
 def judged_scene(path, scene, content):
-    """How the project's reader and the strict one judge a damaged scene file."""
-    found = read(path, content, load_scene)
+    """Return how the project's reader and the strict one judge a damaged scene file."""
+    loaded = read(path, content, load_scene)
     try:
         expected = strict_scenes.read(content)
     except (ValueError, KeyError):
-        return "refused" if found is None else "differ"
-    if found is None:
+        return "refused" if loaded is None else "differ"
+    if loaded is None:
         return "only the strict one reads"
-    return "same" if same_scene(found, expected) else "differ"
+    return "same" if same_scene(loaded, expected) else "differ"
 
 
 def judgements(folder, number, seed, undamaged, judged):
-    """{judgement: count} of `number` damaged files; none on which the readers differ."""
+    """Return {judgement: count} of `number` damaged files; on none do the readers differ."""
     counts = Counter()
-    for one, content in cases(undamaged, number, seed):
-        judgement = judged(folder / "file", one, content)
-        assert judgement != "differ", (one, content)
+    for damage, content in cases(undamaged, number, seed):
+        judgement = judged(folder / "file", damage, content)
+        assert judgement != "differ", (damage, content)
         counts[judgement] += 1
     return counts
 

