@@ -82,14 +82,14 @@ def test_a_notebook_runs_and_its_few_lines_give_the_lessons_number(name, monkeyp
     outputs, definitions = runpy.run_path(str(tmp_path / "notebook.py"))["app"].run()
     first = name == "tipping" and lesson(name).first().numbers["peak tilt / γ"][0]
     known = first or lesson(name).exercises[PLACES[name]].compute()
-    assert definitions["found"] == pytest.approx(known, rel=1e-9)
+    assert definitions["answer"] == pytest.approx(known, rel=1e-9)
     assert len(outputs) == 6 and outputs[-1] is not None
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_the_few_lines_stand_in_the_notebook_and_are_few(name):
     code = code_of(lesson(name))
-    assert "found = " in code and "return" not in code and len(code.splitlines()) <= 12
+    assert "answer = " in code and "return" not in code and len(code.splitlines()) <= 12
     assert textwrap.indent(code, "    ") in notebook_of(lesson(name))
 
 
