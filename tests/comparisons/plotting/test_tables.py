@@ -94,14 +94,14 @@ def test_why_engines_cannot_be_compared_is_said_once(capsys):
 
 
 @pytest.mark.parametrize(
-    "parted, words", [(True, "exudyn 2.5 s (1e-05)"), (False, "solvers' own size of error, 1e-05 at most, grows")]
+    "parted, words", [(True, "exudyn 2.5 s (1e-05)"), (False, "solvers' errors, 1e-05 at most, do not grow")]
 )
 def test_how_long_histories_are_compared_contradicts_no_dependence_on_the_motion(capsys, parted, words):
     cliff = Caution("motion", "The outcome depends on less than 5% of the motion.", "outcome", 0.01, 0.05)
     lines = printed(capsys, [replace(model(), warnings=(cliff,)), solved("exudyn")], {"exudyn": horizon(parted)})
     out = " ".join(" ".join(lines).split())
     assert lines[-1] == str(cliff) and words in out and "ot sensitive" not in out
-    assert ("a difference between histories is a solver's error, to the end" in out) == (not parted)
+    assert ("to the end, a difference between histories is a solver's error" in out) == (not parted)
 
 
 def test_slip_of_a_block_that_slides_stands_in_both_tables(capsys):

@@ -136,18 +136,18 @@ def test_the_first_screen_counts_outcomes_that_are_changed_of_engines_in_questio
     assert title([]) == title([TABLE]) == QUESTION
     told = dict(lines(SETUPS, (JUDGED,), found, {}))
     counts = (
-        "in 1 of 170 (exudyn); with defaults, in 10 of 50 (exudyn)",
-        "tuned, in 2 (exudyn) more",
-        "7 of 80 (7 under",
+        "in 1 of 170 (exudyn) runs. With defaults, this happens in 10 of 50 (exudyn) runs.",
+        "In 2 (exudyn) more runs, tuned engines overturn",
+        "7 of 80 runs (7 under",
     )
     assert all(words in told["Outcomes"] for words in counts)
     assert "30 of 200 (recorded motions) and 20 of 100 (a table)" in told["Near outcome boundaries"]
-    assert "by 1.0·10⁻⁵ (exudyn)" in told["Restitution"] and "by 0.20 (exudyn)" in told["Restitution"]
+    assert "to within 1.0·10⁻⁵ (exudyn)" in told["Restitution"] and "is 0.20 (exudyn)" in told["Restitution"]
 
 
 def test_advice_says_what_its_levels_give_elsewhere_and_where_they_were_not_run():
     level = Advised(1e-3, *FINE, "stiffness", 2e9, 0.02, "rocking run SCENE", {"a pulse": 2e-3, "a jump": 4e-4})
-    found = Glance(advice=(Advised(1e-2), level), asked=("exudyn",), scene="a scene", alike=1.5)
+    found = Glance(advice=(Advised(1e-2), level), engines=("exudyn",), scene="a scene", alike=1.5)
     peaks = Peaks("recorded motions", *FINE, "stiffness", 1e9, (1e-5, 5e-4, 2e-3, float("inf")))
     first, second = advice(found, [peaks])
     assert first.rows[0] == ["1 %", "not reached", "–", "–", "–"]

@@ -20,7 +20,15 @@ from comparisons.execution.provenance import RESULTS, read_result
 from comparisons.report import statue
 from comparisons.report.detail import assets, environment
 from comparisons.report.runs import RESTITUTION, SCENES, load_scenes, make_own_results
-from comparisons.report.statue import _by_record, _engines, _worst, needed_by, next_step, on_plate, statue_of
+from comparisons.report.statue import (
+    _by_record,
+    _engine_sentences,
+    _worst_words,
+    needed_by,
+    next_step,
+    on_plate,
+    statue_of,
+)
 from comparisons.report.write import PAGE, write_page
 
 GROUND = load_scene("caryatid-rigid")
@@ -82,10 +90,10 @@ TITLES = {  # outcomes: of each record, the scene's own motion first; whether th
 def test_the_title_is_the_worst_of_all_records_and_what_the_scenes_own_motion_does(outcomes, words):
     own = {"outcome": outcomes[0], "decided": True}
     rows = [{"record": k, "outcome": one} for k, one in enumerate(outcomes)]
-    assert _worst({"own": own, "motions": rows}, {"motion": "own" if outcomes[1:] else None}) == words
-    cut = _worst({"own": own | {"decided": False}, "motions": rows[1:]}, {"motion": "own"})
+    assert _worst_words({"own": own, "motions": rows}, {"motion": "own" if outcomes[1:] else None}) == words
+    cut = _worst_words({"own": own | {"decided": False}, "motions": rows[1:]}, {"motion": "own"})
     assert cut.endswith("(not decided when the run ended)")
-    assert _worst({"own": {"outcome": "rocks", "decided": True}, "motions": []}, {"motion": "own"}) == (
+    assert _worst_words({"own": {"outcome": "rocks", "decided": True}, "motions": []}, {"motion": "own"}) == (
         "rocks and stays upright"
     )
 
@@ -97,9 +105,9 @@ def test_the_engines_that_agree_and_what_the_others_have_other():
         {"engine": name, "failure": None, "comparable": how, "differences": [fell] * (name == "two")}
         for name, how in known.items()
     ]
-    agree, two, *others = _engines([*rows, {**rows[-1], "engine": "five", "failure": {"reason": "it gave up"}}]).split(
-        "; "
-    )
+    agree, two, *others = _engine_sentences(
+        [*rows, {**rows[-1], "engine": "five", "failure": {"reason": "it gave up"}}]
+    ).split("; ")
     assert agree == "one and near agree with the analytic model"
     assert two.startswith("two differs from the analytic model: the block overturns")
     three = "three cannot be compared with the analytic model: N <= 0"
