@@ -11,7 +11,7 @@ every installed engine. Without engines the lessons use the model's own fixed-st
 import functools
 import io
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
@@ -344,15 +344,14 @@ def straddled(step: float) -> tuple[float, float]:
 
 
 def timed(
-    solver: str, parameter: str, values: Iterable[float], simulated: Callable[..., Response]
+    solver: str, parameter: str, values: Sequence[float], simulated: Callable[..., Response]
 ) -> tuple[EngineRun, ...]:
     """Return runs of one of our own solvers, one for each level."""
-    runs_of_levels = []
-    for value in values:
-        runs = [simulated(SCENE, history=False, **{parameter: value}) for _ in range(ROUNDS)]
-        cpu = min(run.cpu_seconds for run in runs)
-        runs_of_levels.append(EngineRun(solver, solver, "", parameter, value, error_of(runs[0]), cpu))
-    return tuple(runs_of_levels)
+    rounds = [[simulated(SCENE, history=False, **{parameter: value}) for _ in range(ROUNDS)] for value in values]
+    return tuple(
+        EngineRun(solver, solver, "", parameter, value, error_of(runs[0]), min(run.cpu_seconds for run in runs))
+        for value, runs in zip(values, rounds, strict=True)
+    )
 
 
 @functools.cache
@@ -364,24 +363,19 @@ def own_runs() -> tuple[EngineRun, ...]:
 @functools.cache
 def engine_runs() -> tuple[EngineRun, ...]:
     """Return runs of every installed engine: each variant at all its levels."""
-    runs = []
-    for name in installed_engines():
-        engine = get_engine(name)
-        for variant, spec in engine.variants.items():
-            for value in spec.levels:
-                response = engine.simulate(
-                    SCENE, variant=variant, history=False, compare=False, **{spec.accuracy_parameter: value}
-                )
-                error = math.nan if response.outcome == "failed" else error_of(response)
-                runs.append(
-                    EngineRun(
-                        name,
-                        f"{name}, {variant}",
-                        spec.kind,
-                        spec.accuracy_parameter,
-                        value,
-                        error,
-                        response.cpu_seconds,
-                    )
-                )
-    return tuple(runs)
+    return tuple(
+        _engine_run(engine, name, level)
+        for engine in map(get_engine, installed_engines())
+        for name, variant in engine.variants.items()
+        for level in variant.levels
+    )
+
+
+def _engine_run(engine, name, level):
+    """Run the scene in a variant of an engine at one of its levels."""
+    variant = engine.variants[name]
+    settings = {"history": False, "compare": False, variant.accuracy_parameter: level}
+    response = engine.simulate(SCENE, variant=name, **settings)
+    error = math.nan if response.outcome == "failed" else error_of(response)
+    words = engine.name, f"{engine.name}, {name}", variant.kind, variant.accuracy_parameter
+    return EngineRun(*words, level, error, response.cpu_seconds)

@@ -58,8 +58,7 @@ def answer(choice: Choice) -> str:
 
 def named(level: Level) -> str:
     """Engine, variant and level in words."""
-    default = " (the default)" * level.default
-    return f"{level.engine}, {level.variant}, {level.parameter} = {level.value:g}{default}"
+    return f"{level.engine}, {level.variant}, {level.parameter} = {level.value:g}" + " (the default)" * level.default
 
 
 def _digits(error):

@@ -7,6 +7,7 @@ pages use; browsers draw MathML without a script.
 import math
 import re
 from collections.abc import Iterator
+from functools import partial
 from html import escape
 from pathlib import Path
 
@@ -39,13 +40,18 @@ class Drawing:
         (x0, y0), (x1, y1) = self.at(*start), self.at(*end)
         return f'<line class="{kind}" x1="{x0}" y1="{y0}" x2="{x1}" y2="{y1}"/>'
 
-    def arrow(self, start: Place, by: Place, label: str, aside: Place) -> str:
+    def shaft(self, start: Place, by: Place, size: float, kind: str, tip: str) -> str:
+        """Return an arrow from `start` by a vector; size: length of its tip; kind, tip: classes of line and tip."""
         (x, y), length = (start[0] + by[0], start[1] + by[1]), math.hypot(*by)
         u, v = by[0] / length, by[1] / length
-        a, b = x - 9 * u, y - 9 * v
-        tip = [(x, y), (a - 4.5 * v, b + 4.5 * u), (a + 4.5 * v, b - 4.5 * u)]
-        words = self.text((x + aside[0], y + aside[1]), label, "f")
-        return self.line(start, (a, b), "force") + self.polygon(tip, "tip") + words
+        (a, b), half = (x - size * u, y - size * v), size / 2
+        corners = [(x, y), (a - half * v, b + half * u), (a + half * v, b - half * u)]
+        return self.line(start, (a, b), kind) + self.polygon(corners, tip)
+
+    def arrow(self, start: Place, by: Place, label: str, aside: Place) -> str:
+        """Return the arrow of a force or motion, with a label at `aside` from its tip."""
+        place = start[0] + by[0] + aside[0], start[1] + by[1] + aside[1]
+        return self.shaft(start, by, 9, "force", "tip") + self.text(place, label, "f")
 
     def text(self, place: Place, words: str, kind: str = "") -> str:
         x, y = self.at(*place)
@@ -102,17 +108,8 @@ def _centre(corner: Place, tilt: float) -> Place:
     return (left[0] + above[0]) / 2, (left[1] + above[1]) / 2
 
 
-def labelled() -> Markup:
+def labelled(on_bearings: bool = False) -> Markup:
     """Draw the block upright with its sizes, and tilted: the meaning of each symbol."""
-    return _labelled(False)
-
-
-def labelled_on_bearings() -> Markup:
-    """Draw the same as `labelled` on a base with its bearings."""
-    return _labelled(True)
-
-
-def _labelled(on_bearings: bool) -> Markup:
     where = "on a base with bearings, displaced by x" if on_bearings else "on the ground"
     drawing = Drawing(
         520,
@@ -154,6 +151,9 @@ def _labelled(on_bearings: bool) -> Markup:
         drawing.text((right + 26, y + 22), "J_O"),
         drawing.arrow((10, 22), (42, 0), "a_g", (-22, 8)),
     )
+
+
+labelled_on_bearings = partial(labelled, on_bearings=True)
 
 
 def rocking() -> Markup:
@@ -290,25 +290,18 @@ def _frame(drawing, words, foot):
 def _mode(drawing, mode):
     (x, foot), (tilt, height, slides) = PLACES[mode], LOOKS[mode]
     pivot = x + (HALF if tilt >= 0 else -HALF) - (HIGH / 2 if mode == FALLEN else 0)
+    slip = drawing.shaft((x - 34, foot + 18), (17.0, 0.0), 8, "slip", "slip full") if slides else ""
     parts = [
         drawing.line((x - 36, foot + 8), (x + 36, foot + 8)),
         drawing.block((pivot, foot + 8 + height), tilt, HALF, HIGH, 1 if tilt >= 0 else -1),
         _words(drawing, (x, foot + TALL - 12), mode, "name"),
     ]
-    return "".join([*parts, _arrow(drawing, (x - 34, foot + 18), (17.0, 0.0), "slip")] if slides else parts)
+    return "".join(parts) + slip
 
 
 def _change(drawing, begin, by, words):
     labels = (_words(drawing, (begin[0] + x, begin[1] + y), text) for text, (x, y) in words)
-    return _arrow(drawing, begin, by) + "".join(labels)
-
-
-def _arrow(drawing, begin, by, kind="line"):
-    (x, y), length = (begin[0] + by[0], begin[1] + by[1]), math.hypot(*by)
-    u, v = by[0] / length, by[1] / length
-    a, b = x - 8 * u, y - 8 * v
-    tip = [(x, y), (a - 4 * v, b + 4 * u), (a + 4 * v, b - 4 * u)]
-    return drawing.line(begin, (a, b), kind) + drawing.polygon(tip, f"{kind} full")
+    return drawing.shaft(begin, by, 8, "line", "line full") + "".join(labels)
 
 
 def _words(drawing, place, words, kind=""):

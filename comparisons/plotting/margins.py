@@ -242,7 +242,7 @@ def headline(rows: Sequence[Mapping[str, Any]], left: Sequence[str] = ()) -> str
     """
     if not rows:
         return None
-    failed = _record_count(rows, lambda row: row["outcome"] == "failed")
+    failed = _record_count(rows, [row for row in rows if row["outcome"] == "failed"])
     sentences = [f"No outcome under {failed}."] if failed else []
     sentences += [f"Warning: {clause} under {records}." for clause, records in doubts(rows).items()]
     sentences.append(f"The block {odds(rows, LIFTED, 'lifts')}, and {odds(rows, LIFTED[1:], 'overturns')}.")
@@ -254,21 +254,17 @@ def headline(rows: Sequence[Mapping[str, Any]], left: Sequence[str] = ()) -> str
 
 def doubts(rows: Sequence[Mapping[str, Any]], kinds: Sequence[str] = KINDS) -> dict[str, str]:
     """Return {clause of warnings of these kinds: under how many records or motions}; rows as in `headline`."""
+    clauses = dict.fromkeys(clause for (kind, _), (_, clause) in DOUBTS.items() if kind in kinds)
+    warnings = [(row, _warning_words(warning)[1]) for row in rows for warning in row["warnings"]]
     records_of = {
-        clause: _record_count(rows, partial(_warns, clause))
-        for (kind, _), (_, clause) in DOUBTS.items()
-        if kind in kinds
+        clause: _record_count(rows, [row for row, words in warnings if words == clause]) for clause in clauses
     }
     return {clause: records for clause, records in records_of.items() if records}
 
 
-def _warns(clause: str, row: Mapping[str, Any]) -> bool:
-    return any(_warning_words(warning)[1] == clause for warning in row["warnings"])
-
-
-def _record_count(rows: Sequence[Mapping[str, Any]], holds: Callable[[Mapping[str, Any]], bool]) -> str:
-    """Return in words how many records, or motions, have a run for which `holds` is true; "" for none."""
-    holding, records = {row["record"] for row in rows if holds(row)}, {row["record"] for row in rows}
+def _record_count(rows: Sequence[Mapping[str, Any]], chosen: Sequence[Mapping[str, Any]]) -> str:
+    """Return in words how many records, or motions, have one of the chosen rows; "" for none."""
+    holding, records = ({row["record"] for row in members} for members in (chosen, rows))
     return f"{len(holding)} of {counted(rows, len(records))}" if holding else ""
 
 

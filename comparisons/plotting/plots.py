@@ -94,7 +94,7 @@ def draw_histories(scene: Scene, responses: Sequence[Response], horizon: float |
 
 
 def _empty_axes(rows, loop):
-    """(figure, {row: its axes over time, and "loop", beside them, if asked for}), labelled and without curves."""
+    """Return (figure, {row: its axes over time, "loop": axes beside them if wanted}), labelled, without curves."""
     figure = Figure(figsize=(11 if loop else 8, 0.6 + 2.1 * len(rows)), layout="constrained")
     mosaic = [[row, "loop"] if loop else [row] for row in rows]
     axes = figure.subplot_mosaic(mosaic, width_ratios=[2, 1] if loop else None)
@@ -109,7 +109,7 @@ def _empty_axes(rows, loop):
 
 
 def _draw_response(axes, scene, response, alone):
-    """The curves of a response in the axes that are there."""
+    """Draw the curves of a response for which there are axes."""
     history, line = response.history, style(response.engine)
     if alone:
         line["linewidth"] = 1.2  # nothing to lie underneath

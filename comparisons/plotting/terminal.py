@@ -28,6 +28,7 @@ from engines.simulating import in_words
 from ..execution.files import readable
 from ..execution.progress import stdout_to_stderr
 from ..metrics.errors import Horizon
+from .parts import grouped
 from .wording import MOST_NAMED, differing, listed, outcomes
 
 LONGEST_NUMBER = 15  # characters: sign, nine digits, point, exponent; longer words are names and may be broken
@@ -264,20 +265,13 @@ def remarks(responses: Sequence[Response]) -> list[str]:
 
     Equal sentences of several solvers are joined.
     """
-    different: dict[str, list[str]] = {}
-    for response in responses:
-        for words in differing(response.comparable, response.differences):
-            different.setdefault(words, []).append(response.engine)
-    sentences = [f"{'each of ' * (len(names) > 1)}{listed(names)} {words}" for words, names in different.items()]
-    return sentences + _warnings(responses)
-
-
-def _warnings(responses):
-    """Return the warnings and which solvers they concern."""
-    pairs = [
-        (response.engine, warning) for response in responses for warning in response.warnings if warning.kind != MOTION
+    different = [(each.engine, words) for each in responses for words in differing(each.comparable, each.differences)]
+    warnings = [(each.engine, warning) for each in responses for warning in each.warnings if warning.kind != MOTION]
+    sentences = [
+        f"{'each of ' * (len(pairs) > 1)}{listed([name for name, _ in pairs])} {words}"
+        for (words,), pairs in grouped(different, lambda pair: pair[1]).items()
     ]
-    return warned(pairs, len(responses), "all solvers")
+    return sentences + warned(warnings, len(responses), "all solvers")
 
 
 def warned(pairs: Iterable[tuple[str, Caution]], count: int, everyone: str) -> list[str]:
@@ -285,11 +279,8 @@ def warned(pairs: Iterable[tuple[str, Caution]], count: int, everyone: str) -> l
 
     pairs : (who, warning). everyone : what all `count` of them are called.
     """
-    grouped: dict[Any, list[tuple[str, Caution]]] = {}
-    for who, warning in pairs:
-        grouped.setdefault((warning.kind, warning.quantity or warning.text), []).append((who, warning))
     sentences = []
-    for members in grouped.values():
+    for members in grouped(pairs, lambda pair: pair[1].kind, lambda pair: pair[1].quantity or pair[1].text).values():
         names = list(dict.fromkeys(who for who, _ in members))
         further = [f"{len(names) - MOST_NAMED} more"] if len(names) > MOST_NAMED + 1 else []
         who = everyone if 1 < len(names) == count else listed([*names[: MOST_NAMED if further else None], *further])

@@ -29,6 +29,7 @@ from ..execution.provenance import copy_result
 from ..execution.study import compute
 from ..execution.sweep import Row
 from ..metrics.errors import compare, impact_errors, lost_impacts, rms, sensitivity_horizon, solver_horizon, worst
+from ..plotting.parts import grouped
 from .figures import ToFile, differences, response_of, thinned
 from .statue import statue_of
 
@@ -138,20 +139,15 @@ def impacts_only(case: Case, response: Response) -> dict[str, Any]:
 
 def restitution_computed(rows: Sequence[Row]) -> Computed:
     """Return the result of a released block: a row for each solver and variant, over all grounds and starts."""
-    groups: dict[tuple[str, str | None], list[Row]] = {}
+    groups = grouped(rows, lambda row: row.case.solver, lambda row: row.case.variant)
     models = {row.case.scene.digest(): Response.from_json(row.values) for row in rows if row.case.solver == "analytic"}
-    for row in rows:
-        groups.setdefault((row.case.solver, row.case.variant), []).append(row)
-    settings = {"starts": STARTS, "seconds": rows[0].case.scene.duration, "bases": list(_bases(rows))}
+    bases = dict.fromkeys(row.case.scene.base and row.case.scene.base.mass for row in rows)
+    settings = {"starts": STARTS, "seconds": rows[0].case.scene.duration, "bases": list(bases)}
     return Computed(
         settings,
-        [_restitution_row(*key, members, models) for key, members in groups.items()],
+        [_restitution_row(engine, variant, members, models) for (engine, variant), members in groups.items()],
         name=Path(RESTITUTION).stem,
     )
-
-
-def _bases(rows):
-    return dict.fromkeys(row.case.scene.base and row.case.scene.base.mass for row in rows)
 
 
 def _restitution_row(engine, variant, members, models):

@@ -313,9 +313,8 @@ def card_of(result: Result, name: str, call: str = "FILE", first: str = "") -> C
     scene, statue = result.settings["scenes"][name], result.settings["statues"][name]
     run = statue["own"]
     sentences = [*_sentences(statue), *(("Warning", warning["text"]) for warning in run["warnings"])]
-    sentences += [
-        (_heading(statue), words) for words in _failures(statue["motions"]) + motion_warnings(statue["motions"])
-    ]
+    failed = [f"{row['motion']}: {row['failure']}" for row in statue["motions"] if row["failure"]]
+    sentences += [(_heading(statue), words) for words in failed + motion_warnings(statue["motions"])]
     sentences.append(("Engines", _engine_sentences([row for row in result.rows if row["scene"] == name])))
     tables = [_main_table(statue)]
     if statue["near"]:
@@ -336,11 +335,6 @@ def _exceeded(statue):
     if rows := statue["motions"]:
         return [f"{clause} under {records}" for clause, records in doubts(rows, BEYOND).items()]
     return list(doubts([{"record": "", **statue["own"]}], BEYOND))
-
-
-def _failures(rows):
-    """Return why motions have no outcome, in clauses."""
-    return [f"{row['motion']}: {row['failure']}" for row in rows if row["failure"]]
 
 
 def _by_record(rows):
@@ -370,8 +364,7 @@ def _by_record(rows):
 
 def _largest(rows, name):
     """Return the largest number of this name; None if no run has one."""
-    known = (row[name] for row in rows if row[name] is not None)
-    return max(known, default=None)
+    return max((row[name] for row in rows if row[name] is not None), default=None)
 
 
 def _worst_words(statue, scene):

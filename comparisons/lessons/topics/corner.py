@@ -130,9 +130,6 @@ def engines_table() -> Table:
     )
 
 
-WHICH = ("engine", "variant")
-
-
 def bad_example() -> View:
     """Show the error of restitution over the step of subject engines: finer levels of their defaults do not help."""
     study = read_study(RESULTS / "restitution")
@@ -149,7 +146,9 @@ def bad_example() -> View:
     for variant, colour in zip(chosen, (MODEL, OTHER, THIRD), strict=True):
         levels = sorted(
             (row["level"], row["rms"])
-            for row in where(study.rows, scope="levels", ground=RIGID, **{key: variant[key] for key in WHICH})
+            for row in where(
+                study.rows, scope="levels", ground=RIGID, engine=variant["engine"], variant=variant["variant"]
+            )
         )
         steps, errors = zip(*levels, strict=True)
         name = f"{variant['engine']}, {variant['tier']}"
