@@ -1,5 +1,6 @@
-"""Random statues in the promised range (`engines.simulating`), with or without friction, and their motions.
+"""Random statues in the promised range, with or without friction, and their motions.
 
+The range is that of `engines.simulating`.
 Functions on motions add a vertical component, take the peak velocity, and name the source of records.
 """
 

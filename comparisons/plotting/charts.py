@@ -315,10 +315,8 @@ def room(words: Iterable[str], least: float = 0) -> int:
 
 def colour(who: str) -> str:
     """Return the colour of a solver as CSS; the model's is the page's ink."""
-    engine = engine_of(who)
-    if engine in ENGINES:
-        return _inked(ENGINES[engine].colour)
-    return "var(--ink)" if engine == REFERENCE else "var(--soft)"
+    others = "var(--ink)" if engine_of(who) == REFERENCE else "var(--soft)"
+    return _inked(ENGINES[engine_of(who)].colour) if engine_of(who) in ENGINES else others
 
 
 def _inked(tone):

@@ -44,7 +44,7 @@ Rule = tuple[str, float, str]
 
 @dataclass(frozen=True)
 class Series:
-    """What tells the series of one engine apart, and how `lines` draws them.
+    """The series of each engine in `lines`: their names and their looks.
 
     Parameters
     ----------
@@ -70,13 +70,13 @@ class Series:
     says: Callable[[Row], str] | None = None
 
     def name(self, row: Row) -> str:
-        """The engine of a row and the name of its series."""
+        """Return the series of a row: its engine, and its name if it has one."""
         return ", ".join(filter(None, (row["engine"], str(value_of(row, self.by)))))
 
     def looks(self, rows: Iterable[Row]) -> dict[str, dict[str, Any]]:
-        """{series: how `Chart.dots` draws it}, from all rows, even those with nothing to draw.
+        """Return {series: keywords of `Chart.dots`}, from all rows, even those with nothing to draw.
 
-        The series of a single solver get a colour each where its usual looks do not suffice; the model has one look.
+        If a single solver has more series than usual looks, each series gets a colour; the model has one usual look.
         """
         ranked = grouped([*self.like, *(row for row in rows if not self.grey(row))], "engine", self.name)
         engines = grouped(ranked, lambda pair: pair[0])

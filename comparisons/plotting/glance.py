@@ -1,4 +1,4 @@
-"""What studies give to the report's first screen, and its charts: error against cost, and how runs end.
+"""Studies' parts of the report's first screen, and its two charts: error against cost, ends of runs.
 
 Each chart is drawn for a wide page and for a phone; a style shows one of them.
 """
@@ -19,7 +19,7 @@ from .parts import Figure, grouped, setting_of
 
 @dataclass(frozen=True)
 class Endings:
-    """How many runs of a variant end otherwise than the model's, under one kind of motion.
+    """Counts of a variant's runs that end otherwise than the model's, under one kind of motion.
 
     motions: the kind of motion. kind: of the variant. runs: judged runs, away from the model's outcome boundaries. Six
     counts of them: failed; missed, the block overturns in the model alone; added, in the engine alone; other, neither
@@ -117,7 +117,7 @@ class Peaks:
 
 @dataclass(frozen=True)
 class Glance:
-    """What a study gives to the report's first screen.
+    """A study's part of the report's first screen.
 
     says: {line of the answer: its sentences}. endings: by motion and variant. curves: of solvers, in the scene named
     `scene`. advice: the recommendation by accuracy among the engines `engines`, judged in that scene. alike: the factor

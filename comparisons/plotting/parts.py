@@ -1,4 +1,4 @@
-"""Parts of a page, templates, and tables of a study's rows: choose rows, group them, state a column once.
+"""Parts of a page, templates, and tables of a study's rows: choose rows, group them, name columns.
 
     default = where(result.rows, part="summary", scope="all")
     table("Restitution", default, NAME, Column("error, rms [-]", "rms"), Column("failed", "{failed} of {runs}"))
@@ -64,7 +64,7 @@ SIGNS = {
 
 @dataclass(frozen=True)
 class Mark:
-    """What a study finds about one solver: in words, and as a level.
+    """A study's finding about one solver, in words and as a level.
 
     level: "good", "fair" or "bad"; "part", if too little was tested to tell; "none": not rated. note: number of runs or
     scenes, and what else the words leave out. value: the number itself.

@@ -1,4 +1,4 @@
-"""Matplotlib figures of histories and of record files, styles of solvers, and the table of a record file.
+"""Matplotlib figures of histories and record files, styles of solvers, table of a record file.
 
 Colours are those of Okabe and Ito, which colour-blind readers tell apart.
 """

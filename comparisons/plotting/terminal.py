@@ -73,8 +73,7 @@ class Grid:
         return [min(widths[0], max(room, 1))] if count == 1 else widths if sum(widths) <= room else None
 
     def _lines(self, column):
-        cells = (self.heads[column], *(row[column].plain for row in self.rows))
-        return [line for cell in cells for line in cell.split("\n")]
+        return "\n".join((self.heads[column], *(row[column].plain for row in self.rows))).split("\n")
 
     def _least(self, column):
         """Return the width of a column that keeps all but the longest words whole."""

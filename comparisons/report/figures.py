@@ -1,4 +1,4 @@
-"""Histories of the report's own runs: kept in files, thinned for drawing, as charts and as an animation.
+"""Histories of the report's own runs: in files, thinned for drawing, as charts and as an animation.
 
 Files hold the histories, so that memory holds one at a time. All measurements use whole histories; only figures and the
 result file have thinned ones. Charts and the animation are drawn from the arrays and rows of a result file.

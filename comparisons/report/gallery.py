@@ -1,4 +1,4 @@
-"""Generated parts of the READMEs: the report's first screen, its charts, and the origin of each result.
+"""Generated parts of the READMEs: the report's first screen, its charts, the origin of each result.
 
 ``python -m comparisons.report.gallery`` writes them anew from the stored results.
 """

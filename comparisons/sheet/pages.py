@@ -82,7 +82,7 @@ class Problem:
 
     @functools.cached_property
     def answers(self) -> dict[str, float | str]:
-        """{name of a quantity: reference answer in its unit}, of the analytic model, to `DIGITS` digits."""
+        """Reference answers of the analytic model, {name of a quantity: answer in its unit}, to `DIGITS` digits."""
         response = simulate(self.scene, tolerance=TIGHTEST, output_step=HISTORY_STEP)
         return {quantity.name: _value_of(quantity, response) for quantity in self.quantities}
 

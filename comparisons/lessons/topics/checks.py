@@ -48,7 +48,7 @@ def second() -> float:
 
 
 def energy_defect(response: Response) -> float:
-    """|final energy + loss in impacts - initial energy| / initial energy."""
+    """Defect of the energy balance: |final energy + loss in impacts - initial energy| / initial energy."""
     model, end, start = RockingModel.of(scene()), response.end, scene().start
 
     def energy(tilt, rate):
@@ -124,7 +124,7 @@ def observed_order() -> float:
 
 
 def mirror_defect() -> float:
-    """|tilt + tilt of the mirrored run| at the end of the event-driven run [rad]."""
+    """Defect of mirror symmetry: |tilt + tilt of the mirrored run| at the end of the event-driven run [rad]."""
     return abs(run(SOLVERS[0], 6.0).end.tilt + run(SOLVERS[0], 6.0, -1.0).end.tilt)
 
 

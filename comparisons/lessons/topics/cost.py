@@ -43,7 +43,7 @@ def model_runs() -> tuple[EngineRun, ...]:
 
 
 def levels_by_variant(runs: tuple[EngineRun, ...]) -> dict[str, list[EngineRun]]:
-    """{solver: its runs}, from coarse to fine."""
+    """Return {solver: its runs}, from coarse to fine."""
     return {name: list(levels) for name, levels in groupby(runs, attrgetter("name"))}
 
 

@@ -73,7 +73,7 @@ def with_a_material() -> float:
 
 
 def swings_of_the_measured() -> float:
-    """`swings_to_a_tenth` of `SCRIPTED` with the restitution `MEASURED`."""
+    """Impacts as in `swings_to_a_tenth`, of `SCRIPTED` with the restitution `MEASURED`."""
     return swings_to_a_tenth(load_scene(SCRIPTED).with_(block={"restitution": MEASURED}))
 
 
