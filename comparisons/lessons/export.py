@@ -1,8 +1,8 @@
-"""Lessons as pages that need no network, and the playground.
+"""Lessons and playground as HTML pages that need no network.
 
-The playground is one HTML page with the equations as plain scripts: polynomial.js, scene.js, series.js and model.js are
-the compiled kernel in JavaScript, engines.js the integrator of `analytic.checks.time_stepping` and a block on soft
-corners. Tests hold their numbers to those of `analytic`.
+The playground is one page with the equations as plain scripts. polynomial.js, scene.js, series.js and model.js are the
+compiled kernel in JavaScript. engines.js has the integrator of `analytic.checks.time_stepping`, and a block on soft
+corners. Tests compare their numbers with those of `analytic`.
 """
 
 import base64
@@ -27,19 +27,19 @@ from .topics import lessons
 
 PAGES = Path(__file__).parent / "pages"
 FOLDER = Path(__file__).parent / "playground"
-# Of the equations, run in the page and in its workers; then those of the page alone.
+# Scripts of the equations, run in the page and in its workers; then scripts of the page alone.
 SHARED = ("polynomial.js", "scene.js", "series.js", "model.js", "engines.js", "jobs.js")
 SCRIPTS = ("charts.js", "views.js", "workers.js", "page.js")
 PAGE = "playground.html"
 
 
 def sources(names: tuple[str, ...] = SHARED) -> str:
-    """The scripts of these names, one after the other."""
+    """Return the scripts of these names, one after the other."""
     return "\n".join((FOLDER / name).read_text(encoding="utf-8") for name in names)
 
 
 def playground_page(pages: Sequence[tuple[str, str]] = ()) -> str:
-    """The page as HTML; pages: (file, title) of those it leads to, beside it."""
+    """Return the playground as HTML; pages: (file, title) of the pages beside it, for links."""
     motion = synthetic_motion()
     return (
         templates(FOLDER)
@@ -63,27 +63,27 @@ OTHERS = (("index.html", "Lessons"), ("derivations.html", "Derivation"), ("teach
 def export_pages(
     folder: str | PathLike[str], progress: Callable[[int, int], object] = lambda done, total: None
 ) -> list[Path]:
-    """Write playground, lessons, derivation and teacher's page into `folder`; returns their paths.
+    """Write playground, lessons, derivation and teacher's page into `folder`. Return their paths.
 
-    progress : called with the number of lessons done and of all lessons.
+    progress : called with (lessons done, all lessons).
     """
-    environment, chosen = _environment(), lessons()
+    environment, all_lessons = _environment(), lessons()
     drawings = {name: Markup(getattr(diagrams, name)()) for name in ("rocking", "impact", "isolated")}
     files: dict[str, str | bytes] = {
         PAGE: playground_page(OTHERS),
-        "index.html": environment.get_template("index.html").render(lessons=chosen),
+        "index.html": environment.get_template("index.html").render(lessons=all_lessons),
         "derivations.html": environment.get_template("derivations.html").render(**drawings),
     }
-    exercises, firsts = [], []
-    for done, one in enumerate(chosen):
-        progress(done, len(chosen))
-        exercises.append([(exercise, answer(exercise)) for exercise in one.exercises])
-        files[f"lesson-{one.number}.html"] = _lesson_page(environment, one, chosen, exercises[-1])
-        first = one.first()
-        firsts.append(first.says)
-        files |= {f"figures/lesson-{one.number}.{kind}": file for kind, file in downloads(first.figure).items()}
+    exercises, first_views = [], []
+    for done, lesson in enumerate(all_lessons):
+        progress(done, len(all_lessons))
+        exercises.append([(exercise, answer(exercise)) for exercise in lesson.exercises])
+        files[f"lesson-{lesson.number}.html"] = _lesson_page(environment, lesson, all_lessons, exercises[-1])
+        first = lesson.first()
+        first_views.append(first.says)
+        files |= {f"figures/lesson-{lesson.number}.{kind}": file for kind, file in downloads(first.figure).items()}
     page = environment.get_template("teacher.html")
-    files["teacher.html"] = page.render(lessons=chosen, exercises=exercises, firsts=firsts, licence=LICENCE)
+    files["teacher.html"] = page.render(lessons=all_lessons, exercises=exercises, firsts=first_views, licence=LICENCE)
     return write_all(folder, files)
 
 
@@ -97,27 +97,27 @@ def _environment() -> Environment:
     return environment
 
 
-def _lesson_page(environment: Environment, one: Lesson, chosen: Sequence[Lesson], exercises: list) -> str:
-    titles = {other.number: other.title for other in chosen}
-    views = [_view_parts(one.view(*values), f"{one.name}-{k}") for k, values in enumerate(one.places())]
+def _lesson_page(environment: Environment, lesson: Lesson, all_lessons: Sequence[Lesson], exercises: list) -> str:
+    titles = {other.number: other.title for other in all_lessons}
+    views = [_view_parts(lesson.view(*values), f"{lesson.name}-{k}") for k, values in enumerate(lesson.places())]
     return environment.get_template("lesson.html").render(
-        lesson=one,
-        count=len(chosen),
-        before=titles.get(one.number - 1),
-        after=titles.get(one.number + 1),
-        code=code_of(one),
+        lesson=lesson,
+        count=len(all_lessons),
+        before=titles.get(lesson.number - 1),
+        after=titles.get(lesson.number + 1),
+        code=code_of(lesson),
         exercises=exercises,
-        table=one.table() if one.table else None,
-        drawing=one.drawing() if one.drawing else "",
-        example=_view_parts(one.example(), f"{one.name}-example") if one.example else None,
-        texts=json.dumps([[control.text(value) for value in control.values] for control in one.controls]),
+        table=lesson.table() if lesson.table else None,
+        drawing=lesson.drawing() if lesson.drawing else "",
+        example=_view_parts(lesson.example(), f"{lesson.name}-example") if lesson.example else None,
+        texts=json.dumps([[control.text(value) for value in control.values] for control in lesson.controls]),
         views=views,
         script=Markup((PAGES / "lesson.js").read_text(encoding="utf-8")),
     )
 
 
 def _view_parts(view: View, name: str) -> dict:
-    """Parts of a view for the template: picture, numbers as (label, value in full, text), and the sentence."""
+    """Return parts of a view for the template: picture, numbers as (label, value in full, text), and sentence."""
     numbers = [
         (label, value if isinstance(value, str) else repr(float(value)), written(value, unit))
         for label, (value, unit) in view.numbers.items()

@@ -1,18 +1,17 @@
-"""The type of a lesson: a question, symbols and equations, a guess, a picture with controls, common errors, exercises.
+"""The type of a lesson, its figures, and the runs that several lessons share.
 
-Texts are paragraphs with ``$formulas$`` in TeX: a notebook shows the TeX, a page MathML (`mathml.prose`).
-Figures are drawn once with stand-ins for colours, which a page replaces by its own, light or dark.
+A lesson has a question, symbols and equations, a guess, a picture with controls, common errors and exercises. Texts are
+paragraphs with ``$formulas$`` in TeX: a notebook shows the TeX, a page shows MathML (`plotting.diagrams.prose`).
+Figures are drawn with stand-ins for colours, which a page replaces by its own, light or dark.
 
-What several lessons compute, and every installed engine, in every variant, on one small scene: a block released on
-rigid ground, to its second impact.
-
-The engines are those of `engines`; without any, the lessons use the model's own fixed-step integrator.
+The shared runs are of one small scene, a block released on rigid ground up to its second impact, in every variant of
+every installed engine. Without engines the lessons use the model's own fixed-step integrator.
 """
 
 import functools
 import io
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
@@ -64,12 +63,12 @@ STYLE: Any = {  # keys of matplotlib's rcParams
     "path.simplify_threshold": 0.3,
 }
 WIDTH, HEIGHT = 5.4, 4.4  # inch; text is readable on a phone
-WIDE = (9.6, 5.4)  # inch, 16:9, of the figures for slides
+WIDE = (9.6, 5.4)  # inch, size of the figures for slides, 16:9
 LICENCE = "rocking lessons, MIT licence"
 
 
 def canvas(rows: int = 1, heights: tuple[float, ...] = (1,), **more: Any) -> tuple[Figure, Any]:
-    """(figure, its axes from `Figure.subplots`) in the lessons' style."""
+    """Return (figure, its axes from `Figure.subplots`) in the lessons' style."""
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(WIDTH, HEIGHT))
         axes = figure.subplots(rows, height_ratios=heights, **more)
@@ -78,7 +77,7 @@ def canvas(rows: int = 1, heights: tuple[float, ...] = (1,), **more: Any) -> tup
 
 
 def tilt_axis(axes: Axes, time: Any, ratio: Any, window: float, **more: Any) -> None:
-    """Tilt over slenderness in time [s] up to the window, with the lines at which the block is balanced."""
+    """Draw tilt over slenderness in time [s] up to the window, with lines where the block is balanced."""
     axes.plot(time, ratio, color=MODEL)
     for level in (-1, 1):
         axes.axhline(level, color=SOFT, linewidth=0.9, linestyle=(0, (4, 4)))
@@ -86,12 +85,13 @@ def tilt_axis(axes: Axes, time: Any, ratio: Any, window: float, **more: Any) -> 
 
 
 def legend(axes: Axes, **more: Any) -> None:
+    """Draw a legend in the lessons' style."""
     with matplotlib.rc_context(STYLE):
         axes.legend(**more)
 
 
 def svg(figure: Figure, name: str) -> str:
-    """The figure as an inline SVG element in the colours of its page; `name` makes the names of its parts unique."""
+    """Return the figure as an SVG element in the colours of its page; `name` makes the names of its parts unique."""
     file = io.BytesIO()
     with matplotlib.rc_context({**STYLE, "svg.hashsalt": name}):
         figure.savefig(file, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
@@ -102,7 +102,7 @@ def svg(figure: Figure, name: str) -> str:
 
 
 def downloads(figure: Figure) -> dict[str, bytes]:
-    """{kind: file} of the figure for slides, 16:9, with its licence line: "svg", and "png" of 1920 by 1080 pixels."""
+    """Return the figure for slides, 16:9, with a licence line: {"svg": file, "png": file of 1920 by 1080 pixels}."""
     figure.set_size_inches(*WIDE)
     figure.subplots_adjust(left=figure.subplotpars.left * WIDTH / WIDE[0], bottom=0.13)
     figure.text(0.985, 0.012, LICENCE, ha="right", color=SOFT, fontsize=7)
@@ -160,7 +160,7 @@ SYMBOLS = {
 
 @dataclass(frozen=True)
 class Equation:
-    """tex: the formula. number: its number in the paper, "" without one. says: its meaning, one sentence."""
+    """An equation. tex: the formula. number: in the paper, "" without one. says: its meaning, one sentence."""
 
     tex: str
     number: str
@@ -186,7 +186,7 @@ class Control:
         return isinstance(self.start, str)
 
     def text(self, value: float | str) -> str:
-        """A value as it is shown."""
+        """Return a value in words, with its unit."""
         if isinstance(value, str):
             return value
         return f"{value:.{self.digits}f}".replace("-", "−") + (f" {self.unit}" if self.unit else "")
@@ -196,8 +196,8 @@ class Control:
 class View:
     """The view of a lesson at one combination of its controls.
 
-    figure : matplotlib Figure. numbers : {label: (value, unit)}, the value a number or a word. says : the picture in a
-    sentence, for readers who cannot see it.
+    figure : matplotlib Figure. numbers : {label: (value, unit)}, the value being a number or a word. says : a sentence
+    that describes the picture for readers who cannot see it.
     """
 
     figure: Figure
@@ -207,7 +207,7 @@ class View:
 
 @dataclass(frozen=True)
 class Exercise:
-    """A question whose answer is computed: `compute()` is a number in `unit`; `because` explains the solution."""
+    """A question with a computed answer: `compute()` returns a number in `unit`; `because` explains the solution."""
 
     question: str
     compute: Callable[[], float]
@@ -222,7 +222,7 @@ class Lesson:
 
     minutes : in a lecture. aims : learning outcomes. needs : prerequisites. symbols : keys of `SYMBOLS`. guess : a
     question to answer before the controls are used, which the picture then answers. code : a few lines that compute a
-    number of the lesson, `found`; their text is a cell of the notebook. playground : positions of the playground's
+    number of the lesson, `answer`; their text is a cell of the notebook. playground : positions of the playground's
     sliders, as its address after #. drawing : at the head of the lesson. table : rows below the picture. example : a
     second picture, without controls, and its caption `says`.
     """
@@ -249,15 +249,15 @@ class Lesson:
     example: Callable[[], View] | None = None
 
     def glossary(self) -> list[tuple[str, str]]:
-        """(symbol as TeX, meaning) of each symbol of the lesson."""
+        """Return (symbol as TeX, meaning) of each symbol of the lesson."""
         return [(symbol, SYMBOLS[symbol]) for symbol in self.symbols]
 
     def first(self) -> View:
-        """The view at the initial values of the controls."""
+        """Return the view at the initial values of the controls."""
         return self.view(*(control.start for control in self.controls))
 
     def places(self) -> list[tuple[float | str, ...]]:
-        """All combinations of the controls, the last one changing fastest."""
+        """Return all combinations of the controls' values, the last control changing fastest."""
         return list(product(*(control.values for control in self.controls)))
 
 
@@ -266,28 +266,29 @@ HALVINGS = 50
 
 
 def edge(differs: Callable[[float], bool], low: float, high: float) -> float:
-    """The value at which `differs` changes between low and high, by bisection; on the side of high.
+    """Return the value between low and high at which `differs` changes, by bisection, on the side of high.
 
     Raises
     ------
     ValueError
         `differs` is the same at both ends.
     """
-    there = differs(high)
-    if differs(low) == there:
+    beyond = differs(high)
+    if differs(low) == beyond:
         raise ValueError(f"nothing changes between {low:g} and {high:g}")
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if differs(middle) == there else (middle, high)
+        low, high = (low, middle) if differs(middle) == beyond else (middle, high)
     return high
 
 
 def overturns(scene: Scene) -> bool:
+    """Return whether the block of a scene overturns in the model."""
     return simulate(scene, history=False).outcome == "overturns"
 
 
 def history_until(scene: Scene, duration: float) -> Response:
-    """The response of the first `duration` [s], with its history every 0.01 s."""
+    """Return the response over the first `duration` [s], with its history every 0.01 s."""
     return simulate(scene.with_(duration=duration), output_step=0.01)
 
 
@@ -295,18 +296,18 @@ SLENDERNESS, START = 0.28, 0.6  # rad, tilt over slenderness
 SCENE = Scene(block=caryatid_block(SLENDERNESS), start=Start(tilt=START * SLENDERNESS), duration=1.5)
 FIRST = 1.0  # s: between the first and the second impact
 OWN = "fixed steps"  # the model's own integrator
-# s. The impact falls at another phase of each of these steps, so that the error falls with every one of them: not all
-# halvings do, as steps of 20 and of 10 ms happen to end at the same time beside it.
+# Steps [s]. The impact is at another place in each of these steps, so that the error falls from step to step. Halving
+# is not enough: steps of 20 and of 10 ms happen to end at the same time beside the impact.
 OWN_STEPS = (0.018, 0.012, 6e-3, 2.4e-3, 1e-3, 5e-4, 2e-4, 1e-4)
-PHASES = np.linspace(0.9, 1.1, 41)  # factors on a step, over which the phase of the impact in it varies
+PHASES = np.linspace(0.9, 1.1, 41)  # factors on a step, which move the impact through the whole step
 ROUNDS = 3  # runs of a timing; the least CPU time counts
 
 
 @dataclass(frozen=True)
 class EngineRun:
-    """One run: solver, name with variant, kind, accuracy parameter and its value.
+    """A run of a solver. name: with the variant, of the kind `kind`. parameter, value: accuracy parameter and level.
 
-    error: of the tilt rate after the first impact, nan without one. cpu: CPU time [s].
+    error: relative error of the tilt rate after the first impact, nan without an impact. cpu: CPU time [s].
     """
 
     solver: str
@@ -320,66 +321,61 @@ class EngineRun:
 
 @functools.cache
 def exact_rate() -> float:
-    """Tilt rate after the first impact [rad/s], of the model."""
+    """Return the model's tilt rate after the first impact [rad/s]."""
     return simulate(SCENE, history=False).impacts[0].rate_after
 
 
 def error_of(response: Response) -> float:
-    """Relative error of the tilt rate after the first impact, nan where there is none."""
+    """Return the relative error of the tilt rate after the first impact; nan without an impact."""
     hits = [impact for impact in response.impacts if impact.time < FIRST]
     return abs(hits[0].rate_after / exact_rate() - 1) if hits else math.nan
 
 
 def straddled(step: float) -> tuple[float, float]:
-    """(shift of the first impact [s], relative error of the rate after it), root mean square over steps within a tenth
-    of `step` [s]: of fixed steps, the model's own integrator.
+    """Return (shift of the first impact [s], relative error of the rate after it) with fixed steps.
+
+    Both are root mean squares over steps within a tenth of `step` [s], of the model's own integrator.
     """
     exact = simulate(SCENE, history=False).impacts[0]
     hits = [simulate_time_stepping(SCENE, step=step * factor, history=False).impacts[0] for factor in PHASES]
-    found = [(hit.time - exact.time, hit.rate_after / exact.rate_after - 1) for hit in hits]
-    shift, rate = np.sqrt(np.mean(np.square(found), axis=0))
+    errors = [(hit.time - exact.time, hit.rate_after / exact.rate_after - 1) for hit in hits]
+    shift, rate = np.sqrt(np.mean(np.square(errors), axis=0))
     return float(shift), float(rate)
 
 
 def timed(
-    solver: str, parameter: str, values: Iterable[float], simulated: Callable[..., Response]
+    solver: str, parameter: str, values: Sequence[float], simulated: Callable[..., Response]
 ) -> tuple[EngineRun, ...]:
-    """Runs of one of our own solvers, one for each level."""
-    found = []
-    for value in values:
-        runs = [simulated(SCENE, history=False, **{parameter: value}) for _ in range(ROUNDS)]
-        cpu = min(run.cpu_seconds for run in runs)
-        found.append(EngineRun(solver, solver, "", parameter, value, error_of(runs[0]), cpu))
-    return tuple(found)
+    """Return runs of one of our own solvers, one for each level."""
+    rounds = [[simulated(SCENE, history=False, **{parameter: value}) for _ in range(ROUNDS)] for value in values]
+    return tuple(
+        EngineRun(solver, solver, "", parameter, value, error_of(runs[0]), min(run.cpu_seconds for run in runs))
+        for value, runs in zip(values, rounds, strict=True)
+    )
 
 
 @functools.cache
 def own_runs() -> tuple[EngineRun, ...]:
-    """Runs of the model's fixed-step integrator."""
+    """Return runs of the model's fixed-step integrator."""
     return timed(OWN, "step", OWN_STEPS, simulate_time_stepping)
 
 
 @functools.cache
 def engine_runs() -> tuple[EngineRun, ...]:
-    """Runs of every installed engine: each variant at all its levels."""
-    found = []
-    for name in installed_engines():
-        engine = get_engine(name)
-        for variant, spec in engine.variants.items():
-            for value in spec.levels:
-                response = engine.simulate(
-                    SCENE, variant=variant, history=False, compare=False, **{spec.accuracy_parameter: value}
-                )
-                error = math.nan if response.outcome == "failed" else error_of(response)
-                found.append(
-                    EngineRun(
-                        name,
-                        f"{name}, {variant}",
-                        spec.kind,
-                        spec.accuracy_parameter,
-                        value,
-                        error,
-                        response.cpu_seconds,
-                    )
-                )
-    return tuple(found)
+    """Return runs of every installed engine: each variant at all its levels."""
+    return tuple(
+        _engine_run(engine, name, level)
+        for engine in map(get_engine, installed_engines())
+        for name, variant in engine.variants.items()
+        for level in variant.levels
+    )
+
+
+def _engine_run(engine, name, level):
+    """Run the scene in a variant of an engine at one of its levels."""
+    variant = engine.variants[name]
+    settings = {"history": False, "compare": False, variant.accuracy_parameter: level}
+    response = engine.simulate(SCENE, variant=name, **settings)
+    error = math.nan if response.outcome == "failed" else error_of(response)
+    words = engine.name, f"{engine.name}, {name}", variant.kind, variant.accuracy_parameter
+    return EngineRun(*words, level, error, response.cpu_seconds)

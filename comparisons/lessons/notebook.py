@@ -1,6 +1,6 @@
-"""A lesson as a notebook: its file, and what its cells show; `mo` is the module marimo, which only they import.
+"""A lesson as a marimo notebook: its file, and the contents of its cells.
 
-Notebooks that somebody has kept import this module by its name.
+`mo` is the module marimo, which only notebooks import. Notebooks kept by users import this module by its name.
 """
 
 import contextlib
@@ -27,7 +27,7 @@ from .topics import lesson
 PAGES = Path(__file__).parent / "pages"
 # Cells run when the notebook opens; by default marimo does not run them.
 SETTINGS = "[tool.marimo.runtime]\nauto_instantiate = true\n"
-# Stand-ins of `lesson` in a notebook, light or dark.
+# Colours for the stand-ins of `lesson` in a notebook, light or dark.
 COLOURS = (
     "--ink: currentColor; --soft: #8a867e; --grid: #88888844; --panel: #ffffff; --model: #2b8fd0; --ghost: #e0701a; "
     "--third: #1a9a78; --stone: #c9bea3; --stands: #c4c0b7"
@@ -35,25 +35,25 @@ COLOURS = (
 
 
 def code_of(lesson: Lesson) -> str:
-    """The few lines of a lesson: the body of its `code`, whose last line shows what that returns."""
+    """Return the code of a lesson for a cell: the body of its `code`, whose last line shows what `code` returns."""
     body = inspect.getsource(lesson.code).partition("\n")[2]
     return re.sub(r"^return ", "", textwrap.dedent(body).rstrip(), flags=re.MULTILINE)
 
 
 def notebook_of(lesson: Lesson) -> str:
-    """The notebook of a lesson, as marimo has them: a Python file."""
+    """Return the notebook of a lesson, a Python file for marimo."""
     return templates(PAGES).get_template("notebook.py.jinja").render(lesson=lesson, code=code_of(lesson))
 
 
 def open_notebook(name: str, to: str | None = None) -> int:
-    """Open the notebook of a lesson in the browser, by marimo; returns its status when it ends.
+    """Open the notebook of a lesson in the browser with marimo. Return marimo's exit status when it ends.
 
     Parameters
     ----------
     name : str
-        Of the lesson.
+        Name of the lesson.
     to : str or None
-        Folder where the notebook is kept, and opened again as it was left; None: it is gone when marimo ends.
+        Folder that keeps the notebook; one that is there is opened as it is. None: it is removed when marimo ends.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def open_notebook(name: str, to: str | None = None) -> int:
 
 
 def written(value: float | str, unit: str = "", digits: int = 4) -> str:
-    """A number with its unit, or a word; digits 0: a whole number."""
+    """Return a number with its unit, or a word; digits 0: a whole number."""
     if isinstance(value, str):
         return value
     text = str(value) if isinstance(value, int) else f"{value:.0f}" if digits == 0 else number(float(value), digits)
@@ -84,12 +84,12 @@ def written(value: float | str, unit: str = "", digits: int = 4) -> str:
 
 
 def answer(exercise: Exercise) -> str:
-    """The answer to an exercise, computed now."""
+    """Compute the answer to an exercise, in words."""
     return written(exercise.compute(), exercise.unit, exercise.digits)
 
 
 def opening(lesson: Lesson, mo: Any) -> Any:
-    """Title, question, drawing, equations, symbols, and what to guess."""
+    """Return title, question, drawing, equations, symbols, and what to guess."""
     head = [mo.md(f"# {lesson.number}. {lesson.title}\n\n{lesson.question}")]
     if lesson.drawing:
         rules, drawing = diagrams.STYLE.read_text(encoding="utf-8"), lesson.drawing()
@@ -106,24 +106,24 @@ def opening(lesson: Lesson, mo: Any) -> Any:
 
 
 def controls(lesson: Lesson, mo: Any) -> Any:
-    """The controls as marimo's elements, an array whose value is what `Lesson.view` takes."""
-    made = []
+    """Return the controls as an array of marimo's elements; its value is the arguments of `Lesson.view`."""
+    elements = []
     for control in lesson.controls:
         if control.in_words:
-            made.append(mo.ui.radio(list(control.values), value=control.start, label=control.label, inline=True))
+            elements.append(mo.ui.radio(list(control.values), value=control.start, label=control.label, inline=True))
         else:
             label = f"{control.label} [{control.unit}]" if control.unit else control.label
-            made.append(mo.ui.slider(steps=list(control.values), value=control.start, label=label, show_value=True))
-    return mo.ui.array(made)
+            elements.append(mo.ui.slider(steps=list(control.values), value=control.start, label=label, show_value=True))
+    return mo.ui.array(elements)
 
 
 def place(lesson: Lesson, values: Sequence[float | str], mo: Any) -> Any:
-    """What the lesson shows at these values of its controls: picture and numbers."""
+    """Return picture and numbers of the lesson at these values of its controls."""
     return shown(lesson.view(*values), mo)
 
 
 def shown(view: View, mo: Any) -> Any:
-    """Picture and numbers of a view."""
+    """Return picture and numbers of a view."""
     numbers = [mo.stat(written(value, unit), label=label) for label, (value, unit) in view.numbers.items()]
     picture = (
         f'<div style="{COLOURS}; max-width: 38rem" role="img" aria-label="{view.says}">{svg(view.figure, "n")}</div>'
@@ -132,7 +132,7 @@ def shown(view: View, mo: Any) -> Any:
 
 
 def closing(lesson: Lesson, mo: Any) -> Any:
-    """What goes wrong, and the exercises with their answers folded away."""
+    """Return common errors, and the exercises with their answers folded away."""
     wrong = "\n".join(f"- {text}" for text in lesson.wrong)
     folded = {exercise.question: mo.md(f"**{answer(exercise)}** – {exercise.because}") for exercise in lesson.exercises}
     example = lesson.example() if lesson.example else None

@@ -1,9 +1,9 @@
-"""Charts of the page as inline SVG, with text elements, the page's colours, and values that a script can read.
+"""Charts as inline SVG, in the page's colours, with text elements and values that a script can read.
 
-Solvers keep colour, dashes and marker everywhere (`engines.ENGINES`); a group of the class "who" with ``data-who`` can
-be hidden by its name, which begins with the engine's: "exudyn" or "exudyn, native-contact". What is drawn of rows is
-made by `comparisons.plotting.figures`. Sizes are in units of which `WIDTH` fill a phone: lettering of 13 is 11.6 px at
-390 px.
+A solver keeps its colour, dashes and marker in all charts (`engines.ENGINES`). The page hides a group of the class
+"who" by its ``data-who``, which begins with the engine's name: "exudyn" or "exudyn, native-contact". Figures of a
+study's rows are made in `comparisons.plotting.figures`. The unit of sizes is 1/`WIDTH` of a phone's width: lettering of
+13 is 11.6 px at 390 px.
 """
 
 import json
@@ -43,24 +43,24 @@ SHAPES = {
     "X": "M-4.5-2.5l2-2 2.5 2.5 2.5-2.5 2 2-2.5 2.5 2.5 2.5-2 2-2.5-2.5-2.5 2.5-2-2 2.5-2.5z",
     "|": "M0-6V6",
 }
-OUTWARD = "M6.5-3.5L10 0 6.5 3.5"  # beside a mark at the frame, to the right: its value lies beyond
+OUTWARD = "M6.5-3.5L10 0 6.5 3.5"  # arrowhead of a mark at the frame whose value lies beyond it
 
 
 class Look(NamedTuple):
-    """How one of several curves of one solver is drawn. tone: its colour."""
+    """Colour (`tone`), dashes and mark of one of several curves of a solver."""
 
     tone: str
     dashes: str
     mark: str
 
 
-# None of an engine: Tol's "bright", which the colour-blind tell apart, its yellow and cyan darkened; in print
-# dashes and marks tell. Twelve curves differ; no chart can show more.
+# Tol's "bright", which colour-blind readers tell apart, with yellow and cyan darkened; none is an engine's colour. In
+# print dashes and marks tell curves apart. Twelve curves differ; no chart can show more.
 TONES = ("#4477AA", "#EE6677", "#228833", "#AA3377", "#B8A42E", "#3FA7C4")
 
 
 def curve(rank: int) -> Look:
-    """The look of the first, second, ... curve of a solver that is alone in its chart."""
+    """Return the look of the first, second, ... curve of a solver that is alone in its chart."""
     dashes, marks = list(DASHES.values()), [mark for mark in SHAPES if mark != "x"]
     turn, place = divmod(rank, len(TONES))
     return Look(_inked(TONES[place]), dashes[(turn + rank) % len(dashes)], marks[rank % len(marks)])
@@ -68,7 +68,7 @@ def curve(rank: int) -> Look:
 
 @dataclass(frozen=True)
 class Axis:
-    """label: with unit. low, high: ends. scale: "linear" or "log". ticks: (value, word) in place of those found."""
+    """label: with unit. low, high: ends. scale: "linear" or "log". ticks: (value, word) in place of round values."""
 
     label: str
     low: float
@@ -77,39 +77,41 @@ class Axis:
     ticks: tuple[tuple[float, str], ...] | None = None
 
     def share(self, values: Iterable[float]) -> np.ndarray:
-        """Where values lie between the ends, 0 to 1."""
-        one = np.log10 if self.scale == "log" else np.asarray
-        low, high = (float(one(end)) for end in (self.low, self.high))
+        """Return where values lie between the ends, 0 to 1; shape as the values."""
+        transform = np.log10 if self.scale == "log" else np.asarray
+        low, high = (float(transform(end)) for end in (self.low, self.high))
         with np.errstate(divide="ignore"):
-            return (one(np.asarray(values, dtype=float)) - low) / (high - low)
+            return (transform(np.asarray(values, dtype=float)) - low) / (high - low)
 
     def marks(self) -> tuple[tuple[float, str], ...]:
-        """(value, word) of its ticks."""
+        """Return (value, word) of its ticks."""
         if self.ticks is not None:
             return self.ticks
         if self.scale == "log":
-            found = LogLocator(numticks=7).tick_values(self.low, self.high)
-            words = [power_of_ten(value) for value in found]
+            values = LogLocator(numticks=7).tick_values(self.low, self.high)
+            words = [power_of_ten(value) for value in values]
         else:
-            found = MaxNLocator(nbins=5, steps=[1, 2, 2.5, 5, 10]).tick_values(self.low, self.high)
-            words = [f"{round(value, 12):g}".replace("-", "−") for value in found]
+            values = MaxNLocator(nbins=5, steps=[1, 2, 2.5, 5, 10]).tick_values(self.low, self.high)
+            words = [f"{round(value, 12):g}".replace("-", "−") for value in values]
         within = (-1e-9, 1 + 1e-9)
         return tuple(
-            (float(v), w) for v, w in zip(found, words, strict=True) if within[0] <= self.share([v])[0] <= within[1]
+            (float(value), word)
+            for value, word in zip(values, words, strict=True)
+            if within[0] <= self.share([value])[0] <= within[1]
         )
 
 
 def log_axis(label: str, values: Iterable[float]) -> Axis:
-    """An axis of whole decades about positive values."""
-    found = [value for value in values if value and value > 0]
-    low, high = math.floor(math.log10(min(found))), math.ceil(math.log10(max(found)))
+    """Return an axis of whole decades about the positive ones of these values."""
+    positive = [value for value in values if value and value > 0]
+    low, high = math.floor(math.log10(min(positive))), math.ceil(math.log10(max(positive)))
     return Axis(label, 10.0**low, 10.0 ** max(high, low + 1), "log")
 
 
 class Chart:
-    """One panel; says: a description for readers who cannot see it. left, right, head, foot: margins.
+    """One panel. says: a description for readers who cannot see it. left, right, head, foot: margins.
 
-    width: `WIDTH`, or more of one that is not for a phone. turned: whether words below the axis stand upright.
+    width: `WIDTH`, or more for a panel that no phone shows. turned: whether words below the axis stand upright.
     """
 
     def __init__(
@@ -134,7 +136,7 @@ class Chart:
         self.ends: list[tuple[float, str, str]] = []
 
     def at(self, xs: Sequence[float] | np.ndarray, ys: Sequence[float] | np.ndarray) -> np.ndarray:
-        """Places, shape (points, 2), of values."""
+        """Return the places of values in the drawing, shape (points, 2)."""
         across = self.left + self.x.share(xs) * (self.right - self.left)
         return np.column_stack([across, self.bottom - self.y.share(ys) * (self.bottom - self.top)])
 
@@ -149,10 +151,10 @@ class Chart:
         look: Look | None = None,
         thin: bool = False,
     ) -> None:
-        """A line of one solver, or in a colour `tone`; look: of one curve of several. Points not finite part it."""
+        """Draw a line of a solver, or in a colour `tone`; look: for one of several curves. It breaks at nan and inf."""
         places = self.at(xs, ys).round(1)
-        new = np.append(True, (np.diff(places, axis=0) != 0).any(axis=1))[: len(places)]
-        places = places[new]
+        moved = np.append(True, (np.diff(places, axis=0) != 0).any(axis=1))[: len(places)]
+        places = places[moved]
         sound = np.isfinite(places).all(axis=1)
         begins = sound & ~np.append(False, sound)[:-1]
         pairs = zip(places[sound], begins[sound], strict=True)
@@ -174,47 +176,48 @@ class Chart:
         beyond: bool = False,
         look: Look | None = None,
     ) -> None:
-        """Marks of one solver; says: what each tells under the pointer. beyond: values outside the panel stand at its
-        frame, with an arrowhead. look: of one curve of several.
+        """Draw marks of a solver; says: the words of each under the pointer. look: for one of several curves.
+
+        beyond: whether values outside the panel stand at its frame, with an arrowhead; else they are left out.
         """
         shape, kind = _mark(who, filled, look.mark if look else mark), "dot" if filled else "dot open"
-        told = says or [""] * len(xs)
+        texts = says or [""] * len(xs)
         marks = []
-        for (x, y), words in zip(self.at(xs, ys), told, strict=True):
+        for (x, y), words in zip(self.at(xs, ys), texts, strict=True):
             at = min(max(x, self.left), self.right), min(max(y, self.top), self.bottom)
             outside = math.hypot(x - at[0], y - at[1]) > 1
             if outside and beyond:
                 angle = math.degrees(math.atan2(np.sign(round(y - at[1], 1)), np.sign(round(x - at[0], 1))))
-                arrow = f'<path class="beyond" transform="{_placed(*at, False)}rotate({angle:g})" d="{OUTWARD}"/>'
+                arrow = f'<path class="beyond" transform="{_translation(*at, False)}rotate({angle:g})" d="{OUTWARD}"/>'
                 marks.append(arrow)
             if beyond or not outside:
-                marks.append(f'<path class="{kind}" transform="{_placed(*at, small)}" d="{shape}"{_told(words)}/>')
+                marks.append(
+                    f'<path class="{kind}" transform="{_translation(*at, small)}" d="{shape}"{_pointer_words(words)}/>'
+                )
         self.over.append(f"{_group(who, grey, tone, look)}{''.join(marks)}</g>")
 
     def reach(self, xs: Sequence[float], ys: Sequence[float], lows: Sequence[float], highs: Sequence[float],
               who: str = "", *, along: str = "y", grey: bool = False, tone: str = "", look: Look | None = None
               ) -> None:  # fmt: skip
-        """Intervals from `lows` to `highs` along an axis; look: of one curve of several."""
-        begins, ends = (self.at(xs, one) if along == "y" else self.at(one, ys) for one in (lows, highs))
+        """Draw intervals from `lows` to `highs` along an axis; look: for one of several curves."""
+        begins, ends = (self.at(xs, values) if along == "y" else self.at(values, ys) for values in (lows, highs))
         path = "".join(f"M{a[0]:.1f} {a[1]:.1f}L{b[0]:.1f} {b[1]:.1f}" for a, b in zip(begins, ends, strict=True))
         self.parts.append(f'{_group(who, grey, tone, look)}<path class="reach" d="{path}"/></g>')
 
     def area(self, xs: Sequence[float], ys: Sequence[float], kind: str) -> None:
-        """A filled polygon; kind: its class."""
+        """Draw a filled polygon below all lines; kind: its class."""
         places = " ".join(f"{x:.1f},{y:.1f}" for x, y in self.at(xs, ys))
         self.parts.insert(0, f'<polygon class="{kind}" points="{places}"/>')
 
     def rule(self, value: float, along: str = "x") -> None:
-        """A dashed line across, where x or y has a value; `heading` and `label` name it outside the panel."""
-        if along == "x":
-            x = self.at([value], [self.y.low])[0][0]
-            self.parts.append(f'<path class="rule" d="M{x:.1f} {self.top}V{self.bottom}"/>')
-        else:
-            y = self.at([self.x.low], [value])[0][1]
-            self.parts.append(f'<path class="rule" d="M{self.left} {y:.1f}H{self.right}"/>')
+        """Draw a dashed line across at a value of x or y; `heading` and `label` name it outside the panel."""
+        upright = along == "x"
+        x, y = self.at([value if upright else self.x.low], [self.y.low if upright else value])[0]
+        path = f"M{x:.1f} {self.top}V{self.bottom}" if upright else f"M{self.left} {y:.1f}H{self.right}"
+        self.parts.append(f'<path class="rule" d="{path}"/>')
 
     def heading(self, x: float, words: str, line: int = 0) -> None:
-        """Words above the panel, where x has a value, so many lines up; they take room there (head)."""
+        """Write words above the panel at a value of x, `line` lines up; they need room there (head)."""
         place, height = self.at([x], [self.y.low])[0][0], self.top - 5 - line * (LETTER + 3)
         anchor = "middle" if self.left + 60 < place < self.right - 60 else "start" if place < self.right - 60 else "end"
         self.over.append(
@@ -222,32 +225,32 @@ class Chart:
         )
 
     def beside(self, x: float, y: float, words: str, **how: Any) -> None:
-        """Words beside a point; how: as `named` takes it."""
+        """Write words beside a point; how: keywords of `named`."""
         self.named(self.at([x], [y])[0], words, **how)
 
     def named(self, place: Sequence[float], words: str, who: str = "", *, aside: tuple[float, float] = (6, 4.5),
               anchor: str = "start", kind: str = "soft") -> None:  # fmt: skip
-        """Words beside a place, in a solver's colour; aside: where they begin, end or have their middle (`anchor`)."""
+        """Write words beside a place, in a solver's colour; aside: offset of their begin, end or middle (`anchor`)."""
         x, y = place[0] + aside[0], place[1] + aside[1]
         text = f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}" class="{kind}">{escape(words)}</text>'
         self.over.append(f"{_group(who, False)}{text}</g>" if who else text)
 
     def bar(self, low: float, high: float, place: float, who: str, kind: str, says: str = "") -> None:
-        """A bar along x at a place on y, of a class."""
+        """Draw a bar along x at a place on y; kind: its class."""
         (x0, y), (x1, _) = self.at([low, high], [place, place])
-        shape = f'<rect class="{kind}" x="{x0:.1f}" y="{y - 5.5:.1f}" width="{x1 - x0:.1f}" height="11"{_told(says)}/>'
-        self.over.append(f"{_group(who, False)}{shape}</g>")
+        box = f'x="{x0:.1f}" y="{y - 5.5:.1f}" width="{x1 - x0:.1f}" height="11"'
+        self.over.append(f'{_group(who, False)}<rect class="{kind}" {box}{_pointer_words(says)}/></g>')
 
     def label(self, y: float, text: str, who: str = "", tone: str = "", look: Look | None = None) -> None:
-        """Name of a line, in the right margin at the height where it ends."""
+        """Write the name of a line in the right margin, at the height where the line ends."""
         self.ends.append((float(self.at([self.x.low], [y])[0][1]), text, _group(who, False, tone, look)))
 
     def cell(self, x: float, y: float, kind: str, sign: str, says: str) -> None:
-        """A square of a matrix about (x, y), values one apart, of a class, with a sign in it."""
+        """Draw a cell of a matrix about (x, y), cells one apart, with a sign in it; kind: its class."""
         (x0, y0), (x1, y1) = self.at([x - 0.46, x + 0.46], [y - 0.44, y + 0.44])
         self.parts.append(
             f'<rect class="{kind}" x="{min(x0, x1):.1f}" y="{min(y0, y1):.1f}" width="{abs(x1 - x0):.1f}" '
-            f'height="{abs(y1 - y0):.1f}"{_told(says)}/>'
+            f'height="{abs(y1 - y0):.1f}"{_pointer_words(says)}/>'
         )
         self.over.append(
             f'<text class="sign {kind}" x="{(x0 + x1) / 2:.1f}" y="{(y0 + y1) / 2 + 4.5:.1f}" '
@@ -255,9 +258,9 @@ class Chart:
         )
 
     def cells(self, xs: np.ndarray, ys: np.ndarray, chosen: np.ndarray, kind: str, who: str) -> None:
-        """The chosen cells, shape (xs, ys), about even xs and ys, of a class: a rectangle for each run along y.
+        """Draw the chosen cells of a map, a rectangle for each run along y. kind: their class.
 
-        who: what they are, by which they can be hidden.
+        xs, ys: centres, evenly spaced. chosen: bool, shape (xs, ys). who: the name by which a reader hides them.
         """
         half = np.array([xs[1] - xs[0], ys[1] - ys[0]]) / 2
         turns = np.diff(np.pad(chosen.astype(int), ((0, 0), (1, 1))))
@@ -272,7 +275,8 @@ class Chart:
         self.parts.append(f'<g class="who" data-who="{escape(who)}" shape-rendering="crispEdges">{rectangles}</g>')
 
     def svg(self) -> str:
-        read = {"x": _read(self.x, self.left, self.right), "y": _read(self.y, self.bottom, self.top)}
+        """Return the panel as an SVG element."""
+        read = {"x": _scale_of(self.x, self.left, self.right), "y": _scale_of(self.y, self.bottom, self.top)}
         across, up = self.x.marks(), self.y.marks()
         xs = self.at([value for value, _ in across], [self.y.low] * len(across))[:, 0].round(1).tolist()
         ys = self.at([self.x.low] * len(up), [value for value, _ in up])[:, 1].round(1).tolist()
@@ -287,14 +291,12 @@ class Chart:
         )
 
     def _labels(self):
-        """(height, name, beginning of its group) of names of lines, pushed apart."""
+        """Return (height, name, opening of its group) of the names of lines, pushed apart."""
         placed, last = [], -math.inf
         for y, text, opening in sorted(self.ends):
             last = max(y, last + LETTER + 2)
             placed.append((last, text, opening))
-        lowest: float = (
-            self.bottom
-        )  # those that this pushes below the panel are pushed back, no farther than they must be
+        lowest: float = self.bottom  # names that are then below the panel are pushed back, as little as needed
         for place, (y, text, opening) in reversed(list(enumerate(placed))):
             placed[place] = min(y, lowest), text, opening
             lowest = placed[place][0] - LETTER - 2
@@ -302,21 +304,19 @@ class Chart:
 
 
 def slanting(words: Sequence[str], width: float) -> bool:
-    """Whether words below an axis of this width must slant."""
+    """Return whether words below an axis of this width must slant."""
     return LETTER * 0.55 * sum(len(word) + 1 for word in words) > width
 
 
 def room(words: Iterable[str], least: float = 0) -> int:
-    """Width that the longest of some words beside an axis takes, or a least one."""
+    """Return the width that the longest of these words takes beside an axis; at least `least`."""
     return round(max(12 + LETTER * 0.55 * max(map(len, words), default=0), least))
 
 
 def colour(who: str) -> str:
-    """Colour of a solver, as a style has it; the model's is the page's ink."""
-    engine = engine_of(who)
-    if engine in ENGINES:
-        return _inked(ENGINES[engine].colour)
-    return "var(--ink)" if engine == REFERENCE else "var(--soft)"
+    """Return the colour of a solver as CSS; the model's is the page's ink."""
+    others = "var(--ink)" if engine_of(who) == REFERENCE else "var(--soft)"
+    return _inked(ENGINES[engine_of(who)].colour) if engine_of(who) in ENGINES else others
 
 
 def _inked(tone):
@@ -324,15 +324,15 @@ def _inked(tone):
 
 
 def engine_of(who: str) -> str:
-    """The engine of a name as "exudyn, native-contact"."""
+    """Return the engine of a name like "exudyn, native-contact"."""
     return who.partition(", ")[0]
 
 
 def key_of(who: str, *, filled: bool = True, small: bool = False, joined: bool = True, look: Look | None = None) -> str:
-    """A small picture of a solver's line and marker, for a legend."""
+    """Return a small picture of a solver's line and marker, for a legend."""
     kind = "dot" if filled else "dot open"
     shape = _mark(who, filled, look and look.mark)
-    mark = f'<path class="{kind}" transform="{_placed(16, 7, small)}" d="{shape}"/>'
+    mark = f'<path class="{kind}" transform="{_translation(16, 7, small)}" d="{shape}"/>'
     line = '<path class="line" d="M1 7H31"/>' if joined else ""
     return (
         f'<svg class="chart mini" viewBox="0 0 32 14" aria-hidden="true">{_group(who, False, look=look)}'
@@ -343,7 +343,7 @@ def key_of(who: str, *, filled: bool = True, small: bool = False, joined: bool =
 def figure(
     charts: Sequence[Chart], caption: str, solvers: Iterable[str] = (), keys: Mapping[str, str] | None = None
 ) -> Figure:
-    """The `Figure` of one or more panels; solvers: those in its legend; keys: their pictures, if not as `key_of`."""
+    """Return the `Figure` of one or more panels. solvers: in its legend. keys: their pictures, if not of `key_of`."""
     return Figure(
         "".join(chart.svg() for chart in charts).encode(),
         " ".join(chart.says for chart in charts),
@@ -354,40 +354,40 @@ def figure(
 
 
 def broad(wide: Chart, narrow: Sequence[Chart], caption: str) -> Figure:
-    """The `Figure` of a chart that takes the whole width of a page, and of those that stand for it on a phone."""
+    """Return the `Figure` of a chart that takes the width of a page, and of the charts that replace it on a phone."""
     small = "".join(chart.svg() for chart in narrow)
     svg = f'<div class="wide">{wide.svg()}</div><div class="narrow">{small}</div>'
     return Figure(svg.encode(), wide.says, caption, broad=True)
 
 
 def alone(svg: str) -> str:
-    """The element of a chart as a file of its own, light or dark as its reader wants."""
+    """Return a chart's element as a file of its own, light or dark by the reader's choice."""
     named = svg.replace("<svg ", '<svg xmlns="http://www.w3.org/2000/svg" ', 1)
     opening, rest = named[: named.index(">") + 1], named[named.index(">") + 1 :]
     return f"{opening}<style>{STYLE.read_text(encoding='utf-8')}</style>{rest}\n"
 
 
-def _read(axis, begin, end):
-    """What a script needs to turn a place into a value."""
+def _scale_of(axis, begin, end):
+    """Return what the page's script needs to turn a place into a value."""
     return {"label": axis.label, "low": axis.low, "high": axis.high, "log": axis.scale == "log", "at": [begin, end]}
 
 
-def _told(words):
+def _pointer_words(words):
     return f' data-says="{escape(words)}"' if words else ""
 
 
 def _mark(who, filled, mark=None):
-    """The shape of a solver's mark; a cross has no inside to leave open and is a disc then."""
+    """Return the shape of a solver's mark; an open cross becomes a disc, as a cross has no inside."""
     shape = mark or marker(engine_of(who))
     return SHAPES["o" if shape == "x" and not filled else shape] if shape in SHAPES else SHAPES["o"]
 
 
-def _placed(x, y, small):
+def _translation(x, y, small):
     return f"translate({x:.1f} {y:.1f})" + ("scale(.55)" if small else "")
 
 
 def _group(who, grey, tone="", look=None):
-    """The beginning of a group in a solver's colour and dashes, or in another colour, or look."""
+    """Return the opening tag of a group in a solver's colour and dashes, or in another colour, or look."""
     if not who:
         return f'<g class="who" style="--c:{tone}">' if tone else '<g class="who">'
     drawn, dashes = (look.tone, look.dashes) if look else (colour(who), _dashes(engine_of(who)))

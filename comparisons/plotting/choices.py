@@ -1,4 +1,4 @@
-"""A `Choice` in words and as a picture."""
+"""The result of `rocking choose`, a `Choice`, in words and as a picture."""
 
 import textwrap
 
@@ -23,12 +23,12 @@ ZERO = 1e-12  # an error of 0 is drawn here
 
 
 def print_choice(choice: Choice, every_level: bool = False) -> None:
-    """Print a choice: the answer and how it is used, a line per variant (or all its levels), what else was found."""
-    echo(*(f"Warning: {readable(one.text)}" for one in choice.warnings), readable(answer(choice)))
+    """Print a choice: the answer, its command, a row for each variant (or for all its levels), and remarks."""
+    echo(*(f"Warning: {readable(warning.text)}" for warning in choice.warnings), readable(answer(choice)))
     if choice.command:
         echo(f"\n  {choice.command}\n", textwrap.indent(choice.snippet or "", "  ").rstrip())
     if choice.variants:
-        echo(_table(choice, every_level))
+        echo(_choice_table(choice, every_level))
     lines = [*_remarks(choice), *map(_about_part, choice.parts)]
     lines += [f"Left out: {factor} of the scene, on which the model {why}." for factor, why in choice.left_out.items()]
     lines += [f"Not tried: {words}." for words in missing_words(choice.missing)]
@@ -37,27 +37,28 @@ def print_choice(choice: Choice, every_level: bool = False) -> None:
 
 
 def answer(choice: Choice) -> str:
-    """The answer in a sentence: engine, variant, level, error and cost."""
-    one = choice.chosen
-    if one is None:
+    """Return the answer in one sentence: engine, variant, level, error and cost."""
+    chosen = choice.chosen
+    if chosen is None:
         reached = f"{choice.best.error:.1e} by {named(choice.best)}" if choice.best else "none"
         spare = f" with a factor of {choice.safety_factor:g} to spare" if choice.safety_factor > 1 else ""
         return f"No level passes {choice.error:g} for {choice.criterion}{spare}. The least error: {reached}."
     if not choice.variants:
         return (
-            f"The analytic model: the block never lifts on {_scenes(choice)}, and without contact there is no error of "
-            f"an engine to choose by; {choice.cpu_seconds:.2g} s of CPU time for the whole scene. Engines all the "
-            "same: --for."
+            f"The analytic model: the block never lifts on {_scenes(choice)}. Without contact there is no error to "
+            f"choose an engine by. The model takes {choice.cpu_seconds:.2g} s of CPU time for the whole scene. To "
+            "choose an engine nevertheless: --for."
         )
     return (
-        f"{named(one)}: error {_digits(one.error)} of {choice.criterion}, asked for {choice.error:g}; "
-        f"{one.cpu_per_second:.2g} s of CPU time per simulated second, {choice.cpu_seconds:.2g} s for the whole scene "
-        f"(the analytic model: {choice.analytic_cpu_seconds:.2g} s)."
+        f"{named(chosen)}: error {_digits(chosen.error)} of {choice.criterion}, asked for {choice.error:g}; "
+        f"{chosen.cpu_per_second:.2g} s of CPU time per simulated second, {choice.cpu_seconds:.2g} s for the whole "
+        f"scene (the analytic model: {choice.analytic_cpu_seconds:.2g} s)."
     )
 
 
-def named(one: Level) -> str:
-    return f"{one.engine}, {one.variant}, {one.parameter} = {one.value:g}{' (the default)' if one.default else ''}"
+def named(level: Level) -> str:
+    """Engine, variant and level in words."""
+    return f"{level.engine}, {level.variant}, {level.parameter} = {level.value:g}" + " (the default)" * level.default
 
 
 def _digits(error):
@@ -70,26 +71,29 @@ def _scenes(choice):
 
 
 def _remarks(choice):
-    """Sentences on the level chosen: where it was tested, its order, and who applies the impact."""
+    """Return sentences on the chosen level: where it was tested, its order, and who applies the impact."""
     if choice.chosen is None or not choice.variants:
         return []
-    one = choice.chosen
-    own = next(each for each in choice.variants if (each.engine, each.variant) == (one.engine, one.variant))
+    chosen = choice.chosen
+    chosen_variant = next(
+        variant for variant in choice.variants if (variant.engine, variant.variant) == (chosen.engine, chosen.variant)
+    )
     spare = f" with a factor of {choice.safety_factor:g} to spare" if choice.safety_factor > 1 else ""
     lines = [f"The level chosen and all finer ones pass on {_scenes(choice)}{spare}."]
     if any(level.untried for variant in choice.variants for level in variant.levels):
         lines.append(
-            "Not tried: it passes the scene, and was not run on the others, as it costs more than the one chosen."
+            "Not tried: the level passes the scene itself. It was not run on the others, as it costs more than the "
+            "chosen one."
         )
-    if own.order is not None:
-        lines.append(f"Its error goes as the {one.parameter} to the power of {own.order:.2g}.")
-    if own.applies_impact and choice.criterion == "restitution":
-        levels = [each.cheapest() for each in choice.variants if not each.applies_impact]
-        passing = [each for each in levels if each.passes]
-        least = min(passing, key=lambda each: each.cpu_per_second, default=None)
-        other = f"{named(least)}, at {least.cpu_per_second:.2g} s/s." if least else "none."
+    if chosen_variant.order is not None:
+        lines.append(f"Its error goes as the {chosen.parameter} to the power of {chosen_variant.order:.2g}.")
+    if chosen_variant.applies_impact and choice.criterion == "restitution":
+        levels = [variant.cheapest() for variant in choice.variants if not variant.applies_impact]
+        passing = [level for level in levels if level.passes]
+        least = min(passing, key=lambda level: level.cpu_per_second, default=None)
+        cheapest = f"{named(least)}, at {least.cpu_per_second:.2g} s/s." if least else "none."
         lines.append(
-            "Its adapter applies eqs (7) and (8) itself. The cheapest that passes and computes the impact: " + other
+            "Its adapter applies eqs (7) and (8) itself. The cheapest that passes and computes the impact: " + cheapest
         )
     return lines
 
@@ -101,17 +105,23 @@ def _about_part(part):
     return f"{part.part.capitalize()} {need}: {part.why}{cost}."
 
 
-def _table(choice, every_level):
-    levels = [one for each in choice.variants for one in (each.levels if every_level else [each.cheapest()])]
+def _choice_table(choice, every_level):
+    levels = [
+        level for variant in choice.variants for level in (variant.levels if every_level else [variant.cheapest()])
+    ]
     rows = [
         [
-            f"{one.engine}, {one.variant}",
-            f"{one.parameter} = {one.value:.3g}",
-            "-" if one.error is None else _digits(one.error),
-            digits(one.cpu_per_second, ".2g"),
-            Text("CHOSEN", "bold") if one == choice.chosen else "not tried" if one.untried else one.why or "passes",
+            f"{level.engine}, {level.variant}",
+            f"{level.parameter} = {level.value:.3g}",
+            "-" if level.error is None else _digits(level.error),
+            digits(level.cpu_per_second, ".2g"),
+            Text("CHOSEN", "bold")
+            if level == choice.chosen
+            else "not tried"
+            if level.untried
+            else level.why or "passes",
         ]
-        for one in levels
+        for level in levels
     ]
     title = Text(f"{readable(choice.scene, TITLE_CHARACTERS)}: {choice.criterion}")
     heads = ["engine, variant", "level", "error", "CPU\n[s/s]", "verdict"]
@@ -119,11 +129,18 @@ def _table(choice, every_level):
 
 
 def draw_choice(choice: Choice) -> Figure:
-    """Error over CPU time along each variant's levels; filled where one passes, a ring around the one chosen."""
+    """Draw error over CPU time along each variant's levels: a matplotlib Figure.
+
+    Marks of levels that pass are filled; a ring is around the chosen one.
+    """
     figure = Figure(figsize=(8, 5), layout="constrained")
     axis = figure.subplots()
     for variant in choice.variants:
-        points = [(_place(one), one.passes) for one in variant.levels if one.error is not None and one.cpu_per_second]
+        points = [
+            (_point(level), level.passes)
+            for level in variant.levels
+            if level.error is not None and level.cpu_per_second
+        ]
         look = style(variant.engine)
         axis.plot(
             [place[0] for place, _ in points],
@@ -137,7 +154,7 @@ def draw_choice(choice: Choice) -> Figure:
             filled = look["color"] if passes else "white"
             axis.plot(*place, marker=marker(variant.engine), color=look["color"], markerfacecolor=filled)
     if choice.chosen is not None:
-        chosen = _place(choice.chosen)
+        chosen = _point(choice.chosen)
         axis.plot(*chosen, "o", markersize=16, markerfacecolor="none", markeredgecolor="black", label="chosen")
     axis.axhline(choice.error, color="0.4", linestyle=":", label="asked for")
     axis.set(
@@ -151,6 +168,6 @@ def draw_choice(choice: Choice) -> Figure:
     return figure
 
 
-def _place(one: Level) -> tuple[float, float]:
-    """(CPU seconds per second, error), both above 0."""
-    return one.cpu_per_second or ZERO, max(one.error or 0.0, ZERO)
+def _point(level: Level) -> tuple[float, float]:
+    """Return (CPU seconds per second, error), both above 0 for logarithmic axes."""
+    return level.cpu_per_second or ZERO, max(level.error or 0.0, ZERO)

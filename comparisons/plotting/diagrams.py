@@ -1,13 +1,13 @@
-"""Free-body diagrams of the derivation, drawn to their angles: inline SVG in the page's colours.
+"""Drawings and formulas of pages: free-body diagrams, modes of a sliding block, TeX as MathML.
 
-The modes of a block that may slide, as a drawing: what each looks like, and what ends it.
-
-The small part of TeX that the pages use, as MathML: browsers draw that without a script.
+Drawings are inline SVG in the page's colours, drawn to their angles. Formulas are in the small part of TeX that the
+pages use; browsers draw MathML without a script.
 """
 
 import math
 import re
 from collections.abc import Iterator
+from functools import partial
 from html import escape
 from pathlib import Path
 
@@ -16,7 +16,7 @@ from markupsafe import Markup
 from analytic.kernel.layout import FLIGHT, MODES, ROCK, SLIDE, SLIDE_ROCK, STICK
 
 STYLE = Path(__file__).with_suffix(".css")  # rules of the drawings, in the colours of the page that shows them
-GAMMA, PHI, R = 0.36, 0.17, 118.0  # rad, rad, pixels: stockier than a statue, to be read
+GAMMA, PHI, R = 0.36, 0.17, 118.0  # rad, rad, pixels: stockier than a statue, so that angles can be read
 B, H = R * math.sin(GAMMA), R * math.cos(GAMMA)
 ARROW = 46.0  # length of a force
 SLAB = 62.0  # top of the base over the floor
@@ -24,7 +24,7 @@ Place = tuple[float, float]
 
 
 class Drawing:
-    """An SVG of a given size, and its parts; y counts upward from the floor."""
+    """Builder of an SVG of a given size; its methods return parts. y counts upward from the floor."""
 
     def __init__(self, width: float, height: float, floor: float, says: str) -> None:
         self.width, self.height, self.floor, self.says = width, height, floor, says
@@ -40,13 +40,18 @@ class Drawing:
         (x0, y0), (x1, y1) = self.at(*start), self.at(*end)
         return f'<line class="{kind}" x1="{x0}" y1="{y0}" x2="{x1}" y2="{y1}"/>'
 
-    def arrow(self, start: Place, by: Place, label: str, aside: Place) -> str:
+    def shaft(self, start: Place, by: Place, size: float, kind: str, tip: str) -> str:
+        """Return an arrow from `start` by a vector; size: length of its tip; kind, tip: classes of line and tip."""
         (x, y), length = (start[0] + by[0], start[1] + by[1]), math.hypot(*by)
         u, v = by[0] / length, by[1] / length
-        a, b = x - 9 * u, y - 9 * v
-        tip = [(x, y), (a - 4.5 * v, b + 4.5 * u), (a + 4.5 * v, b - 4.5 * u)]
-        words = self.text((x + aside[0], y + aside[1]), label, "f")
-        return self.line(start, (a, b), "force") + self.polygon(tip, "tip") + words
+        (a, b), half = (x - size * u, y - size * v), size / 2
+        corners = [(x, y), (a - half * v, b + half * u), (a + half * v, b - half * u)]
+        return self.line(start, (a, b), kind) + self.polygon(corners, tip)
+
+    def arrow(self, start: Place, by: Place, label: str, aside: Place) -> str:
+        """Return the arrow of a force or motion, with a label at `aside` from its tip."""
+        place = start[0] + by[0] + aside[0], start[1] + by[1] + aside[1]
+        return self.shaft(start, by, 9, "force", "tip") + self.text(place, label, "f")
 
     def text(self, place: Place, words: str, kind: str = "") -> str:
         x, y = self.at(*place)
@@ -60,23 +65,23 @@ class Drawing:
         return f'<text class="{kind}" x="{x}" y="{y}">{escape(base)}{sub}</text>'
 
     def arc(self, middle: Place, radius: float, begin: float, end: float) -> str:
-        """From the angle `begin` to `end`, both from the vertical, clockwise [rad]."""
+        """Return an arc from the angle `begin` to `end`, both from the vertical, clockwise [rad]."""
         ends = [(middle[0] + radius * math.sin(a), middle[1] + radius * math.cos(a)) for a in (begin, end)]
         (x0, y0), (x1, y1) = self.at(*ends[0]), self.at(*ends[1])
         return f'<path class="line" d="M{x0} {y0}A{radius} {radius} 0 0 {int(end > begin)} {x1} {y1}"/>'
 
     def block(self, pivot: Place, tilt: float, half: float, height: float, side: int = 1) -> str:
-        """A block turned clockwise by `tilt` [rad] about its right corner (side 1) or its left one (-1)."""
+        """Return a block turned clockwise by `tilt` [rad] about its right corner (side 1) or its left one (-1)."""
         corners = [(x - side * half, y) for x, y in ((-half, 0), (half, 0), (half, height), (-half, height))]
         return self.polygon([_turned(pivot, corner, tilt) for corner in corners], "stone")
 
     def centred(self, corner: Place, tilt: float) -> str:
-        """The block with its centre, turned clockwise by `tilt` about its right corner."""
+        """Return the block with its centre, turned clockwise by `tilt` [rad] about its right corner."""
         x, y = self.at(*_centre(corner, tilt))
         return f'{self.block(corner, tilt, B, 2 * H)}<circle cx="{x}" cy="{y}" r="3.5" fill="var(--ink)"/>'
 
     def base(self, ends: Place, shift: float) -> Iterator[str]:
-        """A slab between `ends` on two bearings, sheared by `shift` per layer."""
+        """Yield a slab between `ends` on two bearings, sheared by `shift` per layer."""
         for left in (ends[0] + 8 - 4 * shift, ends[1] - 50 - 4 * shift):
             for layer in range(4):
                 x, y = left + shift * layer, 9.0 * layer
@@ -92,28 +97,19 @@ class Drawing:
 
 
 def _turned(pivot: Place, by: Place, tilt: float) -> Place:
-    """The place `by` from a pivot, turned clockwise about it."""
+    """Return the place at `by` from a pivot after a clockwise turn about it."""
     c, s = math.cos(tilt), math.sin(tilt)
     return pivot[0] + by[0] * c + by[1] * s, pivot[1] - by[0] * s + by[1] * c
 
 
 def _centre(corner: Place, tilt: float) -> Place:
-    """The block's centre: half-way between its left foot and its right shoulder."""
+    """Return the block's centre, half-way between its left foot and its right shoulder."""
     left, above = _turned(corner, (-2 * B, 0), tilt), _turned(corner, (0, 2 * H), tilt)
     return (left[0] + above[0]) / 2, (left[1] + above[1]) / 2
 
 
-def labelled() -> Markup:
-    """The block upright with its sizes, and tilted: what each symbol stands for."""
-    return _labelled(False)
-
-
-def labelled_on_bearings() -> Markup:
-    """The same on a base with its bearings."""
-    return _labelled(True)
-
-
-def _labelled(on_bearings: bool) -> Markup:
+def labelled(on_bearings: bool = False) -> Markup:
+    """Draw the block upright with its sizes, and tilted: the meaning of each symbol."""
     where = "on a base with bearings, displaced by x" if on_bearings else "on the ground"
     drawing = Drawing(
         520,
@@ -157,8 +153,11 @@ def _labelled(on_bearings: bool) -> Markup:
     )
 
 
+labelled_on_bearings = partial(labelled, on_bearings=True)
+
+
 def rocking() -> Markup:
-    """The block about its right corner, with all that acts on it."""
+    """Draw the block tilted about its right corner, with all forces on it."""
     drawing = Drawing(
         400, 330, 285, "A block tilted about its right corner: weight, inertia force and the corner’s forces"
     )
@@ -181,7 +180,7 @@ def rocking() -> Markup:
 
 
 def impact() -> Markup:
-    """The impact: the old corner lifts, the impulse acts at the new one."""
+    """Draw the impact: the old corner lifts, the impulse acts at the new one."""
     drawing = Drawing(400, 330, 275, "The block upright at the impact: the impulse acts at the new corner on the left")
     corner, new = (200 + B, 0.0), (200 - B, 0.0)
     old, left, centre = corner[0], new[0], _centre(corner, 0.0)
@@ -203,7 +202,7 @@ def impact() -> Markup:
 
 
 def isolated() -> Markup:
-    """The block on its base: what passes between them, and the bearings' force."""
+    """Draw the block on its base, with the forces between them and of the bearings."""
     drawing = Drawing(400, 370, 330, "The block on a base that moves by x; the bearings push back")
     corner = (232.0, SLAB)
     centre = _centre(corner, PHI)
@@ -222,7 +221,7 @@ def isolated() -> Markup:
 
 SIZE = 400, 448
 HALF, HIGH = 11.0, 42.0  # half width and height of a block
-WIDE, TALL = 96.0, 78.0  # of the room of a mode
+WIDE, TALL = 96.0, 78.0  # width and height of the room of a mode
 LEFT, RIGHT = 92.0, 308.0  # middles of the two columns
 FULL, CORNER, OFF = 340.0, 190.0, 12.0  # feet of the rows
 SLANT = 0.3  # rad
@@ -245,7 +244,7 @@ LOOKS = {
     FALLEN: (math.pi / 2, 0.0, False),
 }
 UPPER, LOWER = 30.0, 12.0  # over the feet of a row: arrows to the right, and back
-# (begin, direction, words and their places from the begin): each ends a mode, or all within a frame.
+# (begin of an arrow, its vector, words and their places from the begin). A change ends a mode, or all in a frame.
 CHANGES: tuple[tuple[Place, Place, tuple[tuple[str, Place], ...]], ...] = tuple(
     change
     for foot in (FULL, CORNER)
@@ -267,14 +266,14 @@ SAYS = (
     "stops; both until an impact, or N = 0 (then flight, until a corner lands), or |φ| = π/2 (then fallen)."
 )
 CAPTION = (
-    "Modes of a block with the friction μ, and what ends each. A block at rest slides or rocks by which of |H| = μ N "
-    "and |H| = N tan γ comes first. Where the ground’s acceleration jumps, where slip stops and after an impact, the "
-    "mode follows whose accelerations are admissible. Without a friction: stick and rock alone."
+    "Modes of a block with the friction μ, and what ends each. A block at rest slides if |H| = μ N comes first, and "
+    "rocks if |H| = N tan γ does. Where the ground’s acceleration jumps, where slip stops and after an impact, the "
+    "mode with admissible accelerations follows. Without a friction there are stick and rock alone."
 )
 
 
 def modes() -> Markup:
-    """The drawing."""
+    """Draw the modes of a block that may slide, and what ends each."""
     drawing = Drawing(*SIZE, SIZE[1] - 14, SAYS)
     frames = "".join(_frame(drawing, *frame) for frame in FRAMES)
     shown = "".join(_mode(drawing, mode) for mode in PLACES)
@@ -291,25 +290,18 @@ def _frame(drawing, words, foot):
 def _mode(drawing, mode):
     (x, foot), (tilt, height, slides) = PLACES[mode], LOOKS[mode]
     pivot = x + (HALF if tilt >= 0 else -HALF) - (HIGH / 2 if mode == FALLEN else 0)
+    slip = drawing.shaft((x - 34, foot + 18), (17.0, 0.0), 8, "slip", "slip full") if slides else ""
     parts = [
         drawing.line((x - 36, foot + 8), (x + 36, foot + 8)),
         drawing.block((pivot, foot + 8 + height), tilt, HALF, HIGH, 1 if tilt >= 0 else -1),
         _words(drawing, (x, foot + TALL - 12), mode, "name"),
     ]
-    return "".join([*parts, _arrow(drawing, (x - 34, foot + 18), (17.0, 0.0), "slip")] if slides else parts)
+    return "".join(parts) + slip
 
 
 def _change(drawing, begin, by, words):
-    told = (_words(drawing, (begin[0] + x, begin[1] + y), text) for text, (x, y) in words)
-    return _arrow(drawing, begin, by) + "".join(told)
-
-
-def _arrow(drawing, begin, by, kind="line"):
-    (x, y), length = (begin[0] + by[0], begin[1] + by[1]), math.hypot(*by)
-    u, v = by[0] / length, by[1] / length
-    a, b = x - 8 * u, y - 8 * v
-    tip = [(x, y), (a - 4 * v, b + 4 * u), (a + 4 * v, b - 4 * u)]
-    return drawing.line(begin, (a, b), kind) + drawing.polygon(tip, f"{kind} full")
+    labels = (_words(drawing, (begin[0] + x, begin[1] + y), text) for text, (x, y) in words)
+    return drawing.shaft(begin, by, 8, "line", "line full") + "".join(labels)
 
 
 def _words(drawing, place, words, kind=""):
@@ -327,8 +319,8 @@ OPERATORS = {
 FUNCTIONS = {"sin", "cos", "tan", "ln", "log", "exp", "sgn", "max", "min"}
 SPACES = {",": "0.17em", ";": "0.28em", "quad": "1em", "qquad": "2em", "!": "-0.1em"}
 THIN = "<mspace width='0.17em'/>"
-# {command: (number of its arguments, MathML)}. Accents are full stops: fonts without mathematics draw them clear of the
-# letter.
+# {command: (number of its arguments, MathML)}. Accents are full stops, which fonts without mathematics draw clear of
+# the letter.
 COMMANDS = {
     **{name: (0, f"<mi>{letter}</mi>") for name, letter in SYMBOLS.items()},
     **{name: (0, f"<mo>{escape(sign)}</mo>") for name, sign in OPERATORS.items()},
@@ -348,12 +340,12 @@ TOKEN = re.compile(r"\\text\{[^}]*\}|\\[A-Za-z]+|\\.|\d+(?:\.\d+)?|\s+|.", re.DO
 
 
 def mathml(tex: str, display: bool = False) -> str:
-    """``<math>`` of a formula.
+    """Return the ``<math>`` element of a formula.
 
     Raises
     ------
     ValueError
-        A command that is not known here, or braces that do not match.
+        The formula has an unknown command, or its braces do not match.
     """
     tokens = [token for token in TOKEN.findall(tex) if not token.isspace()]
     try:
@@ -367,7 +359,7 @@ def mathml(tex: str, display: bool = False) -> str:
 
 
 def _row(tokens: list[str], closing: str | None = None) -> str:
-    """MathML of the tokens up to `closing`, which are taken off the list."""
+    """Return MathML of the tokens up to `closing`, and remove them from the list."""
     parts: list[str] = []
     function = False
     while tokens and tokens[0] != closing:
@@ -375,7 +367,7 @@ def _row(tokens: list[str], closing: str | None = None) -> str:
             base, scripts = parts.pop(), {}
             while tokens and tokens[0] in "^_":
                 kind = tokens.pop(0)
-                scripts[kind] = _one(tokens)
+                scripts[kind] = _argument(tokens)
             name = "".join(NAMES[kind] for kind in "_^" if kind in scripts)
             parts.append(f"<m{name}>{base}{scripts.get('_', '')}{scripts.get('^', '')}</m{name}>")
             continue
@@ -384,14 +376,14 @@ def _row(tokens: list[str], closing: str | None = None) -> str:
         function = tokens[0][1:] in FUNCTIONS
         if function and parts and not parts[-1].startswith("<mo"):
             parts.append(THIN)
-        parts.append(_one(tokens))
+        parts.append(_argument(tokens))
     if closing and not tokens:
         raise ValueError("a brace is not closed")
     return "".join(parts)
 
 
-def _one(tokens: list[str]) -> str:
-    """MathML of the first token and its arguments, which are taken off the list."""
+def _argument(tokens: list[str]) -> str:
+    """Return MathML of the first token and its arguments, and remove them from the list."""
     token = tokens.pop(0)
     if token == "{":
         body = _row(tokens, "}")
@@ -403,7 +395,7 @@ def _one(tokens: list[str]) -> str:
         if token[1:] not in COMMANDS:
             raise ValueError(f"{token} is not among the commands that the pages use")
         count, form = COMMANDS[token[1:]]
-        return form.format(*(_one(tokens) for _ in range(count)))
+        return form.format(*(_argument(tokens) for _ in range(count)))
     if token == "}":
         raise ValueError("a brace too many")
     return _letter(token)
@@ -420,7 +412,7 @@ def _letter(token):
 
 
 def prose(text: str) -> str:
-    """HTML of a paragraph with ``$formulas$``, `code` and *emphasis*."""
+    """Return the HTML of a paragraph with ``$formulas$``, `code` and *emphasis*."""
     parts = text.split("$")
     parts[1::2] = map(mathml, parts[1::2])
     for i in range(0, len(parts), 2):

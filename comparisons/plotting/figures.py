@@ -1,4 +1,4 @@
-"""From a study's rows to figures: lines and marks by engine and variant, values one below the other, and maps.
+"""Figures of a study's rows: lines by engine and variant, ranks, maps; and of overturning boundaries.
 
 lines(rows, Column("slenderness γ [rad]", "slenderness"), Column("error, rms [-]", "rms"), "Error of ...",
       panel="ground", log="y", rules=[("y", 1e-3, "trusted")])
@@ -6,16 +6,16 @@ shades(rows, Column("base over block mass [-]", "ratio"), Column("slenderness γ
        Column("error, rms [-]", "rms", digits=1), "Error of ...", bounds=(1e-4, 1e-3, 1e-2), panel=NAME.of)
 ranks(rows, NAME, Column("share [-]", "share", within="interval"), "Share of ...", Axis("share [-]", 0, 1))
 
-Overturning boundaries of engines beside those of the analytic model: each at its shift, how far off, and how rated.
-
-Of a result with rows "edge" and "shift", or "drawn edge" and "drawn shift"; its settings list variants, main variants
-(`default_variants`) and how closely boundaries are known (`tolerance`).
+The second half shows how far engines shift the overturning boundaries of the analytic model, and rates them. It takes
+a result with rows of the parts "edge" and "shift", or "drawn edge" and "drawn shift". Settings of such a result list
+variants, main variants (`default_variants`) and how closely boundaries are known (`tolerance`).
 """
 
 import math
 import statistics
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -27,19 +27,65 @@ from engines import ENGINES
 
 from ..execution.provenance import Result
 from ..schemas.columns import NAME, Column, Key, Row, number, percent, short, value_of
-from .charts import REFERENCE, WIDTH, Axis, Chart, curve, figure, key_of, log_axis, room, slanting
+from .charts import REFERENCE, WIDTH, Axis, Chart, curve, engine_of, figure, key_of, log_axis, room, slanting
 from .parts import Figure, Judgement, Mark, Table, grouped, table, where
 from .wording import listed
 
-# Of the first, second, ... series of one engine; all have the engine's colour, dashes and shape of marks.
+# Marks of the first, second, ... series of one engine; all have the engine's colour, dashes and shape of marks.
 LOOKS: tuple[dict[str, Any], ...] = (
     {"filled": True, "small": False},
     {"filled": False, "small": False},
     {"filled": True, "small": True},
     {"filled": False, "small": True},
 )
-LONGEST = 14  # characters of a name beside a line; longer ones stand in the legend alone
+LONGEST = 14  # characters of a name beside a line; longer names stand in the legend alone
 Rule = tuple[str, float, str]
+
+
+@dataclass(frozen=True)
+class Series:
+    """The series of each engine in `lines`: their names and their looks.
+
+    Parameters
+    ----------
+    by : key
+        Name of a row's series; it is part of the legend's "engine, name".
+    grey : function
+        Rows whose series are drawn behind in grey. They are not in the legend; the pointer tells their names.
+    opened : function
+        Rows whose series have open marks; all others are filled. None: looks follow the order of the series.
+    like : sequence of dict
+        Rows whose series get their looks first. Figures with the same `like` draw a series alike.
+    joined : bool
+        Whether a line joins the marks.
+    says : function
+        Words of a row's mark under the pointer. None: series, y and x.
+    """
+
+    by: Key = "variant"
+    grey: Callable[[Row], bool] = lambda row: False
+    opened: Callable[[Row], bool] | None = None
+    like: Sequence[Row] = ()
+    joined: bool = True
+    says: Callable[[Row], str] | None = None
+
+    def name(self, row: Row) -> str:
+        """Return the series of a row: its engine, and its name if it has one."""
+        return ", ".join(filter(None, (row["engine"], str(value_of(row, self.by)))))
+
+    def looks(self, rows: Iterable[Row]) -> dict[str, dict[str, Any]]:
+        """Return {series: keywords of `Chart.dots`}, from all rows, even those with nothing to draw.
+
+        If a single solver has more series than usual looks, each series gets a colour; the model has one usual look.
+        """
+        ranked = grouped([*self.like, *(row for row in rows if not self.grey(row))], "engine", self.name)
+        engines = grouped(ranked, lambda pair: pair[0])
+        usual = 1 if (REFERENCE,) in engines else len(LOOKS)
+        if len(engines) == 1 and len(ranked) > usual:
+            return {who: {"look": curve(rank)} for rank, (_, who) in enumerate(ranked)}
+        if self.opened:
+            return {who: LOOKS[self.opened(members[0])] for (_, who), members in ranked.items()}
+        return {who: LOOKS[rank % len(LOOKS)] for pairs in engines.values() for rank, (_, who) in enumerate(pairs)}
 
 
 def lines(
@@ -49,18 +95,13 @@ def lines(
     caption: str,
     *,
     panel: Key = lambda row: "",
-    by: Key = "variant",
-    grey: Callable[[Row], bool] = lambda row: False,
+    series: Series = Series(),  # noqa: B008  # frozen
     log: str = "",
     rules: Sequence[Rule] = (),
-    says: Callable[[Row], str] | None = None,
-    joined: bool = True,
-    like: Iterable[Row] = (),
-    opened: Callable[[Row], bool] | None = None,
 ) -> Figure | None:
-    """Panels of lines and marks, one series for each engine and what tells its series apart; None: nothing to draw.
+    """Return panels of lines and marks, with a series for each engine and name; None: nothing to draw.
 
-    Where the model alone has several, each has a colour, dashes and marks of its own, and its name beside it.
+    Where the model alone has several series, each has a colour, dashes and marks of its own, and its name beside it.
 
     Parameters
     ----------
@@ -71,93 +112,97 @@ def lines(
         Their heads label the axes, which all panels share.
     panel : key
         Title of a row's panel.
-    by : key
-        What tells the series of an engine apart: a name, part of the legend's "engine, name".
-    grey : function
-        Rows whose series stand behind in grey, out of the legend, named under the pointer alone.
+    series : Series
+        What tells series apart, and how they are drawn.
     log : str
         The logarithmic axes: "", "x", "y" or "xy".
     rules : sequence of (axis, value, words)
         Values to compare with: ("y", 1e-3, "trusted"). Words stand outside the plot, where no line crosses them.
-    says : function
-        What a row's mark tells under the pointer; without it series, y and x.
-    joined : bool
-        Whether a line joins the marks.
-    like : iterable of dict
-        Rows whose series get their looks first: figures of the same `like` draw a series alike.
-    opened : function
-        Rows whose series have open marks, all others filled ones, in place of looks in the order of the series.
     """
     rows = list(rows)
-    kept = [row for row in rows if _drawn(x.of(row), "x" in log) and _drawn(y.of(row), "y" in log)]
-    if not kept:
+    shown = [row for row in rows if _has_place(x.of(row), "x" in log) and _has_place(y.of(row), "y" in log)]
+    if not shown:
         return None
-
-    def name(row):
-        return ", ".join(filter(None, (row["engine"], str(value_of(row, by)))))
-
-    def axis(which, column):
-        values = [column.of(row) for row in kept] + [value for along, value, _ in rules if along == which]
-        return log_axis(column.head, values) if which in log else _linear_axis(column.head, values)
-
-    coloured = list(grouped((row for row in kept if not grey(row)), "engine", name))
-    # of all rows: a series looks the same where another of its engine's has nothing to draw
-    ranked = grouped([*like, *(row for row in rows if not grey(row))], "engine", name)
-    engines = grouped(ranked, lambda pair: pair[0]).values()
-    looks = {who: LOOKS[rank % len(LOOKS)] for pairs in engines for rank, (_, who) in enumerate(pairs)}
-    if opened:
-        looks = {who: LOOKS[opened(members[0])] for (_, who), members in ranked.items()}
-    looks |= _of_one([who for _, who in ranked], {engine for engine, _ in ranked})
-    panels = grouped(kept, panel)
-    names = {who: who.removeprefix(f"{engine}, ") if "look" in looks[who] else engine for engine, who in coloured}
-    ends = joined and len(set(names.values())) == len(coloured) and max(map(len, names.values()), default=0) <= LONGEST
-    charts = []
-    for (title,), members in panels.items():
-        series = grouped(members, lambda row: not grey(row), "engine", name)
-        chart = Chart(
-            axis("x", x),
-            axis("y", y),
-            f"{title + ': ' if title else ''}{y.head} over {x.head}; {', '.join(who for *_, who in series)}.",
-            title=str(title),
-            height=300 + 20 * (not title),
-            right=max(92, 19 + room(names.values()) * ends) if ends or any(along == "y" for along, *_ in rules) else 14,
-            head=16 * len(rules) * any(along == "x" for along, *_ in rules),
-        )
-        for line, (along, value, words) in enumerate(rules):
-            chart.rule(value, along)
-            if along == "y":
-                chart.label(value, words, tone="var(--soft)")
-            else:
-                chart.heading(value, words, line)
-        for (shown, engine, who), points in sorted(series.items(), key=lambda item: item[0][0]):
-            places = [x.of(row) for row in points], [y.of(row) for row in points]
-            told = [says(row) if says else f"{who}: {y.text(row)} at {x.text(row)}" for row in points]
-            look = looks[who] if shown else LOOKS[1]
-            if joined:
-                chart.line(*places, who, grey=not shown, look=look.get("look"))
-            if engine != REFERENCE or "look" in look:
-                chart.dots(*places, who, grey=not shown, says=told, **look)
-            if ends and shown:
-                chart.label(places[1][-1], names[who], who, look=look.get("look"))
+    axes = _axis("x", x, shown, rules, log), _axis("y", y, shown, rules, log)
+    looks, charts = series.looks(rows), []
+    coloured = [who for _, who in grouped((row for row in shown if not series.grey(row)), "engine", series.name)]
+    labels = _line_labels(coloured, looks) if series.joined else {}
+    for (title,), members in grouped(shown, panel).items():
+        groups = grouped(members, lambda row: not series.grey(row), series.name)
+        says = f"{title + ': ' if title else ''}{y.head} over {x.head}; {', '.join(who for _, who in groups)}."
+        chart = _panel(axes, str(title), says, labels, rules)
+        for (in_colour, who), points in sorted(groups.items(), key=lambda item: item[0][0]):  # grey ones behind
+            _draw_series(chart, series, who, points, x, y, looks[who] if in_colour else None)
+            if in_colour and who in labels:
+                chart.label(y.of(points[-1]), labels[who], who, look=looks[who].get("look"))
         charts.append(chart)
-    keys = {who: key_of(who, joined=joined, **looks[who]) for _, who in coloured}
+    keys = {who: key_of(who, joined=series.joined, **looks[who]) for who in coloured}
     return figure(charts, caption, keys, keys)
 
 
+def _axis(name: str, column: Column, rows: Iterable[Row], rules: Iterable[Rule], log: str) -> Axis:
+    """Return the axis "x" or "y" about the values of a column and of the rules, in whole decades or ticks."""
+    values = [column.of(row) for row in rows] + [value for along, value, _ in rules if along == name]
+    if name in log:
+        return log_axis(column.head, values)
+    ticks = MaxNLocator(nbins=5, steps=[1, 2, 2.5, 5, 10]).tick_values(min(values), max(values))
+    return Axis(column.head, float(ticks[0]), float(ticks[-1]))
+
+
+def _line_labels(coloured: Sequence[str], looks: Mapping[str, Mapping[str, Any]]) -> dict[str, str]:
+    """Return {series: short name at the end of its line}; empty if these names are too long or not unique."""
+    labels = {who: who.partition(", ")[2] or who if "look" in looks[who] else engine_of(who) for who in coloured}
+    fit = len(set(labels.values())) == len(labels) and all(len(label) <= LONGEST for label in labels.values())
+    return labels if fit else {}
+
+
+def _panel(axes: tuple[Axis, Axis], title: str, says: str, labels: Mapping[str, str], rules: Sequence[Rule]) -> Chart:
+    """Return a panel with its rules, and with room for their words and for the names of lines."""
+    named = labels or any(along == "y" for along, *_ in rules)
+    chart = Chart(
+        *axes,
+        says,
+        title=title,
+        height=300 + 20 * (not title),
+        right=max(92, 19 + room(labels.values())) if named else 14,
+        head=16 * len(rules) * any(along == "x" for along, *_ in rules),
+    )
+    for line, (along, value, words) in enumerate(rules):
+        chart.rule(value, along)
+        if along == "y":
+            chart.label(value, words, tone="var(--soft)")
+        else:
+            chart.heading(value, words, line)
+    return chart
+
+
+def _draw_series(
+    chart: Chart, series: Series, who: str, points: Sequence[Row], x: Column, y: Column, look: dict[str, Any] | None
+) -> None:
+    """Draw line and marks of one series; look: of `Series.looks`, None for a grey one. The model has no marks."""
+    grey, look = look is None, look or LOOKS[1]
+    places = [x.of(row) for row in points], [y.of(row) for row in points]
+    if series.joined:
+        chart.line(*places, who, grey=grey, look=look.get("look"))
+    if engine_of(who) != REFERENCE or "look" in look:
+        says = series.says or (lambda row: f"{who}: {y.text(row)} at {x.text(row)}")
+        chart.dots(*places, who, grey=grey, says=list(map(says, points)), **look)
+
+
 def subject(row: Row) -> bool:
-    """Whether a row is of an engine in question; the others are shown for comparison."""
+    """Return whether the row belongs to a subject engine; other engines are shown for comparison."""
     return row["engine"] in ENGINES and ENGINES[row["engine"]].subject
 
 
 def mains(variants: Iterable[Row]) -> dict[str, str]:
-    """{engine: its main variant}: the first that settings list, as engines need not be installed to be shown."""
-    return {one["engine"]: one["variant"] for one in reversed([*variants])}
+    """Return {engine: main variant} from a result's settings, which list it first; engines need not be installed."""
+    return {variant["engine"]: variant["variant"] for variant in reversed([*variants])}
 
 
 def leading(rows: Sequence[Row], variants: Iterable[Row]) -> list[Row]:
-    """Of rows of variants those of the tuned main variants of the engines in question; all of them if there are none.
+    """Return the rows of the subject engines' main variants if these are tuned; all rows if there is none such.
 
-    variants: those that settings list, as of `mains`.
+    variants: as listed in a result's settings, see `mains`.
     """
     main = mains(variants)
     return [
@@ -166,41 +211,27 @@ def leading(rows: Sequence[Row], variants: Iterable[Row]) -> list[Row]:
 
 
 def kind(row: Row) -> str:
-    """Engine and kind of a row's variant: "exudyn, tuned"."""
+    """Return engine and kind of a row's variant: "exudyn, tuned"."""
     return f"{row['engine']}, {row['tier']}"
 
 
 def as_it_comes(row: Row) -> bool:
-    """Whether a row is of a variant as the engine comes: open marks."""
+    """Return whether a row is of the kind "defaults", which has open marks."""
     return row.get("tier") == "defaults"
 
 
-def _of_one(series, engines):
-    """{series: its look} where all are of one solver, and more than its own looks tell apart: the model has one."""
-    most = 1 if engines == {REFERENCE} else len(LOOKS)
-    if len(engines) > 1 or len(series) <= most:
-        return {}
-    return {who: {"look": curve(rank)} for rank, who in enumerate(series)}
-
-
 def beside(*figures: Figure | None) -> Figure | None:
-    """Figures as one, panel beside panel, one caption after the other, equal ones once; None: none is there."""
-    found = [one for one in figures if one is not None]
-    if not found:
+    """Join figures: panel beside panel, captions one after the other, equal ones once; None: there is no figure."""
+    drawn = [picture for picture in figures if picture is not None]
+    if not drawn:
         return None
-    keys = {who: key for one in found for who, key in one.keys.items()}
-    svg, alt = b"".join(one.svg for one in found), " ".join(one.alt for one in found)
-    return Figure(svg, alt, " ".join(dict.fromkeys(one.caption for one in found)), tuple(keys), keys)
+    keys = {who: key for picture in drawn for who, key in picture.keys.items()}
+    svg, alt = b"".join(picture.svg for picture in drawn), " ".join(picture.alt for picture in drawn)
+    return Figure(svg, alt, " ".join(dict.fromkeys(picture.caption for picture in drawn)), tuple(keys), keys)
 
 
-def _drawn(value: Any, log: bool) -> bool:
+def _has_place(value: Any, log: bool) -> bool:
     return value is not None and math.isfinite(value) and (value > 0 or not log)
-
-
-def _linear_axis(label, values):
-    """An axis from tick to tick about the values."""
-    ticks = MaxNLocator(nbins=5, steps=[1, 2, 2.5, 5, 10]).tick_values(min(values), max(values))
-    return Axis(label, float(ticks[0]), float(ticks[-1]))
 
 
 def ranks(
@@ -214,18 +245,18 @@ def ranks(
     rules: Sequence[tuple[float, str]] = (),
     opened: Callable[[Row], bool] = lambda row: False,
 ) -> Figure | None:
-    """Panels of values one below the other, each with its interval; None: nothing to draw.
+    """Return panels of values one below the other, each with its interval; None: nothing to draw.
 
     Parameters
     ----------
     rows : iterable of dict
-        From above, each with its ``engine`` ("analytic": in ink). Rows whose value is None are left out.
+        From top to bottom, each with its ``engine`` ("analytic": in ink). Rows whose value is None are left out.
     name : Column
-        What stands beside a row.
+        The words beside a row.
     value : Column
-        With ``within`` for the interval.
+        The value; its ``within`` is the interval.
     axis : Axis
-        Of the values; what lies beyond stands at its end, with an arrowhead.
+        Axis of the values. A value beyond it stands at its end, with an arrowhead.
     panel : key
         Title of a row's panel.
     rules : sequence of (value, words)
@@ -254,8 +285,8 @@ def ranks(
             who = "" if row["engine"] == REFERENCE else row["engine"]
             middle, *ends = np.clip([value.of(row), *value.ends(row)], axis.low, axis.high)
             chart.reach([middle], [place], ends[:1] or [middle], ends[1:] or [middle], who, along="x")
-            told = [f"{name.text(row)}: {value.text(row)}"]
-            chart.dots([value.of(row)], [place], who, filled=not opened(row), says=told, beyond=True)
+            words_of = [f"{name.text(row)}: {value.text(row)}"]
+            chart.dots([value.of(row)], [place], who, filled=not opened(row), says=words_of, beyond=True)
         charts.append(chart)
     return figure(charts, caption, engines) if charts else None
 
@@ -271,22 +302,22 @@ def shades(
     panel: Key = lambda row: "",
     failed: Callable[[Row], str] = lambda row: "",
 ) -> Figure | None:
-    """Maps of a quantity: a cell for each row, shaded by the bounds that its value passes; None: no rows.
+    """Return maps of a quantity: a cell for each row, shaded by the bounds that its value passes; None: no rows.
 
     Parameters
     ----------
     rows : iterable of dict
-        One for each panel and cell; coordinates stand in the order in which they come first, y upward.
+        One row for each panel and cell. Coordinates stand in the order of their first rows, y upward.
     x, y : Column
-        Coordinates, as their texts.
+        Coordinates; cells are placed by their texts.
     value : Column
-        The shaded quantity, its number in the cell; a dash where it is None.
+        The shaded quantity. Its number stands in the cell; a dash where it is None.
     bounds : sequence of float
-        At most five, ascending: the scale, drawn as the last panel.
+        Bounds of the shades, ascending, at most five. The last panel is their scale.
     panel : key
         Title of a row's panel.
     failed : function
-        What failed in a row, in a word or two that take the number's place beside a cross; "": nothing.
+        What failed in a row, in a word or two; they replace the number, beside a cross. "": nothing failed.
     """
     rows = list(rows)
     if not rows:
@@ -296,8 +327,8 @@ def shades(
     foot = 46 + round(0.5 * room(across) * slanting(across, WIDTH - left))
     for (title,), members in grouped(rows, panel).items():
         chart = Chart(
-            _places(x.head, across),
-            _places(y.head, up),
+            _category_axis(x.head, across),
+            _category_axis(y.head, up),
             f"{title + ': ' if title else ''}{value.head} over {x.head} and {y.head}.",
             title=str(title),
             height=32 + 25 * len(up) + foot,
@@ -305,13 +336,15 @@ def shades(
             foot=foot,
         )
         for row in members:
-            lost, found, size = failed(row), value.text(row), value.of(row)
+            failure, text, size = failed(row), value.text(row), value.of(row)
             kind = "shade" if size is None else f"shade s{bisect_right(bounds, size)}"
-            words = f"{y.text(row)}, {x.text(row)}: {found}" + (f"; failed: {lost}" if lost else "")
-            sign = f"✗ {lost}" if lost else found
-            chart.cell(across.index(x.text(row)), up.index(y.text(row)), f"{kind} lost" if lost else kind, sign, words)
+            words = f"{y.text(row)}, {x.text(row)}: {text}" + (f"; failed: {failure}" if failure else "")
+            sign = f"✗ {failure}" if failure else text
+            chart.cell(
+                across.index(x.text(row)), up.index(y.text(row)), f"{kind} lost" if failure else kind, sign, words
+            )
         charts.append(chart)
-    return figure([*charts, _scale(value, bounds)], caption)
+    return figure([*charts, _shade_scale(value, bounds)], caption)
 
 
 def regions(
@@ -324,20 +357,20 @@ def regions(
     *,
     right: int = 14,
 ) -> tuple[list[Chart], dict[str, str]]:
-    """Maps of too many cells for numbers in them: panels, to draw more on, and the legend of their `figure`.
+    """Return maps with too many cells for numbers: (panels to draw more on, {name: picture} for a legend).
 
     Parameters
     ----------
     x, y : str
         Labels of the axes.
     xs, ys : array
-        Centres of the cells, even.
+        Centres of the cells, evenly spaced.
     panels : dict
-        {title: shape (xs, ys), each cell's place among the kinds}.
+        {title: array of shape (xs, ys), the place of each cell's kind among `kinds`}.
     kinds : dict
-        {name: class of its cells, as "s3" or "right"; "" leaves them empty}.
+        {name: class of its cells, like "s3" or "right"; "" leaves them empty}.
     right : int
-        Room there for names of lines.
+        Right margin, for names of lines.
     """
     ends = [(float(at[0] - (at[1] - at[0]) / 2), float(at[-1] + (at[1] - at[0]) / 2)) for at in (xs, ys)]
     charts = []
@@ -354,12 +387,12 @@ def regions(
     return charts, {name: key.format(kind or "shade") for name, kind in kinds.items()}
 
 
-def _places(label, words):
+def _category_axis(label, words):
     return Axis(label, -0.5, len(words) - 0.5, ticks=tuple(enumerate(words)))
 
 
-def _scale(value, bounds):
-    """The shades with the bounds between them."""
+def _shade_scale(value, bounds):
+    """Draw the shades with the bounds between them."""
     ticks = tuple((k + 0.5, value.words(bound)) for k, bound in enumerate(bounds))
     scale = Chart(
         Axis(value.head, -0.5, len(bounds) + 0.5, ticks=ticks), Axis("", -0.5, 0.5, ticks=()),
@@ -376,7 +409,7 @@ LIMIT, FAIR = 0.005, 0.03  # shifts of a trusted and of a usable engine
 PLACE = ("ground", "shape", "frequency", "amplitude")
 DECADES = (1e-4, 1e-2, 1, 100)  # of a shift, as ticks [%]
 EVIDENCE = 50  # failed runs shown, at most
-LINE, LANE = 28, 0.27  # height of a variant's row, and how far apart the grounds stand in it, over that
+LINE, LANE = 28, 0.27  # height of a variant's row; distance of the grounds in it, as a share of that
 
 GROUND, PULSE = Column("ground", "ground"), Column("pulse", "shape")
 FREQUENCY = Column("pulse frequency over rocking frequency [-]", "frequency", digits=None)
@@ -389,56 +422,59 @@ LARGEST = Column("largest shift [%]", lambda row: row["largest"] and 100 * row["
 
 
 def place(row: Row) -> tuple[Any, ...]:
-    """Which boundary a row is of."""
+    """Return the key of the boundary that a row is about: its values of `PLACE`."""
     return tuple(row[key] for key in PLACE)
 
 
 def pressed(result: Result) -> set[tuple[Any, ...]]:
-    """Places of the boundaries at which the block stays pressed on its base."""
+    """Return the places of the boundaries at which the block stays pressed on its base, N >= 0."""
     return {place(edge) for edge in where(result.rows, part=EDGES) if edge["min_normal"] >= 0}
 
 
 def strip(result: Result, title: str) -> Figure | None:
-    """Each boundary at its shift, a row for each main variant and each of the kind "defaults"; None: there is none."""
-    settings, own = result.settings, result.settings["default_variants"]
+    """Draw each boundary at its shift, in a row for each main variant and each variant of the kind "defaults".
+
+    Return None if no such variant was run.
+    """
+    settings, main = result.settings, result.settings["default_variants"]
     rows = grouped(where(result.rows, part=SHIFTS), NAME.of)
-    every = [one for one in settings["variants"] if (NAME.of(one),) in rows]
-    shown = [one for one in every if as_it_comes(one) or own.get(one["engine"]) == one["variant"]]
+    stored = [variant for variant in settings["variants"] if (NAME.of(variant),) in rows]
+    shown = [variant for variant in stored if as_it_comes(variant) or main.get(variant["engine"]) == variant["variant"]]
+    shown = sorted(shown, key=lambda variant: not subject(variant))
     if not shown:
         return None
-    shown.sort(key=lambda one: not subject(one))
-    left_out = "; ".join(NAME.of(one) for one in every if one not in shown)
+    left_out = "; ".join(NAME.of(variant) for variant in stored if variant not in shown)
     sound, grounds = pressed(result), list(settings.get("grounds", ()))
     lanes = (
-        f"in a row from above: {', '.join(grounds)}; bars, and + at the frame: N\u00a0<\u00a00, which does not count; "
+        f"Marks in a row, from above: {', '.join(grounds)}. Bars, and the number after +: boundaries with "
+        "N\u00a0<\u00a00, which do not count. "
     )
     caption = (
-        f"Shift of each boundary, known to ±\u00a0{percent(settings['tolerance'] / 2, 1)}; {lanes if grounds else ''}"
-        "filled: tuned, open: defaults. Cross at the frame: number not found. Arrowhead: nearer to 0."
-        + f" Not drawn, but in the table: {left_out}."
-        * bool(left_out)
+        f"Shift of each boundary, known to ±\u00a0{percent(settings['tolerance'] / 2, 1)}. {lanes if grounds else ''}"
+        "Filled marks: tuned; open marks: defaults. Cross at the frame: how many were not found. Arrowhead: the shift "
+        "is nearer to 0." + f" Not drawn, but in the table: {left_out}." * bool(left_out)
     )
-    return figure([_strip(shown, rows, sound, grounds, title)], caption)
+    return figure([_strip_chart(shown, rows, sound, grounds, title)], caption)
 
 
-def _strip(shown, rows, sound, grounds, title):
+def _strip_chart(shown, rows, sound, grounds, title):
     names = list(map(kind, shown))
-    known = [SHIFT.of(row) for some in rows.values() for row in some if row["shift"]]
+    known = [SHIFT.of(row) for group in rows.values() for row in group if row["shift"]]
     axis = log_axis(SHIFT.head, [*known, 100 * LIMIT])
-    told, lost = [], []
-    for one in shown:
-        mine = rows[NAME.of(one),]
-        found = [row for row in mine if row["shift"] is not None]
-        largest = percent(max((abs(row["shift"]) for row in found), default=None))
-        told.append(f"{NAME.of(one)} {len(found)} of {len(mine)} found, largest {largest}")
-        missing = [place(row) in sound for row in mine if row["shift"] is None]
-        lost.append((missing.count(True), missing.count(False)))
+    summaries, not_found = [], []
+    for variant in shown:
+        members = rows[NAME.of(variant),]
+        located = [row for row in members if row["shift"] is not None]
+        largest = percent(max((abs(row["shift"]) for row in located), default=None))
+        summaries.append(f"{NAME.of(variant)} {len(located)} of {len(members)} found, largest {largest}")
+        held_down = [place(row) in sound for row in members if row["shift"] is None]
+        not_found.append((held_down.count(True), held_down.count(False)))
     chart = Chart(
         Axis(axis.label, axis.low, axis.high, "log", tuple((tick, short(tick)) for tick in DECADES)),
         Axis(
             "", len(shown) - 0.5, -0.5, ticks=tuple((k, f"{name}\u2002") for k, name in enumerate(names))
         ),  # room for an arrowhead
-        f"{SHIFT.head}: {'; '.join(told)}.",
+        f"{SHIFT.head}: {'; '.join(summaries)}.",
         title=title,
         height=92 + LINE * len(shown),
         left=room(names),
@@ -448,53 +484,57 @@ def _strip(shown, rows, sound, grounds, title):
     chart.rule(100 * LIMIT)
     chart.heading(100 * LIMIT, "trusted")
     chart.beside(axis.high, -0.5, "not found", aside=(54, -5), anchor="end")
-    for line, (one, name) in enumerate(zip(shown, names, strict=True)):
-        _row(chart, line, name, rows[NAME.of(one),], sound, grounds, not as_it_comes(one))
-        if any(lost[line]):
-            chart.dots([axis.high], [line], name, mark="x", says=[f"{name}: {sum(lost[line])} not found"])
-            words = f"{lost[line][0]}" + f" + {lost[line][1]}" * bool(lost[line][1])
+    for line, (variant, name) in enumerate(zip(shown, names, strict=True)):
+        _draw_boundaries(chart, line, name, rows[NAME.of(variant),], sound, grounds, not as_it_comes(variant))
+        if any(not_found[line]):
+            chart.dots([axis.high], [line], name, mark="x", says=[f"{name}: {sum(not_found[line])} not found"])
+            words = f"{not_found[line][0]}" + f" + {not_found[line][1]}" * bool(not_found[line][1])
             chart.beside(axis.high, line, words, who=name, aside=(8, 4.5))
     return chart
 
 
-def _row(chart, line, name, members, sound, grounds, filled):
-    """The boundaries of a variant that were found; those at which the model holds the corner down as bars."""
-    found = [row for row in members if row["shift"] is not None]
-    for whole in (False, True):
-        some = [row for row in found if (place(row) in sound) == whole]
-        lanes = [grounds.index(row["ground"]) if row["ground"] in grounds else len(grounds) for row in some]
-        told = [
+def _draw_boundaries(chart, line, name, members, sound, grounds, filled):
+    """Draw the boundaries of a variant that were found; as bars those at which the model holds the corner down."""
+    located = [row for row in members if row["shift"] is not None]
+    for held_down in (False, True):
+        group = [row for row in located if (place(row) in sound) == held_down]
+        lanes = [grounds.index(row["ground"]) if row["ground"] in grounds else len(grounds) for row in group]
+        texts = [
             f"{NAME.of(row)}: {percent(row['shift'])} on {row['ground']}, {row['shape']}, frequency "
             f"{number(row['frequency'])}, amplitude {number(row['amplitude'])}"
-            for row in some
+            for row in group
         ]
         chart.dots(
-            [SHIFT.of(row) for row in some],
+            [SHIFT.of(row) for row in group],
             [line + LANE * (lane - len(grounds) / 2) for lane in lanes],
             name,
             filled=filled,
-            small=whole,
-            says=told,
-            mark=None if whole else "|",
+            small=held_down,
+            says=texts,
+            mark=None if held_down else "|",
             beyond=True,
         )
 
 
 def rated(result: Result) -> Iterator[dict[str, Any]]:
-    """A summary and a rating of each variant that is run at its default, where the block stays pressed on its base;
-    beyond: the boundaries where it does not."""
+    """Yield a summary and a rating of each variant at its default level, over boundaries with N >= 0.
+
+    wrong, of outcomes: outcomes outside the band of the boundaries. beyond: counts of boundaries with N < 0.
+    """
     sound = pressed(result)
-    for (name,), every in grouped(where(result.rows, part=SHIFTS), NAME.of).items():
-        members, others = ([row for row in every if (place(row) in sound) == inside] for inside in (True, False))
-        beyond = summary(others) if others else {"of": 0, "found": 0, "largest": None}
+    for (name,), members_and_others in grouped(where(result.rows, part=SHIFTS), NAME.of).items():
+        members, beyond_others = (
+            [row for row in members_and_others if (place(row) in sound) == inside] for inside in (True, False)
+        )
+        beyond = summary(beyond_others) if beyond_others else {"of": 0, "found": 0, "largest": None}
         counts = [row for row in where(result.rows, part="confusion", region="outside") if NAME.of(row) == name]
-        found, wrong = summary(members), sum(row["only_a"] + row["only_b"] for row in counts)
-        complete = found["found"] == found["of"]
-        good = complete and found["largest"] <= LIMIT and not wrong
-        rating = "good" if good else "fair" if complete and found["largest"] <= FAIR else "bad"
+        counted, wrong = summary(members), sum(row["only_a"] + row["only_b"] for row in counts)
+        complete = counted["found"] == counted["of"]
+        good = complete and counted["largest"] <= LIMIT and not wrong
+        rating = "good" if good else "fair" if complete and counted["largest"] <= FAIR else "bad"
         outcomes = wrong + sum(row["both_stand"] + row["both_overturn"] for row in counts)
         yield {
-            **found,
+            **counted,
             "rating": rating,
             "wrong": wrong,
             "outcomes": outcomes,
@@ -505,70 +545,72 @@ def rated(result: Result) -> Iterator[dict[str, Any]]:
 
 
 def summary(rows: Sequence[Row]) -> dict[str, Any]:
-    """How many of these boundaries of a variant were found, and how far off they lie."""
-    found = [row for row in rows if row["shift"] is not None]
-    shifts = [abs(row["shift"]) for row in found]
+    """Return how many of these boundaries of a variant were found, and their shifts."""
+    located = [row for row in rows if row["shift"] is not None]
+    shifts = [abs(row["shift"]) for row in located]
     return {
         "engine": rows[0]["engine"],
         "variant": rows[0]["variant"],
         "of": len(rows),
-        "found": len(found),
-        "gaps": f"{sum(not row['rises'] for row in found)} of {sum(not row['rises'] for row in rows)}",
+        "found": len(located),
+        "gaps": f"{sum(not row['rises'] for row in located)} of {sum(not row['rises'] for row in rows)}",
         "median": statistics.median(shifts) if shifts else None,
         "largest": max(shifts, default=None),
     }
 
 
 def judged(result: Result, what: str) -> Judgement:
-    """The row of the table of trust, which other studies have, too. what: the boundaries are of."""
+    """Return the study's row of the table of trust. what: the motions of the boundaries, in the plural."""
     marks = {}
     for row in rated(result):
-        every = row["of"] + row["beyond"]
-        words = f"{percent(row['largest'])} ({row['found']} of {every} {what})"
+        counts = f"{row['found']} of {row['of'] + row['beyond']} {what}"
+        words = f"none found ({what})" if row["largest"] is None else f"{percent(row['largest'])} ({counts})"
         note = f"{what}: median {percent(row['median'])}; {row['of'] - row['found']} not found"
         if row["beyond"]:
             note += f"; {row['beyond']} with N < 0 do not count, found {row['beyond_found']}"
             note += f", {percent(row['beyond_largest'])}" if row["beyond_found"] else ""
-        if row["largest"] is None:
-            words = f"none found ({what})"
         marks[row["engine"], row["variant"]] = Mark(words, row["rating"], note, row["largest"])
     return Judgement("overturning boundary under pulses: shift, worst", marks)
 
 
 def largest(result: Result) -> str:
-    """The largest shift, and what was not found: over the engines' main variants that are tuned; over all main variants
-    if none is tuned."""
-    own = result.settings["default_variants"]
-    tuned = {NAME.of(one) for one in result.settings["variants"] if one["tier"] == "tuned"}
-    best = [row for row in rated(result) if own[row["engine"]] == row["variant"]]
+    """Return a clause: the largest shift, and how many boundaries were not found.
+
+    It is over the engines' main variants that are tuned; over all main variants if none is tuned.
+    """
+    main = result.settings["default_variants"]
+    tuned = {NAME.of(variant) for variant in result.settings["variants"] if variant["tier"] == "tuned"}
+    best = [row for row in rated(result) if main[row["engine"]] == row["variant"]]
     chosen = [row for row in best if NAME.of(row) in tuned]
     how, chosen = ("tuned engines", chosen) if chosen else ("engines not tuned", best)
     most = max((row["largest"] for row in chosen if row["largest"] is not None), default=None)
-    lost = [f"{row['found']} of {row['of']} found ({row['engine']})" for row in chosen if row["found"] < row["of"]]
+    missed = [f"{row['found']} of {row['of']} found ({row['engine']})" for row in chosen if row["found"] < row["of"]]
     words = f"{how} shift the overturning boundary by {percent(most)} at most"
-    return "; ".join(filter(None, [words, listed(lost)]))
+    return "; ".join(filter(None, [words, listed(missed)]))
 
 
 def under_jumps(result: Result) -> Iterator[str]:
-    """A sentence on the tuned engines whose largest shift is under a pulse that begins with a jump; none without."""
-    own = result.settings["default_variants"]
+    """Yield a sentence on the engines whose largest shift is under a pulse that begins with a jump, if any."""
+    main = result.settings["default_variants"]
     rows = where(result.rows, part=SHIFTS)
-    sound, found = pressed(result), []
-    for engine in own:
-        mine = [row for row in where(rows, engine=engine, variant=own[engine]) if row["shift"] and place(row) in sound]
-        worst = max(mine, key=lambda row: abs(row["shift"]), default=None)
+    sound, clauses = pressed(result), []
+    for engine in main:
+        members = [
+            row for row in where(rows, engine=engine, variant=main[engine]) if row["shift"] and place(row) in sound
+        ]
+        worst = max(members, key=lambda row: abs(row["shift"]), default=None)
         if worst and PulseMotion(worst["shape"], 1.0, 1.0, start=1.0).jumps:
-            found.append(f"{percent(worst['shift'])} under a {worst['shape']} pulse ({engine})")
-    if found:
-        yield f"The shift is largest where the acceleration of the ground jumps at the start: {listed(found)}."
+            clauses.append(f"{percent(worst['shift'])} under a {worst['shape']} pulse ({engine})")
+    if clauses:
+        yield f"The shift is largest where the acceleration of the ground jumps at the start: {listed(clauses)}."
 
 
 def listing(caption: str, edges: Iterable[Row], shifts: Sequence[Row], *columns: Column) -> Table:
-    """A table of boundaries, with more columns, and the shifts of each setting in a column of its own."""
-    found = {(NAME.of(row), *place(row)): row["shift"] for row in shifts}
+    """Return a table of boundaries, with more columns, and a column of shifts for each variant."""
+    shift_of = {(NAME.of(row), *place(row)): row["shift"] for row in shifts}
 
     def shift(name, edge):
-        value = found.get((name, *place(edge)))
+        value = shift_of.get((name, *place(edge)))
         return "not found" if value is None else number(100 * value, 2)
 
     return table(
@@ -587,7 +629,7 @@ def listing(caption: str, edges: Iterable[Row], shifts: Sequence[Row], *columns:
 
 
 def missing(result: Result) -> Table:
-    """Those that were not found, and why."""
+    """Return a table of the boundaries that were not found, and why."""
     return table(
         "Boundaries not found, within 30 % or half-way to the next one",
         where(result.rows, part=SHIFTS, shift=None),
@@ -602,7 +644,7 @@ def missing(result: Result) -> Table:
 
 
 def failures(result: Result) -> tuple[tuple[str, str], ...]:
-    """Evidence of runs without an outcome, of `EVIDENCE` at most."""
+    """Return (run, reason and message) of runs without an outcome, at most `EVIDENCE` of them."""
     return tuple(
         (
             f"{NAME.text(row)}, {row['ground']}, {row['shape']}, frequency {row['frequency']:g}, amplitude "

@@ -1,5 +1,4 @@
-"""The margins of a scene, what it does under many motions, the bearings it needs: as tables for the terminal and as
-pictures."""
+"""Margins of a scene, its outcomes under many motions, and bearings for it: tables and pictures."""
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -24,7 +23,7 @@ from .plots import TITLE_CHARACTERS
 from .terminal import Grid, digits, echo, grid, warned
 from .wording import listed
 
-# Okabe and Ito; hatches, and the lines’ places, tell them apart in print.
+# Colours of Okabe and Ito. Hatches, and the lines’ places, tell them apart in print.
 COLOURS = {
     "stands": ("#009E73", ""),
     "slides": ("#E69F00", "--"),
@@ -45,7 +44,10 @@ def print_margins(
     tilt: float,
     warnings: Sequence[Caution] = (),
 ) -> None:
-    """Print a row for each `Margin` with a change, in order, and the reserves of the contact; `warnings` first."""
+    """Print `warnings`, a row for each `Margin` with a change, in order, and the reserves of the contact.
+
+    span : largest change tried [%]. tilt : limit of the peak tilt, over slenderness.
+    """
     nearest = margins[0]
     names = {state: name for state, name in _names(tilt).items() if state in limit_states(scene)}
     now = ", ".join(name for state, name in names.items() if nearest.reached(state))
@@ -57,17 +59,23 @@ def print_margins(
     rows = {margin: changes for margin, changes in rows.items() if any([*changes, margin.leaves_model])}
     if rows:
         parts += [
-            _table([f"no longer\n{name}" if nearest.reached(state) else name for state, name in names.items()], rows),
-            "Each quantity alone, to the nearest change at which a limit state is reached, or no longer is, as its "
-            "column says. Slenderness at fixed R, mass and J_O; size at fixed mass and shape."
-            + (" Left at: from there on the model does not hold." if _leaves(rows) else ""),
+            _margin_table(
+                [f"no longer\n{name}" if nearest.reached(state) else name for state, name in names.items()], rows
+            ),
+            "Each quantity is changed alone. A column gives the nearest change at which its limit state is reached, or "
+            "no longer reached. Slenderness is changed at fixed R, mass and J_O; size at fixed mass and shape."
+            + (" Left at: the model does not hold beyond this change." if _any_leaves_model(rows) else ""),
         ]
     if still := ", ".join(margin.quantity for margin in margins if margin not in rows):
-        within = " within its range" if any(one.ends_down or one.ends_up for one in margins if one not in rows) else ""
+        within = (
+            " within its range"
+            if any(margin.ends_down or margin.ends_up for margin in margins if margin not in rows)
+            else ""
+        )
         parts.append(
             f"No change of up to {span:g} % of {still}{within} changes any of these: {', '.join(names.values())}."
         )
-    parts += [words for margin in margins for words in _ends(margin)]
+    parts += [words for margin in margins for words in _range_ends(margin)]
     if nearest.nearest is None:
         parts.append(f"No change of up to {span:g} % of any one quantity changes the outcome.")
     else:
@@ -83,36 +91,36 @@ def print_margins(
         )
     parts.append(" ".join(filter(None, [_normal_words(contact), _friction_words(contact)])))
     if scene.bearings is not None:
-        parts.append("Assumed: the bearings are stiff vertically (real ones sway at 10 to 20 Hz).")
+        parts.append("Assumed: the bearings are stiff vertically (real bearings vibrate vertically at 10 to 20 Hz).")
     echo(*parts, wrap=True)
 
 
 def _names(tilt):
-    """{limit state: as it is called here}."""
-    names = {"slides": "slides", "lifts": "lifts", "tilt": f"tilt > {tilt:g} γ"}
-    return {**names, "stroke": "base > x_max", "overturns": "overturns"}
+    """Return {limit state: its name in tables}."""
+    beyond = {"tilt": f"tilt > {tilt:g} γ", "stroke": "base > x_max"}
+    return {"slides": "slides", "lifts": "lifts", **beyond, "overturns": "overturns"}
 
 
-def _ends(margin):
-    """Where the range of a quantity ends before the span, and why."""
+def _range_ends(margin):
+    """Return sentences on where the range of a quantity ends within the span, and why."""
     ends = ((margin.bands[0].low, margin.ends_down), (margin.bands[-1].high, margin.ends_up))
     return [f"The range of {margin.quantity} ends at {100 * at:+.3g} %: {readable(why)}." for at, why in ends if why]
 
 
 def named(row: Mapping[str, Any], tilt: float) -> dict[str, str]:
-    """{limit state as tables call it: its change in words}, of a row's changes and the states that it reaches."""
+    """Return {limit state's name in tables: its change in words} of a row with "changes" and "reached" states."""
     words = {state: _percent(change) for state, change in row.get("changes", {}).items()}
     words |= {state: f"no longer\n{words[state]}" if words[state] else "now" for state in row.get("reached", ())}
     return {_names(tilt)[state]: change for state, change in words.items()}
 
 
-def _leaves(margins):
+def _any_leaves_model(margins):
     return any(margin.leaves_model is not None for margin in margins)
 
 
-def _table(names, rows):
-    """names: of the limit states; rows: {margin: its change of each}."""
-    outside = _leaves(rows)
+def _margin_table(names, rows):
+    """Return the table of margins. names: of limit states. rows: {margin: its change to each}."""
+    outside = _any_leaves_model(rows)
     heads = ["quantity", "value", *names, *(["left at"] if outside else [])]
     cells = [
         [
@@ -126,9 +134,10 @@ def _table(names, rows):
 
 
 def draw_margins(scene: Scene, margins: Sequence[Margin], tilt: float) -> Figure:
-    """Outcomes over the relative change of each quantity, a strip for each `Margin`: a matplotlib Figure.
+    """Draw outcomes over the relative change of each quantity, a strip for each `Margin`: a matplotlib Figure.
 
-    Lines along a strip: where the peak tilt exceeds its limit, the base its own, and where the model does not hold.
+    Lines along a strip show where the peak tilt exceeds its limit, where the base exceeds x_max, and where the model
+    does not hold.
     """
     figure = Figure(figsize=(8, 1.5 + 0.42 * len(margins)), layout="constrained")
     axis = figure.subplots()
@@ -137,11 +146,11 @@ def draw_margins(scene: Scene, margins: Sequence[Margin], tilt: float) -> Figure
             colour, hatch = COLOURS[band.outcome]
             left, width = 100 * band.low, 100 * (band.high - band.low)
             axis.barh(row, width, left=left, height=0.7, color=colour, hatch=hatch, edgecolor="0.25", linewidth=0)
-            for colour, place in _lines(band):
+            for colour, place in _strip_lines(band):
                 axis.barh(row + place, width, left=left, height=0.08, color=colour, align="edge")
         for change in (margin.down, margin.up):
             if change is not None:
-                _label(axis, row, change)
+                _write_change(axis, row, change)
     axis.axvline(0, color="black", linewidth=1)
     axis.set_yticks(range(len(margins)), [f"{margin.quantity}" for margin in margins])
     axis.invert_yaxis()
@@ -156,19 +165,19 @@ def draw_margins(scene: Scene, margins: Sequence[Margin], tilt: float) -> Figure
     ]
     names = _names(tilt)
     labels = {TILT: names["tilt"], STROKE: names["stroke"], OUTSIDE: "outside the model (N ≤ 0)"}
-    drawn = {line for margin in margins for band in margin.bands for line in _lines(band)}
+    drawn = {line for margin in margins for band in margin.bands for line in _strip_lines(band)}
     handles += [Patch(facecolor=line[0], label=label) for line, label in labels.items() if line in drawn]
     figure.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False)
     return figure
 
 
-def _lines(band):
-    """Those of OUTSIDE, TILT and STROKE that a band has."""
-    found = {OUTSIDE: not band.holds, TILT: "tilt" in band.reached, STROKE: "stroke" in band.reached}
-    return [line for line, shown in found.items() if shown]
+def _strip_lines(band):
+    """Return the lines of a band: those of OUTSIDE, TILT and STROKE that apply to it."""
+    applies = {OUTSIDE: not band.holds, TILT: "tilt" in band.reached, STROKE: "stroke" in band.reached}
+    return [line for line, applied in applies.items() if applied]
 
 
-def _label(axis, row, change):
+def _write_change(axis, row, change):
     axis.annotate(
         _percent(change),
         (100 * change, row),
@@ -206,7 +215,7 @@ def _friction_words(contact):
 
 LIFTED = ("rocks", "overturns")
 RECORD = "record"
-# {(kind, quantity) of a warning, or kind alone: (in a table, in the headline)}; what must be known first stands first.
+# {(kind, quantity or None) of a warning: (word in a table, clause in the headline)}, the most important one first.
 DOUBTS = {
     ("limit", "peak_base_displacement"): ("x_max", "the base exceeds x_max"),
     ("limit", "peak_slip"): ("slip", "the block slips by more than its half width"),
@@ -218,75 +227,77 @@ DOUBTS = {
 }
 
 
-def _doubt(warning: Mapping[str, Any]) -> tuple[str, str]:
-    """A warning in a word and in a clause."""
+def _warning_words(warning: Mapping[str, Any]) -> tuple[str, str]:
+    """Return a warning as a word and as a clause."""
     return DOUBTS.get((warning["kind"], warning["quantity"])) or DOUBTS[warning["kind"], None]
 
 
 def headline(rows: Sequence[Mapping[str, Any]], left: Sequence[str] = ()) -> str | None:
-    """The worst that must be known of a scene under many motions, by record: failed runs, what is in doubt, whether the
-    block lifts and overturns. None without motions. Records are called motions where the scene's own is one of them.
+    """Return the result of a scene under many motions in sentences; None without motions.
 
-    rows : as of `running.options.rows_of`. left : what was left out.
+    They count records: with failed runs, with warnings, under which the block lifts, and under which it overturns.
+    Records are called motions where the scene's own motion is one of them.
+
+    rows : of `execution.solving.rows_of`. left : files and channels that were left out.
     """
     if not rows:
         return None
-    failed = _records(rows, lambda row: row["outcome"] == "failed")
-    said = [f"No outcome under {failed}."] if failed else []
-    said += [f"Warning: {clause} under {records}." for clause, records in doubts(rows).items()]
-    said.append(f"The block {odds(rows, LIFTED, 'lifts')}, and {odds(rows, LIFTED[1:], 'overturns')}.")
+    failed = _record_count(rows, [row for row in rows if row["outcome"] == "failed"])
+    sentences = [f"No outcome under {failed}."] if failed else []
+    sentences += [f"Warning: {clause} under {records}." for clause, records in doubts(rows).items()]
+    sentences.append(f"The block {odds(rows, LIFTED, 'lifts')}, and {odds(rows, LIFTED[1:], 'overturns')}.")
     if unit_of(rows) != RECORD and len({row["record"] for row in rows}) < len(rows):
-        said.append("Components, directions and signs count as one motion.")
-    few = "file or channel" if len(left) == 1 else "files or channels"
-    return " ".join([*said, *([f"Left out of the folder: {len(left)} {few}."] if left else [])])
+        sentences.append("Components, directions and signs count as one motion.")
+    noun = "file or channel" if len(left) == 1 else "files or channels"
+    return " ".join([*sentences, *([f"Left out of the folder: {len(left)} {noun}."] if left else [])])
 
 
 def doubts(rows: Sequence[Mapping[str, Any]], kinds: Sequence[str] = KINDS) -> dict[str, str]:
-    """{what warnings of these kinds say, in a clause: under how many records or motions}; rows as in `headline`."""
-    found = {
-        clause: _records(rows, partial(_warns, clause)) for (kind, _), (_, clause) in DOUBTS.items() if kind in kinds
+    """Return {clause of warnings of these kinds: under how many records or motions}; rows as in `headline`."""
+    clauses = dict.fromkeys(clause for (kind, _), (_, clause) in DOUBTS.items() if kind in kinds)
+    warnings = [(row, _warning_words(warning)[1]) for row in rows for warning in row["warnings"]]
+    records_of = {
+        clause: _record_count(rows, [row for row, words in warnings if words == clause]) for clause in clauses
     }
-    return {clause: records for clause, records in found.items() if records}
+    return {clause: records for clause, records in records_of.items() if records}
 
 
-def _warns(clause: str, row: Mapping[str, Any]) -> bool:
-    return any(_doubt(one)[1] == clause for one in row["warnings"])
-
-
-def _records(rows: Sequence[Mapping[str, Any]], holds: Callable[[Mapping[str, Any]], bool]) -> str:
-    """In words, how many records, or motions, have a run of which this holds; "" where none has."""
-    some, every = {row["record"] for row in rows if holds(row)}, {row["record"] for row in rows}
-    return f"{len(some)} of {counted(rows, len(every))}" if some else ""
+def _record_count(rows: Sequence[Mapping[str, Any]], chosen: Sequence[Mapping[str, Any]]) -> str:
+    """Return in words how many records, or motions, have one of the chosen rows; "" for none."""
+    holding, records = ({row["record"] for row in members} for members in (chosen, rows))
+    return f"{len(holding)} of {counted(rows, len(records))}" if holding else ""
 
 
 def unit_of(rows: Iterable[Mapping[str, Any]]) -> str:
-    """What the records of rows are called, in the singular: motion where the scene's own, of none, is among them."""
+    """Return what records are called, in the singular: "motion" if the scene's own motion is among them."""
     return "motion" if any(row["record"] == OWN for row in rows) else RECORD
 
 
 def counted(rows: Iterable[Mapping[str, Any]], number: int) -> str:
-    """So many of what `unit_of` calls them."""
+    """Return a number of records in words, by the name that `unit_of` gives them."""
     return f"{number} {unit_of(rows)}{'s' * (number != 1)}"
 
 
 def print_motions(scene: Scene, rows: Sequence[Mapping[str, Any]], left: Sequence[str] = ()) -> None:
     """Print a row for each motion, the warnings of all, and the `headline`; nothing without motions.
 
-    rows : as of `rows_of`, and for each more column of a `Mapping` called changes a name and what stands there.
+    rows : as in `headline`; those with a mapping "changes" have a further column for each of its names.
     """
     if not rows:
         return
-    more = list(dict.fromkeys(name for row in rows for name in row.get("changes", ())))[::-1]  # overturning first
+    changes = list(dict.fromkeys(name for row in rows for name in row.get("changes", ())))[::-1]  # overturning first
     columns: dict[str, Callable[[Mapping[str, Any]], str]] = {
         "motion": lambda row: readable(row["motion"]),
         "peak\n[g]": lambda row: f"{row['peak'] / scene.gravity:.3g}",
         "outcome": lambda row: row["outcome"],
     }
     if any(row["warnings"] for row in rows):
-        columns["warnings"] = lambda row: ", ".join(dict.fromkeys(_doubt(one)[0] for one in row["warnings"]))
+        columns["warnings"] = lambda row: ", ".join(
+            dict.fromkeys(_warning_words(warning)[0] for warning in row["warnings"])
+        )
     columns |= {
         "tilt\n[-]": lambda row: digits(row["tilt"], ".3g"),
-        **{name.replace(" > ", " >\n"): partial(_change, name) for name in more},
+        **{name.replace(" > ", " >\n"): partial(_change_text, name) for name in changes},
     }
     if scene.base is not None:
         columns["base\n[m]"] = lambda row: digits(row["stroke"], ".3g")
@@ -298,40 +309,40 @@ def print_motions(scene: Scene, rows: Sequence[Mapping[str, Any]], left: Sequenc
         grid([*columns], table, left=["warnings"], wraps=["motion", "warnings"]),
         *failed,
         *motion_warnings(rows),
-        *_alternating(rows),
+        *_interleaved(rows),
         headline(rows, left) or "",
         wrap=True,
     )
 
 
-def _alternating(rows: Sequence[Mapping[str, Any]]) -> list[str]:
-    """Under which motions the change given may not be the nearest."""
+def _interleaved(rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Return a sentence on the motions under which the change given may not be the nearest, if any."""
     names = listed([readable(row["motion"]) for row in rows if row.get("interleaved")])
     return [f"The outcomes are interleaved under {names}: do not base a decision on these changes."] if names else []
 
 
-def _change(name: str, row: Mapping[str, Any]) -> str:
+def _change_text(name: str, row: Mapping[str, Any]) -> str:
     return row["changes"].get(name, "")
 
 
 def motion_warnings(rows: Sequence[Mapping[str, Any]]) -> list[str]:
-    """The warnings of all motions and which they concern, of one quantity once."""
-    pairs = [(row["motion"], Caution(**one)) for row in rows for one in row["warnings"]]
+    """Return the warnings of all motions and which motions they concern; those of one quantity are joined."""
+    pairs = [(row["motion"], Caution(**warning)) for row in rows for warning in row["warnings"]]
     return [readable(words) for words in warned(pairs, len(rows), "all motions")]
 
 
 def odds(rows: Sequence[Mapping[str, Any]], outcomes: Sequence[str], word: str) -> str:
-    """Under how many records or motions the block comes to one of these outcomes, in some direction or sign at least.
+    """Return in words under how many records or motions the block has one of these outcomes, `word` being the verb.
 
-    The interval of the share is Wilson's, of records: motions of one record are no sample. A record under which no
-    motion does so and one failed is left out.
+    One direction or sign is enough. The interval of the share is Wilson's over records, as motions of one record are no
+    sample. A record without such an outcome and with a failed run is left out.
     """
-    found: dict[str, float] = {}
+    hits: dict[str, float] = {}
     for row in rows:
         hit = 1.0 if row["outcome"] in outcomes else math.nan if row["outcome"] == "failed" else 0.0
-        before = found.get(row["record"], 0.0)
-        found[row["record"]] = 1.0 if 1.0 in (hit, before) else before + hit
-    known = [hit for hit in found.values() if not math.isnan(hit)]
+        earlier = hits.get(row["record"], 0.0)
+        hits[row["record"]] = 1.0 if 1.0 in (hit, earlier) else earlier + hit
+    known = [hit for hit in hits.values() if not math.isnan(hit)]
     if not known:
         return f"{word} under no {unit_of(rows)} that could be run"
     low, high = wilson(int(sum(known)), len(known))
@@ -352,20 +363,21 @@ def print_bearings(
     warnings: Sequence[Caution] = (),
     nothing: str = "",
 ) -> None:
-    """Print the bearings named, a column each, or `nothing`, that none hold; `warnings` first.
+    """Print `warnings` and a column for each of the `chosen` bearings; without any, the sentence `nothing`.
 
-    motions : as they were read, `running.options.read_row`.
+    stroke : room of the base [m]. tilt : limit of the peak tilt, over slenderness. motions : rows of
+    `execution.solving.read_row`.
     """
     assert scene.base is not None  # the search asks for one
-    name, wanted = readable(scene.name, TITLE_CHARACTERS), _wanted(scene, stroke, tilt)
+    name, aim = readable(scene.name, TITLE_CHARACTERS), _aim(scene, stroke, tilt)
     echo(
         *(f"Warning: {readable(str(warning))}" for warning in warnings),
-        f"{name}: {wanted}; base: {scene.base.mass:g} kg; motions: {len(motions)}",
+        f"{name}: {aim}; base: {scene.base.mass:g} kg; motions: {len(motions)}",
         wrap=True,
     )
     if not chosen:
         return echo(*motion_warnings(motions), nothing, wrap=True)
-    if len({(one["period"], one["damping"]) for one in chosen.values()}) == 1:
+    if len({(design["period"], design["damping"]) for design in chosen.values()}) == 1:
         chosen = {" and ".join(chosen): next(iter(chosen.values()))}
     rows = {
         "secant period at the stroke [s]": "{period:.3g}",
@@ -378,20 +390,20 @@ def print_bearings(
         **({} if scene.friction is None else {"friction demand over the friction": "{friction:.3g}"}),
         "peak tilt / slenderness": "{tilt:.3g}",
     }
-    cells = [[label, *(form.format(**one) for one in chosen.values())] for label, form in rows.items()]
+    cells = [[label, *(form.format(**design) for design in chosen.values())] for label, form in rows.items()]
     echo(
         grid(["bearings", *chosen], cells, wraps=["bearings", *chosen]),
-        f"Of bearings {_scanned(scan)}, {percent(float(np.mean(scan.demand <= 1)))} hold.",
-        *(words for one in chosen.values() for words in motion_warnings(one["motions"])),
+        f"Of bearings {_scan_words(scan)}, {percent(float(np.mean(scan.demand <= 1)))} hold.",
+        *(words for design in chosen.values() for words in motion_warnings(design["motions"])),
         *(
-            f"{'On the ' + name + ' bearings: ' if len(chosen) > 1 else ''}{one['headline']}"
-            for name, one in chosen.items()
+            f"{'On the ' + name + ' bearings: ' if len(chosen) > 1 else ''}{design['headline']}"
+            for name, design in chosen.items()
         ),
         wrap=True,
     )
 
 
-EXCEEDED = {  # {limit of `bearing_scan.LIMITS`: that it is exceeded}
+EXCEEDED = {  # {limit of `bearing_scan.LIMITS`: clause saying that it is exceeded}
     "stroke": "the stroke is exceeded",
     "slip": "the block slides, the friction exceeded",
     "tilt": "the tilt limit is exceeded",
@@ -400,7 +412,7 @@ EXCEEDED = {  # {limit of `bearing_scan.LIMITS`: that it is exceeded}
 
 
 def nothing_holds(scene: Scene, scan: BearingScan, stroke: float, tilt: float, motions: Sequence[Motion]) -> str:
-    """That no bearings hold; which come nearest, which limit they exceed and under which motion; and what to change."""
+    """Return sentences: no bearings hold; the nearest ones, the limit they exceed, under which motion; the remedy."""
     period, damping = scan.nearest
     limit, motion, demand = hardest(scene, scan.bearings(period, damping), motions, stroke, tilt)
     row, column = np.abs(scan.dampings - damping).argmin(), np.abs(scan.periods - period).argmin()
@@ -413,23 +425,23 @@ def nothing_holds(scene: Scene, scan: BearingScan, stroke: float, tilt: float, m
         f"{period:.3g} s with {damping:.3g}."
     )
     cure = f"Allow more stroke{_or_tilt(scene)}; or widen, fix or lower the block."
-    return f"no bearings {_scanned(scan)} hold. {near} {cure}"
+    return f"no bearings {_scan_words(scan)} hold. {near} {cure}"
 
 
 def _or_tilt(scene):
-    """What else may be allowed: no tilt helps a block that slides before it lifts."""
+    """Return what else may be allowed or done; allowing tilt does not help a block that slides before it lifts."""
     if scene.friction is None or scene.friction >= math.tan(scene.block.slenderness):
         return ", or --tilt"
     return f", or hold the block against sliding (its friction {scene.friction:g} is below tan γ, at which it lifts)"
 
 
-def _scanned(scan):
+def _scan_words(scan):
     low, high = scan.dampings[0], scan.dampings[-1]
     return f"of {scan.periods[0]:g} to {scan.periods[-1]:g} s and {percent(low)} to {percent(high)} of critical damping"
 
 
 def draw_bearings(scene: Scene, scan: BearingScan, stroke: float, tilt: float) -> Figure:
-    """The region of period and damping that holds, and the points named: a matplotlib Figure."""
+    """Draw the region of period and damping whose bearings hold, and the points named: a matplotlib Figure."""
     figure = Figure(figsize=(7, 4.5), layout="constrained")
     axis = figure.subplots()
     shown = np.clip(scan.demand, 0, 3)
@@ -447,7 +459,7 @@ def draw_bearings(scene: Scene, scan: BearingScan, stroke: float, tilt: float) -
     axis.minorticks_off()
     axis.set(xlabel=f"secant period at {stroke:g} m [s]", ylabel=f"equivalent damping at {stroke:g} m [%]")
     axis.set_title(
-        f"{readable(scene.name, TITLE_CHARACTERS)}: {_wanted(scene, stroke, tilt)}", loc="left", fontsize="medium"
+        f"{readable(scene.name, TITLE_CHARACTERS)}: {_aim(scene, stroke, tilt)}", loc="left", fontsize="medium"
     )
     handles = [Patch(facecolor=HELD, alpha=0.35, label="hold"), *axis.get_legend_handles_labels()[0]]
     lines_label = Patch(facecolor="none", edgecolor="0.5", label="times the nearer limit")
@@ -455,7 +467,7 @@ def draw_bearings(scene: Scene, scan: BearingScan, stroke: float, tilt: float) -
     return figure
 
 
-def _wanted(scene, stroke, tilt):
+def _aim(scene, stroke, tilt):
     limit = "no uplift" if tilt == 0 else f"tilt up to {tilt:g} of the slenderness"
     limit += "" if scene.friction is None else f" and no slip at friction {scene.friction:g}"
     return f"bearings for {limit} within {stroke:g} m"

@@ -1,5 +1,4 @@
-"""What a page is made of, and how numbers are written in it; templates; and from a study's rows to tables: choose rows,
-group them, say once what a column is.
+"""Parts of a page, templates, and tables of a study's rows: choose rows, group them, name columns.
 
     default = where(result.rows, part="summary", scope="all")
     table("Restitution", default, NAME, Column("error, rms [-]", "rms"), Column("failed", "{failed} of {runs}"))
@@ -21,7 +20,7 @@ from ..schemas.columns import Column, Key, Row, short, value_of
 
 @dataclass(frozen=True)
 class Table:
-    """columns: heads with units. rows: lists of cells, str; the first cell of a row names it."""
+    """A table. columns: heads with units. rows: lists of cells, str; the first cell of a row names it."""
 
     caption: str
     columns: tuple
@@ -30,10 +29,10 @@ class Table:
 
 @dataclass(frozen=True)
 class Figure:
-    """svg: the picture. alt: what it shows, for those who cannot see it. caption: what to look at.
+    """A figure. svg: the picture. alt: its content, for those who cannot see it. caption: what to look at.
 
-    solvers: those whose lines can be told apart and hidden; keys: {one of them: the picture of its line}, where it is
-    not as everywhere. broad: whether it takes the whole width of a page; it then has a second form for a phone.
+    solvers: those in the legend, whose lines a reader can hide. keys: {solver: picture of its line}, where that is not
+    as in all charts. broad: whether it takes the whole width of a page; it then has a second form for a phone.
     """
 
     svg: bytes
@@ -49,11 +48,11 @@ class Figure:
 
     @property
     def panels(self) -> int:
-        """How many charts it has."""
+        """Number of charts."""
         return max(1, self.svg.count(b'<svg class="chart"'))
 
 
-# Sign of a `Mark` by its level, and what it says: no mark is told by its colour alone.
+# {level of a `Mark`: (its sign, meaning)}. The sign tells the level apart without colour.
 SIGNS = {
     "good": ("✓", "good"),
     "fair": ("~", "fair"),
@@ -65,10 +64,10 @@ SIGNS = {
 
 @dataclass(frozen=True)
 class Mark:
-    """What a study says of one solver: in words, and as "good", "fair" or "bad"; "part" where so little was tested that
-    it cannot be said; or "none", which is of no rating: a row of such alone has no say.
+    """A study's finding about one solver, in words and as a level.
 
-    note: the number of runs or scenes behind it, and what else the words leave out. value: the number itself.
+    level: "good", "fair" or "bad"; "part", if too little was tested to tell; "none": not rated. note: number of runs or
+    scenes, and what else the words leave out. value: the number itself.
     """
 
     words: str
@@ -81,15 +80,15 @@ class Mark:
         return SIGNS[self.level][0]
 
 
-RESTITUTION, COST = "restitution", "cost"  # keys of judgements that the report's first screen takes numbers of
+RESTITUTION, COST = "restitution", "cost"  # keys of judgements whose numbers stand on the report's first screen
 
 
 @dataclass(frozen=True)
 class Judgement:
-    """A row of the report's first table. heading: with unit. marks: {(engine, variant): `Mark`}; variant "" is the
-    default one.
+    """A row of the report's first table.
 
-    key: by which others find it.
+    heading: with unit. marks: {(engine, variant): `Mark`}; variant "" is the main variant. key: by which the first
+    screen finds it, see `RESTITUTION`.
     """
 
     heading: str
@@ -98,17 +97,17 @@ class Judgement:
 
     @property
     def rates(self) -> bool:
-        """Whether it counts in the one rating of a variant: it says something of trust, of one solver at least."""
+        """Whether it counts in the rating of variants: it rates at least one solver."""
         return any(mark.level != "none" for mark in self.marks.values())
 
 
 @dataclass(frozen=True)
 class Section:
-    """title: heading. text: paragraphs, plain text. age: None, or how the result is older than the code.
+    """A section of a page.
 
-    evidence: (heading, text) pairs, folded away: raw messages of runs that failed. measured: paragraphs, folded: how
-    the figures were obtained. parts: figures, tables, paragraphs and `Head`s in their order, in place of all figures
-    above all tables.
+    title: heading. text: paragraphs, plain text. age: None, or in what the result is older than the code. evidence:
+    (heading, text) pairs, folded: messages of failed runs. measured: paragraphs, folded: how numbers were obtained.
+    parts: figures, tables, paragraphs and `Head`s in their order; without them figures stand above tables.
     """
 
     title: str
@@ -122,26 +121,26 @@ class Section:
 
     @property
     def shown(self) -> tuple:
-        """What stands below the text, in order."""
+        """Parts below the text, in order."""
         return self.parts or (*self.figures, *self.tables)
 
 
 @dataclass(frozen=True)
 class Head:
-    """A heading between the parts of a page. id: of the place, where another page leads to it."""
+    """A heading between the parts of a page. id: anchor for links of other pages."""
 
     words: str
-    id: str = field(default="", repr=False)  # a place, nothing that is said
+    id: str = field(default="", repr=False)  # no words of the page
 
 
 @dataclass(frozen=True)
 class Page:
-    """What a study shows of its result, told once: `opening` for the report's first page, `whole` for its own page.
+    """A study's page: `opening` is its section on the report's first page, `whole` the study's own page.
 
-    title: "subject: what was found", without a full stop. lead: one or two short paragraphs. first: the figure and the
-    table of the answer; none: the study is not on the report's first page. more: what else there is, in order: figures,
-    tables, `Head`s, and str, a paragraph. What is None, and a table without rows, is left out. how: paragraphs, folded:
-    what was run and how it was measured. evidence: (heading, text) pairs, folded: messages of runs that failed.
+    title: "subject: finding", without a full stop. lead: one or two short paragraphs. first: the figure and the table
+    of the answer; without them the study is not on the report's first page. more: further figures, tables, `Head`s, and
+    paragraphs (str), in order. None and tables without rows are left out. how: paragraphs, folded: what was run and how
+    it was measured. evidence: (heading, text) pairs, folded: messages of runs that failed.
     """
 
     title: str
@@ -152,11 +151,11 @@ class Page:
     evidence: tuple[tuple[str, str], ...] = ()
 
     def opening(self) -> Section | None:
-        """The `Section` of the report's first page."""
+        """Return the `Section` of the report's first page."""
         return self._section(self.first) if self.first else None
 
     def whole(self) -> Section:
-        """The `Section` of the study's own page."""
+        """Return the `Section` of the study's own page."""
         return replace(self._section((*self.first, *self.more)), evidence=self.evidence)
 
     def _section(self, parts):
@@ -167,10 +166,10 @@ class Page:
 
 
 def element_of(text: str, attributes: str) -> str:
-    """An SVG file of matplotlib as an element with these attributes: no header, nothing finer than is seen."""
+    """Return an SVG file of matplotlib as an element with these attributes, without header and needless digits."""
     text = re.sub(r"<metadata>.*?</metadata>\s*", "", text[text.index("<svg") :], flags=re.DOTALL)
     opening = r'<svg [^>]*?viewBox="([^"]+)"[^>]*>'
-    text = re.sub(opening, lambda found: f'<svg {attributes} viewBox="{found[1]}">', text, count=1)
+    text = re.sub(opening, lambda match: f'<svg {attributes} viewBox="{match[1]}">', text, count=1)
     text = re.sub(r"(\d+\.\d{2})\d+", r"\1", text)  # a hundredth of a point is enough
     return re.sub(r"\s*\n\s*", " ", text)
 
@@ -179,7 +178,7 @@ UNITS = {"stiffness": "N/m", "step": "s", "largest_step": "s"}  # of accuracy pa
 
 
 def where(rows: Iterable[Row], **wanted: Any) -> list[Any]:
-    """The rows with these values, in order; a set means any of its members. A row without the column is not chosen.
+    """Return the rows with these values, in order; a set means any of its members. Rows without the column do not fit.
 
     >>> where([{"part": "a", "x": 1}, {"part": "b"}, {"part": "a", "x": 2}], part="a", x={2, 3})
     [{'part': 'a', 'x': 2}]
@@ -192,7 +191,7 @@ def where(rows: Iterable[Row], **wanted: Any) -> list[Any]:
 
 
 def grouped(rows: Iterable[Any], *keys: Key) -> dict[tuple[Any, ...], list[Any]]:
-    """{values of the keys: their rows}, in the order in which they come; a key is a column or a function of a row.
+    """Return {values of the keys: their rows}, in the order of the rows; a key is a column or a function of a row.
 
     >>> grouped([{"x": 2, "y": 1}, {"x": 1, "y": 2}, {"x": 2, "y": 3}], "x")
     {(2,): [{'x': 2, 'y': 1}, {'x': 2, 'y': 3}], (1,): [{'x': 1, 'y': 2}]}
@@ -204,7 +203,7 @@ def grouped(rows: Iterable[Any], *keys: Key) -> dict[tuple[Any, ...], list[Any]]
 
 
 def kept_from(rows: Sequence[Row], keeps: Callable[[Row], bool]) -> Sequence[Row]:
-    """Of rows from coarse to fine those from which on all keep: a coarse one that keeps by chance is none of them."""
+    """Return of rows from coarse to fine the last ones that all keep; a coarser row may keep by chance."""
     bad = [k for k, row in enumerate(rows) if not keeps(row)]
     return rows[bad[-1] + 1 :] if bad else rows
 
@@ -212,32 +211,33 @@ def kept_from(rows: Sequence[Row], keeps: Callable[[Row], bool]) -> Sequence[Row
 def cheapest(
     rows: Iterable[Row], name: Key, keeps: Callable[[Row], bool], cost: Callable[[Row], float]
 ) -> dict[Any, Row]:
-    """{name: cheapest of its rows that keep, see `kept_from`}, cheapest first."""
-    kept = ((who, kept_from(some, keeps)) for (who,), some in grouped(rows, name).items())
-    found = {who: min(good, key=cost) for who, good in kept if good}
-    return dict(sorted(found.items(), key=lambda item: cost(item[1])))
+    """Return {name: the cheapest of its rows that keep, see `kept_from`}, cheapest first."""
+    kept = ((who, kept_from(members, keeps)) for (who,), members in grouped(rows, name).items())
+    best = {who: min(keeping, key=cost) for who, keeping in kept if keeping}
+    return dict(sorted(best.items(), key=lambda item: cost(item[1])))
 
 
 def table(caption: str, rows: Iterable[Row], *columns: Column) -> Table:
-    """The `Table` of these rows; the first column names them."""
+    """Return the `Table` of these rows; the first column names them."""
     return Table(
         caption, tuple(column.head for column in columns), [[column.text(row) for column in columns] for row in rows]
     )
 
 
 def across(caption: str, rows: Iterable[Row], name: Column, *columns: Column) -> Table:
-    """The `Table` with a column for each of these rows, named by `name`, and a row for each of the `columns`."""
+    """Return the `Table` with a column for each of these rows, named by `name`, and a row for each of the `columns`."""
     rows = list(rows)
     cells = [[column.head, *map(column.text, rows)] for column in columns]
     return Table(caption, (name.head, *map(name.text, rows)), cells)
 
 
 def setting_of(row: Row) -> str:
-    """The level of a row's accuracy parameter, with its name and unit: step = 0.001 s."""
+    """Return a row's accuracy parameter with its level and unit: step = 0.001 s."""
     return f"{row['parameter'].replace('_', ' ')} = {short(row['level'])} {UNITS.get(row['parameter'], '')}".rstrip()
 
 
 def templates(folder: Path) -> Environment:
+    """Return the Jinja environment of the templates in a folder; undefined names are errors."""
     return Environment(
         loader=FileSystemLoader(folder),
         autoescape=select_autoescape(disabled_extensions=["jinja"], default=True),

@@ -1,6 +1,6 @@
-"""Plots that several commands share, and what was read of a record file, as a table and as a picture.
+"""Matplotlib figures of histories and record files, styles of solvers, table of a record file.
 
-Colours are those of Okabe and Ito, told apart by colour-blind readers.
+Colours are those of Okabe and Ito, which colour-blind readers tell apart.
 """
 
 import io
@@ -22,28 +22,33 @@ from ..execution.files import readable
 from ..schemas import runs
 from .terminal import echo, grid
 
-# colour, dashes, width; the reference lies wide underneath, dots need width to be seen
+# colour, dashes, width. The wide line of the reference lies under the others; dots need width to be seen.
 REFERENCE: tuple[str, str | tuple[float, tuple[float, ...]], float] = ("#000000", "-", 2.4)
 DOTS, LINES = 1.8, 1.4
 TITLE_CHARACTERS = 100
 TILT_RANGE = (0.05, 2.0)  # least and greatest limit of a tilt axis, over slenderness
+LABELS = {
+    "tilt": "tilt / slenderness [-]",
+    "slip": "slip of the block\non its support [m]",
+    "displacement": "base displacement [m]",
+}
 SLIDES: tuple[str, dict[str, Any]] = ("slides", {"color": "#E69F00", "alpha": 0.25, "linewidth": 0})
-SHADES = {  # of modes
+SHADES = {  # {mode of contact: (label, look of its span)}
     "slide": SLIDES,
     "slide-rock": SLIDES,
     "flight": ("flies", {"facecolor": "none", "edgecolor": "0.5", "hatch": "///", "linewidth": 0}),
 }
 SPARE: tuple[str, str | tuple[float, tuple[float, ...]], float] = ("#777777", (0, (5, 1)), 1.3)
-OTHERS = {"scipy": ("--", "D"), "time-stepping": (":", "v")}  # solvers that are no engine: dashes and marker in charts
+OTHERS = {"scipy": ("--", "D"), "time-stepping": (":", "v")}  # {solver that is no engine: (dashes, marker)}
 
 
 def marker(solver: str) -> str:
-    """Marker of a solver: the same in every figure."""
+    """Return the marker of a solver, the same in every figure."""
     return ENGINES[solver].marker if solver in ENGINES else OTHERS.get(solver, ("", "o"))[1]
 
 
 def style(solver: str) -> dict[str, Any]:
-    """Line keywords of a solver: the same in every figure."""
+    """Return the line keywords of a solver, the same in every figure."""
     colour, dashes, width = REFERENCE if solver == "analytic" else SPARE
     if solver in ENGINES:
         colour, dashes = ENGINES[solver].colour, ENGINES[solver].dashes
@@ -52,11 +57,10 @@ def style(solver: str) -> dict[str, Any]:
 
 
 def draw_histories(scene: Scene, responses: Sequence[Response], horizon: float | None = None) -> Figure:
-    """Ground motion, tilt, slip, base displacement and hysteresis loop of one or more responses, as far as they exist.
+    """Draw ground motion, tilt, slip, base displacement and hysteresis loop of responses: a matplotlib Figure.
 
-    Where the block slides, and where it flies, is shaded if a response tells its modes. Each response needs its
-    history. horizon [s], if any, is where point-wise comparison ends.
-    Returns a matplotlib Figure.
+    Quantities that a scene does not have are left out. Sliding and flight of the block are shaded if a response tells
+    its modes. Each response needs its history. horizon: time [s] at which point-wise comparison ends, if any.
 
     Examples
     --------
@@ -69,28 +73,12 @@ def draw_histories(scene: Scene, responses: Sequence[Response], horizon: float |
     slides = any(response.sliding and response.sliding.peak for response in responses)
     rows = ["ground"] * (scene.motion is not None) + ["tilt"] + ["slip"] * slides
     rows += ["displacement"] * (scene.base is not None)
-    loop = scene.bearings is not None
-    figure = Figure(figsize=(11 if loop else 8, 0.6 + 2.1 * len(rows)), layout="constrained")
-    mosaic = [[row, "loop"] if loop else [row] for row in rows]
-    axes = figure.subplot_mosaic(mosaic, width_ratios=[2, 1] if loop else None)  # type: ignore[arg-type]  # names in lists
-    for row in rows:
-        axes[row].axhline(0, color="0.8", linewidth=0.8, zorder=0)
-        axes[row].sharex(axes[rows[0]])
+    figure, axes = _empty_axes(rows, loop=scene.bearings is not None)
     end = max(response.end.time for response in responses)
     if scene.motion is not None:
         _draw_ground(axes["ground"], scene.motion, end)
     for response in responses:
-        history, line = response.history, style(response.engine)
-        if len(responses) == 1:
-            line["linewidth"] = 1.2  # nothing to lie underneath
-        label = f"{response.engine}, {response.variant}: {response.outcome_text}"
-        axes["tilt"].plot(history.time, history.tilt / scene.block.slenderness, label=label, **line)
-        if slides and history.slip is not None:
-            axes["slip"].plot(history.time, history.slip, label=label, **line)
-        if "displacement" in axes:
-            axes["displacement"].plot(history.time, history.base_displacement, label=label, **line)
-        if loop:
-            axes["loop"].plot(history.base_displacement, history.bearing_force / 1e3, label=label, **line)
+        _draw_response(axes, scene, response, alone=len(responses) == 1)
     tilt = axes["tilt"]
     _draw_unstable(tilt, responses)
     if horizon is not None:
@@ -101,22 +89,41 @@ def draw_histories(scene: Scene, responses: Sequence[Response], horizon: float |
     tilt.legend(fontsize="small", loc="best")
     if slides:
         _draw_modes(axes["slip"], responses)
-    labels = {
-        "tilt": "tilt / slenderness [-]",
-        "slip": "slip of the block\non its support [m]",
-        "displacement": "base displacement [m]",
-    }
-    for row in labels.keys() & axes.keys():
-        axes[row].set_ylabel(labels[row])
-    if loop:
-        axes["loop"].set(xlabel="base displacement [m]", ylabel="force of all bearings [kN]")
-    axes[rows[-1]].set_xlabel("time [s]")
     figure.suptitle(readable(scene.name, TITLE_CHARACTERS), parse_math=False)
     return figure
 
 
+def _empty_axes(rows, loop):
+    """Return (figure, {row: its axes over time, "loop": axes beside them if wanted}), labelled, without curves."""
+    figure = Figure(figsize=(11 if loop else 8, 0.6 + 2.1 * len(rows)), layout="constrained")
+    mosaic = [[row, "loop"] if loop else [row] for row in rows]
+    axes = figure.subplot_mosaic(mosaic, width_ratios=[2, 1] if loop else None)
+    for row in rows:
+        axes[row].axhline(0, color="0.8", linewidth=0.8, zorder=0)
+        axes[row].sharex(axes[rows[0]])
+        axes[row].set_ylabel(LABELS.get(row, ""))
+    axes[rows[-1]].set_xlabel("time [s]")
+    if loop:
+        axes["loop"].set(xlabel="base displacement [m]", ylabel="force of all bearings [kN]")
+    return figure, axes
+
+
+def _draw_response(axes, scene, response, alone):
+    """Draw the curves of a response for which there are axes."""
+    history, line = response.history, style(response.engine)
+    if alone:
+        line["linewidth"] = 1.2  # nothing to lie underneath
+    label = f"{response.engine}, {response.variant}: {response.outcome_text}"
+    curves = {"tilt": history.tilt / scene.block.slenderness, "slip": history.slip}
+    for row, values in {**curves, "displacement": history.base_displacement}.items():
+        if row in axes and values is not None:
+            axes[row].plot(history.time, values, label=label, **line)
+    if "loop" in axes:
+        axes["loop"].plot(history.base_displacement, history.bearing_force / 1e3, label=label, **line)
+
+
 def _draw_unstable(axis, responses):
-    """The unstable point on either side, where a block comes near it."""
+    """Draw the unstable point on either side, if a block comes near it."""
     dashed = {"color": "0.6", "linewidth": 0.8, "linestyle": (0, (4, 4)), "zorder": 0}
     if max(response.peak_tilt_ratio for response in responses) > 0.8:
         axis.axhline(-1, **dashed)
@@ -124,22 +131,22 @@ def _draw_unstable(axis, responses):
 
 
 def _draw_modes(axis, responses):
-    """Shade the spans of the first response that tells its modes in which the block slides, or flies."""
-    told = next((response for response in responses if response.sliding and response.sliding.modes), None)
+    """Shade where the block slides or flies, in the first response that tells its modes."""
+    slider = next((response for response in responses if response.sliding and response.sliding.modes), None)
     labelled = set()
-    for begin, end, mode in mode_spans(told.sliding.modes, told.end.time) if told else ():
+    for begin, end, mode in mode_spans(slider.sliding.modes, slider.end.time) if slider else ():
         words, look = SHADES.get(mode, (None, {}))
         if words:
             axis.axvspan(begin, end, zorder=-1, label=None if words in labelled else words, **look)
             labelled.add(words)
     if labelled:
         axis.legend(
-            *(part[-len(labelled) :] for part in axis.get_legend_handles_labels()), fontsize="small", loc="best"
+            *(entries[-len(labelled) :] for entries in axis.get_legend_handles_labels()), fontsize="small", loc="best"
         )
 
 
 def mode_spans(modes: Sequence[tuple[float, str]], end: float) -> Iterator[tuple[float, float, str]]:
-    """(begin [s], end [s], mode) of the modes of a block that slides, in a run up to `end`."""
+    """Yield (begin [s], end [s], mode) of the modes of a block that may slide, in a run up to `end` [s]."""
     for (begin, mode), (until, _) in pairwise([*modes, (end, "")]):
         yield begin, until, mode
 
@@ -155,7 +162,7 @@ def _draw_ground(axis, motion, end):
 
 
 def picture(figure: Figure, kind: str) -> bytes:
-    """A figure as the content of a file; kind: its format, one of `files.PICTURES`."""
+    """Return a figure as the content of a file; kind: its format, one of `files.PICTURES`."""
     file = io.BytesIO()
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing")  # a name in letters the font lacks is shown as boxes
@@ -163,18 +170,18 @@ def picture(figure: Figure, kind: str) -> bytes:
     return file.getvalue()
 
 
-DAMPING = 0.05  # of the spectrum, as codes and catalogues have it
+DAMPING = 0.05  # damping ratio of the spectrum, as usual in codes and catalogues
 PERIODS = np.geomspace(0.05, 10.0, 150)  # s
 
 
 def channel_words(channel: Channel) -> str:
-    """Number and direction of a channel, 3 (Up), as far as its file names them."""
+    """Return number and direction of a channel, like "3 (Up)", as far as its file names them."""
     number, direction = channel.number, channel.direction
     return f"{number} ({direction})" if number and direction else number or direction
 
 
 def described(channel: Channel) -> runs.Channel:
-    """What was read of a channel, as it stands in JSON; peak and step in SI units."""
+    """Return what was read of a channel, for JSON; peak and step are in SI units."""
     motion = channel.motion
     return runs.Channel(
         channel=channel.number,
@@ -192,7 +199,7 @@ def described(channel: Channel) -> runs.Channel:
 
 
 def print_channels(name: str, channels: Sequence[Channel]) -> None:
-    """Print a row for each channel of the file `name`, and what is odd about them."""
+    """Print a row for each channel of the file `name`, notes on reading, and warnings."""
     rows = []
     kind = "column" if channels[0].format == "columns" else "channel"
     heads = [kind, "units", "dt [s]", "samples", "end [s]", "peak [m/s2]", "peak [g]", "at [s]"]
@@ -204,16 +211,20 @@ def print_channels(name: str, channels: Sequence[Channel]) -> None:
     title = Text(f"{readable(name, TITLE_CHARACTERS)}: {channels[0].format}")
     notes = dict.fromkeys(f"{channel.note[0].upper()}{channel.note[1:]}." for channel in channels if channel.note)
     warnings = dict.fromkeys(warning for channel in channels for warning in channel.motion.warnings)
-    echo(grid(heads, rows, left=["units"], title=title), *notes, *(f"Warning: {readable(one)}." for one in warnings))
+    echo(
+        grid(heads, rows, left=["units"], title=title),
+        *notes,
+        *(f"Warning: {readable(warning)}." for warning in warnings),
+    )
 
 
 def spectrum(motion: SampledMotion) -> np.ndarray:
-    """Pseudo-acceleration omega^2 x [m/s2] at `PERIODS` of oscillators damped by `DAMPING`."""
+    """Return the pseudo-acceleration omega^2 x [m/s2] of oscillators with `PERIODS` and damping `DAMPING`."""
     return (2 * np.pi / PERIODS) ** 2 * displacement_spectrum(motion, PERIODS, [DAMPING])[0]
 
 
 def draw_channels(name: str, channels: Sequence[Channel]) -> Figure:
-    """The acceleration of each channel over time and its spectrum over the period, a row each: a matplotlib Figure."""
+    """Draw each channel's acceleration over time and its response spectrum, in a row: a matplotlib Figure."""
     figure = Figure(figsize=(11, 0.8 + 2.2 * len(channels)), layout="constrained")
     axes = figure.subplots(len(channels), 2, squeeze=False, width_ratios=[2, 1])
     for (left, right), channel in zip(axes, channels, strict=True):

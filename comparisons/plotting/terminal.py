@@ -1,8 +1,8 @@
-"""Tables and sentences in the terminal: any, and those of responses and engines.
+"""Tables and sentences in the terminal: of responses, their differences and warnings, and of engines.
 
-The variants of the subject engines with their own values: settings with the default level, levels and calls, as
-``rocking engines NAME`` prints them. The class of the settings, linked before them, has defaults, in place of which a
-variant may have other values. Of engines that are extras the command prints the same.
+Below, as ``rocking engines NAME`` prints them: the variants of the subject engines with settings, default level, levels
+and calls. The linked class explains the settings; a variant may have other values than the class's defaults. The
+command prints the same of all other engines.
 """
 
 from __future__ import annotations
@@ -28,17 +28,19 @@ from engines.simulating import in_words
 from ..execution.files import readable
 from ..execution.progress import stdout_to_stderr
 from ..metrics.errors import Horizon
+from .parts import grouped
 from .wording import MOST_NAMED, differing, listed, outcomes
 
-LONGEST_NUMBER = 15  # characters: sign, nine digits, point, exponent; longer words are names, and may be broken
+LONGEST_NUMBER = 15  # characters: sign, nine digits, point, exponent; longer words are names and may be broken
 WIDE = 10**4  # columns: wider than any table
 
 
 @dataclass(frozen=True)
 class Grid:
-    """A table that fits the terminal: lines are broken at blanks, then the last columns are left out, which it says.
+    """A table that fits the terminal: lines are broken at blanks, then the last columns are left out.
 
-    No number is broken. sides: where the cells of each column stand; first: whether a column is broken before others.
+    A sentence below names the columns left out. No number is broken. sides: alignment of each column. first: whether a
+    column is broken before others.
     """
 
     heads: list[str]
@@ -59,7 +61,7 @@ class Grid:
             yield Text(f"A terminal of {needed} columns (or COLUMNS={needed}) shows more: {more}.")
 
     def _widths(self, count, room):
-        """Of the first `count` columns within this room; None where they have none."""
+        """Return the widths of the first `count` columns within this room; None if there is too little room."""
         widths = [max(1, *map(cell_len, self._lines(column))) for column in range(count)]
         least = [self._least(column) for column in range(count)]
         for early in (True, False):
@@ -71,16 +73,15 @@ class Grid:
         return [min(widths[0], max(room, 1))] if count == 1 else widths if sum(widths) <= room else None
 
     def _lines(self, column):
-        cells = (self.heads[column], *(row[column].plain for row in self.rows))
-        return [line for cell in cells for line in cell.split("\n")]
+        return "\n".join((self.heads[column], *(row[column].plain for row in self.rows))).split("\n")
 
     def _least(self, column):
-        """Width that keeps all but the longest words whole."""
+        """Return the width of a column that keeps all but the longest words whole."""
         words = (word for line in self._lines(column) for word in line.split())
         return max((min(cell_len(word), LONGEST_NUMBER) for word in words), default=1)
 
     def _room(self, count, console, options):
-        """What the terminal has for the cells of so many columns."""
+        """Return the width that the terminal has for the cells of `count` columns."""
         empty = console.measure(self._table([1] * count), options=options.update_width(WIDE)).maximum - count
         return options.max_width - empty
 
@@ -101,10 +102,10 @@ def grid(
     wraps: Collection[str] = (),
     **look: Any,
 ) -> Grid:
-    """A table of cells as they are: a unit in brackets is no markup.
+    """Return a table of cells as they are: a unit in brackets is no markup.
 
-    left : heads of the columns whose cells stand to the left, besides the first. wraps : of those that a narrow
-    terminal breaks first. look : as `rich.table.Table` takes it.
+    left : heads of the columns that are aligned to the left, besides the first. wraps : heads of the columns that a
+    narrow terminal breaks first. look : keywords of `rich.table.Table`.
     """
     cells = [[Text(cell) if isinstance(cell, str) else cell for cell in row] for row in rows]
     sides = ["left" if head == heads[0] or head in left else "right" for head in heads]
@@ -113,20 +114,20 @@ def grid(
 
 
 def echo(*parts: Grid | Text | str, wrap: bool = False) -> None:
-    """Print tables, and sentences as they are; wrap: their lines broken to the width of the terminal."""
+    """Print tables and sentences; wrap: whether sentences are broken to the width of the terminal."""
     console = Console(highlight=False)
     for part in parts:
         console.print(Text(part) if isinstance(part, str) else part, soft_wrap=not (wrap or isinstance(part, Grid)))
 
 
 def digits(value: float | None, form: str = ".4g") -> str:
-    """A number in this format; a hyphen for None."""
+    """Return a number in this format; a hyphen for None and nan."""
     return "-" if value is None or math.isnan(value) else f"{value:{form}}"
 
 
 TITLE_CHARACTERS = 100
-MOST_MODES = 8  # changes of the contact that are told
-MOTION = "motion"  # the kind of warning that is of the scene, not of a solver
+MOST_MODES = 8  # changes of contact, at most, in a list of modes
+MOTION = "motion"  # the kind of warnings about the scene, not about a solver
 
 
 def _name(scene):
@@ -134,7 +135,7 @@ def _name(scene):
 
 
 def summary(scene: Scene, response: Response) -> Grid:
-    """The main figures of one response, as a table."""
+    """Return the main numbers of one response as a table."""
     title = f"{_name(scene)}: {response.engine}" + (f", {response.variant}" if response.variant else "")
     rows = {
         "outcome": response.outcome_text,
@@ -154,7 +155,7 @@ def summary(scene: Scene, response: Response) -> Grid:
 
 
 def _slip(response):
-    """Rows of a block that slides on its support."""
+    """Return the rows of a block that slides on its support."""
     slid = response.sliding
     if not (slid and slid.peak):
         return {}
@@ -168,21 +169,21 @@ def _slip(response):
 
 
 def mode_words(modes: Sequence[tuple[float, str]], most: int = MOST_MODES) -> str:
-    """Modes of contact and from when on, up to so many; impacts do not end one: "stick, from 0.0614 s rock"."""
-    changes = [one for k, one in enumerate(modes) if k == 0 or one[1] != modes[k - 1][1]]
+    """Return modes of contact and their begins, at most `most`: "stick, from 0.0614 s rock"; impacts end no mode."""
+    changes = [change for k, change in enumerate(modes) if k == 0 or change[1] != modes[k - 1][1]]
     words = [f"from {time:.4g} s {mode}" if time else mode for time, mode in changes[:most]]
     left = len(changes) - most
     return ", ".join([*words, f"{left} more changes (--json)"] if left > 0 else words)
 
 
 def named_values(rows: Mapping[str, str], title: str) -> Grid:
-    """A table of {name: value}."""
+    """Return a table of {name: value}."""
     look = {"box": box.SIMPLE, "padding": (0, 1), "show_header": False}
     return grid(["name", "value"], rows.items(), left=["value"], wraps=["name", "value"], title=Text(title), **look)
 
 
 def comparison(scene: Scene, responses: Sequence[Response], horizons: Mapping[str, Horizon]) -> Grid:
-    """Responses of several solvers side by side, the first being the reference; horizons: {solver: its `Horizon`}."""
+    """Return a table of responses of several solvers, the first being the reference; horizons: {solver: `Horizon`}."""
     limit = _limit(horizons) if horizons else "No sensitivity horizon known."
     slides = any(response.sliding and response.sliding.peak for response in responses)
     slip = "; slip: largest slip of the block" if slides else ""
@@ -203,7 +204,7 @@ def comparison(scene: Scene, responses: Sequence[Response], horizons: Mapping[st
         rows.append(
             [
                 f"{response.engine}\n{response.variant}".rstrip(),
-                response.outcome_text.replace(" ", "\n", 1),  # narrow: undecided, and so far what
+                response.outcome_text.replace(" ", "\n", 1),  # "undecided" stands above what is so far
                 digits(response.overturning_time, ".4f"),
                 digits(response.peak_tilt_ratio, ".4f"),
                 tilt,
@@ -218,90 +219,82 @@ def comparison(scene: Scene, responses: Sequence[Response], horizons: Mapping[st
 
 
 def _slipped(response, reference):
-    """Largest slip, and by how many per cent it differs from the reference's where both stay upright."""
+    """Return the largest slip, and by how many per cent it differs from the reference's if both stay upright."""
     if response.failure or response.sliding is None and response is not reference:
         return "-", ""
-    here, there = (one.sliding.peak if one.sliding else 0.0 for one in (response, reference))
-    apart = response is not reference and not reference.failure and there > 0
+    slip, reference_slip = (run.sliding.peak if run.sliding else 0.0 for run in (response, reference))
+    apart = response is not reference and not reference.failure and reference_slip > 0
     if not apart or "overturns" in (response.outcome, reference.outcome):
-        return digits(here), ""
-    return digits(here), f"{100 * (here / there - 1):+.0e}"
+        return digits(slip), ""
+    return digits(slip), f"{100 * (slip / reference_slip - 1):+.0e}"
 
 
 def _limit(horizons):
-    """Up to when histories can be compared."""
-    if not any(found.parts for found in horizons.values()):
-        size = max(found.perturbation for found in horizons.values())
+    """Return sentences on the time up to which histories can be compared."""
+    if not any(known.parts for known in horizons.values()):
+        size = max(known.perturbation for known in horizons.values())
         return (
-            f"No change of the scene of the solvers' own size of error, {size:.0e} at most,\n"
-            "grows: a difference between histories is a solver's error, to the end."
+            f"Changes of the scene as large as the solvers' errors, {size:.0e} at most, do not grow:\n"
+            "to the end, a difference between histories is a solver's error."
         )
     lines = ["Sensitivity horizon, beyond which only outcomes can be compared,", "by each solver's own size of error:"]
-    for name, found in horizons.items():
-        until = f"{found.horizon:.3g} s" if found.parts else "none, to the end"
-        lines.append(f"{name} {until} ({found.perturbation:.0e})")
+    for name, known in horizons.items():
+        until = f"{known.horizon:.3g} s" if known.parts else "none, to the end"
+        lines.append(f"{name} {until} ({known.perturbation:.0e})")
     return "\n".join(lines)
 
 
 def show(table: Grid, responses: Sequence[Response], about: Sequence[Caution] = ()) -> None:
-    """Print a table of responses, and below it in what each differs from the analytic model, and the warnings.
+    """Print a table of responses; below it their differences from the analytic model, and their warnings.
 
-    What is said `about` the scene itself stands first, in bold, then, of several responses, the outcomes. Where the
-    result is sensitive to small changes of the motion, that stands last, in bold.
+    Warnings `about` the scene itself stand first, in bold. A sentence on the outcomes of several responses follows.
+    Warnings of a result that is sensitive to small changes of the motion stand last, in bold.
     """
     echo(*(Text(f"Warning: {readable(str(warning))}", "bold") for warning in about))
     if len(responses) > 1:
-        found = outcomes([{**response.to_json(), "outcome_text": response.outcome_text} for response in responses])
-        echo(f"{found[0].upper()}{found[1:]}.", wrap=True)
+        sentence = outcomes([{**response.to_json(), "outcome_text": response.outcome_text} for response in responses])
+        echo(f"{sentence[0].upper()}{sentence[1:]}.", wrap=True)
     motion = [warning for response in responses for warning in response.warnings if warning.kind == MOTION]
     echo(table, *(readable(words) for words in remarks(responses)))
     echo(*(Text(readable(str(warning)), "bold") for warning in motion))
 
 
 def remarks(responses: Sequence[Response]) -> list[str]:
-    """Sentences: in what responses differ from the analytic model, or why they cannot be compared; and the warnings.
+    """Return sentences: how responses differ from the analytic model, or why they cannot be compared; and warnings.
 
-    What is said of several solvers is said once.
+    Equal sentences of several solvers are joined.
     """
-    different: dict[str, list[str]] = {}
-    for response in responses:
-        for words in differing(response.comparable, response.differences):
-            different.setdefault(words, []).append(response.engine)
-    said = [f"{'each of ' * (len(names) > 1)}{listed(names)} {words}" for words, names in different.items()]
-    return said + _warnings(responses)
-
-
-def _warnings(responses):
-    """The warnings and which solvers they concern."""
-    pairs = [(response.engine, one) for response in responses for one in response.warnings if one.kind != MOTION]
-    return warned(pairs, len(responses), "all solvers")
+    different = [(each.engine, words) for each in responses for words in differing(each.comparable, each.differences)]
+    warnings = [(each.engine, warning) for each in responses for warning in each.warnings if warning.kind != MOTION]
+    sentences = [
+        f"{'each of ' * (len(pairs) > 1)}{listed([name for name, _ in pairs])} {words}"
+        for (words,), pairs in grouped(different, lambda pair: pair[1]).items()
+    ]
+    return sentences + warned(warnings, len(responses), "all solvers")
 
 
 def warned(pairs: Iterable[tuple[str, Caution]], count: int, everyone: str) -> list[str]:
-    """Warnings and whom they concern, of (who, warning): of one quantity the words of the largest value, and the range.
+    """Return warnings and whom they concern. Warnings about one quantity are joined: the largest value, and the range.
 
-    everyone : what all `count` of them are called.
+    pairs : (who, warning). everyone : what all `count` of them are called.
     """
-    grouped: dict[Any, list[tuple[str, Caution]]] = {}
-    for who, one in pairs:
-        grouped.setdefault((one.kind, one.quantity or one.text), []).append((who, one))
-    said = []
-    for found in grouped.values():
-        names = list(dict.fromkeys(who for who, _ in found))
-        more = [f"{len(names) - MOST_NAMED} more"] if len(names) > MOST_NAMED + 1 else []
-        who = everyone if 1 < len(names) == count else listed([*names[: MOST_NAMED if more else None], *more])
-        values = {f"{one.value:.3g}": one.value for _, one in found if one.value is not None}
+    sentences = []
+    for members in grouped(pairs, lambda pair: pair[1].kind, lambda pair: pair[1].quantity or pair[1].text).values():
+        names = list(dict.fromkeys(who for who, _ in members))
+        further = [f"{len(names) - MOST_NAMED} more"] if len(names) > MOST_NAMED + 1 else []
+        who = everyone if 1 < len(names) == count else listed([*names[: MOST_NAMED if further else None], *further])
+        values = {f"{warning.value:.3g}": warning.value for _, warning in members if warning.value is not None}
         spread = f" ({min(values.values()):.3g} to {max(values.values()):.3g})" if len(values) > 1 else ""
-        worst = max((one for _, one in found), key=lambda one: abs(one.value or 0.0))
-        said.append(f"Warning, {who}: {worst}{spread}")
-    return said
+        worst = max((warning for _, warning in members), key=lambda warning: abs(warning.value or 0.0))
+        sentences.append(f"Warning, {who}: {worst}{spread}")
+    return sentences
 
 
 NAMES_OF_CALLS = "g, m, R, gamma, J, mb, b, h: as in its script; scale: sqrt(R/1.0884 m)"
 
 
 def engines_table(engines: Sequence[Engine]) -> Grid:
-    """Table of all variants: kind, what the engine computes and what the adapter imposes."""
+    """Return a table of all variants: kind, what the engine computes and what the adapter imposes."""
     caption = Text(f"Tested for {in_words()}.\nrocking engines NAME: settings, levels, calls, versions.")
     heads = ["engine", "variant", "kind", "the engine computes", "the adapter imposes"]
     rows = [
@@ -313,8 +306,11 @@ def engines_table(engines: Sequence[Engine]) -> Grid:
 
 
 def engine_text(engine: Engine) -> str:
-    """Description of an `Engine`: versions, and for each variant kind, settings (the accuracy parameter first), levels,
-    what the engine computes, what the adapter imposes, known faults and the engine's calls."""
+    """Return the description of an `Engine` in lines: its versions, and each of its variants.
+
+    Of a variant: kind, settings (the accuracy parameter first), levels, what the engine computes, what the adapter
+    imposes, known faults, and the engine's calls.
+    """
     versions = ", ".join(f"{package} {version}" for package, version in engine.versions().items())
     lines, shown = [f"{engine.name} ({versions})"], set[str]()
     if engine.script:
@@ -337,22 +333,22 @@ def engine_text(engine: Engine) -> str:
 
 
 def _calls(variant: Variant, shown: Collection[str]) -> list[str]:
-    """Lines of a variant's calls, without those that are shown."""
+    """Return the lines of a variant's calls, without those already shown."""
     if not variant.calls:
         return []
-    own = {call: why for call, why in variant.calls.items() if call not in shown}
-    beside = ", beside some of the above" if len(own) < len(variant.calls) else ""
+    fresh = {call: why for call, why in variant.calls.items() if call not in shown}
+    beside = ", beside some of the above" if len(fresh) < len(variant.calls) else ""
     head = f"      the engine's calls{beside}, of a block on bearings ({NAMES_OF_CALLS}):"
-    return [head, *(f"        {call}{f'  # {why}' if why else ''}" for call, why in own.items())]
+    return [head, *(f"        {call}{f'  # {why}' if why else ''}" for call, why in fresh.items())]
 
 
 def _about(variant: Variant) -> str:
-    """What the settings say of themselves."""
+    """Return the first paragraph of the docstring of a variant's settings."""
     return (inspect.getdoc(type(variant.settings)) or "").split("\n\n")[0].replace("\n", " ")
 
 
 def _section(engine: Engine) -> str:
-    """Of this page, in Markdown: where the settings of each variant are explained, and their values."""
+    """Return an engine's section of this module's documentation, in Markdown."""
     kinds = {name: type(variant.settings) for name, variant in engine.variants.items()}
     explained = ", ".join(f"{name} `{kind.__module__}.{kind.__qualname__}`" for name, kind in kinds.items())
     return f"\n\n## {engine.name}\n\nSettings: {explained}.\n\n```text\n{engine_text(engine)}```"

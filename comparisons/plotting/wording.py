@@ -1,4 +1,4 @@
-"""Words that several pages share."""
+"""Words that several pages share: ratings, tallies of runs, outcomes, and lists in sentences."""
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -11,9 +11,9 @@ from ..metrics.statistics import EQUAL, equality, wilson
 from ..schemas.columns import NAME, Column, percent
 from .parts import Mark
 
-# Root mean square error of restitution: measured restitution of stone scatters by some per cent.
+# Largest rms error of restitution that is trusted, or usable. Measured restitution of stone scatters by some per cent.
 TRUSTED, USABLE = 1e-3, 1e-2
-INDEX = re.compile(r"(?<![\w.])([^\W\d_])_([A-Za-zα-ω0]{1,3})(?![\w_])")  # of a quantity of one letter: m_b
+INDEX = re.compile(r"(?<![\w.])([^\W\d_])_([A-Za-zα-ω0]{1,3})(?![\w_])")  # index of a quantity of one letter: m_b
 
 ON_EDGE = "agrees with the analytic model within what a change of the scene by 1e-4 does in the model"
 RATINGS = {
@@ -21,44 +21,45 @@ RATINGS = {
     "fair": "is usable where a per cent does not matter",
     "bad": "is not to be trusted",
 }
-NOT_COMPARED = {EDGE: "near an outcome boundary"}  # values of `comparable` that rows name otherwise
+NOT_COMPARED = {EDGE: "near an outcome boundary"}  # {value of `comparable`: its name in tables}
 OUTCOMES = {
     "stands": "never lifts",
     "slides": "slides and never lifts",
     "rocks": "rocks and stays upright",
     "overturns": "overturns",
 }
-MOST_NAMED = 3  # solvers of the commonest outcome; more are counted
+MOST_NAMED = 3  # more solvers with the commonest outcome are counted, not named
 
 
 def indexed(html: str) -> str:
-    """HTML with the indices of quantities below the line."""
+    """Return HTML with the indices of quantities below the line."""
     return INDEX.sub(r"\1<sub>\2</sub>", html)
 
 
 def listed(names: Sequence[str]) -> str:
-    """Names in a sentence: "a", "a and b", "a, b and c"."""
+    """Return names as in a sentence: "a", "a and b", "a, b and c"."""
     return " and ".join(filter(None, (", ".join(names[:-1]), *names[-1:])))
 
 
 def with_counts(words: str, counts: Mapping[str, int]) -> str:
-    """Words with counts {what: how many} behind them that are not 0."""
+    """Return words with the counts {what: how many} that are not 0 in brackets behind them."""
     behind = ", ".join(f"{count} {what}" for what, count in counts.items() if count)
     return f"{words} ({behind})" if behind else words
 
 
 def rating(rms: float | None, failed: int) -> str:
-    """The level, a key of `RATINGS`, of a root mean square error of restitution, None for none, and of failed runs."""
+    """Return the level, a key of `RATINGS`, for an rms error of restitution (None: no error known) and failed runs."""
     if rms is None or failed:
         return "bad"
     return "good" if rms <= TRUSTED else "fair" if rms <= USABLE else "bad"
 
 
 def trust(rms: float | None, failed: int) -> str:
+    """Return the `rating` in words."""
     return RATINGS[rating(rms, failed)]
 
 
-# Ways in which a judged run is not right, or why it is not judged: {key in a `tally`: what they are called in a table}.
+# {key in a `tally`: head of its column}: ways in which a judged run is not right, and reasons why runs are left out.
 TURNED, FALL, INSTEAD, ELSE = "turned", "fall", "instead", "else"
 ENDS = {
     TURNED: "overturning missed or added [-]",
@@ -72,9 +73,9 @@ ENDS = {
 
 
 def end_of(row: Mapping[str, Any], turned: Callable[[Mapping[str, Any]], bool]) -> str:
-    """Key of `ENDS` of a run, or "right".
+    """Return the key of `ENDS` of a run, or "right".
 
-    turned: of a run that differs, whether the block overturns in one of engine and model alone.
+    turned: tells of a run that differs whether the block overturns in engine or model alone.
     """
     if row["class"] == "left out":
         return "edge" if row["comparable"] == EDGE else "out"
@@ -87,10 +88,11 @@ def end_of(row: Mapping[str, Any], turned: Callable[[Mapping[str, Any]], bool]) 
 
 
 def tally(rows: Sequence[Mapping[str, Any]], group: str, turned: Callable[[Mapping[str, Any]], bool]) -> dict[str, Any]:
-    """Of the runs of a variant: how many are judged (not left out) and differ from the model or fail, the share of
-    those with its interval, what `equality` calls it, and how many end in each way of `ENDS`.
+    """Return counts of a variant's runs, and the share of judged runs that differ from the model or fail.
 
-    Runs alike in the column `group` count as one in the interval; groups: how many there are. turned: of `end_of`.
+    Keys: runs, judged ones, not left out; groups, their number of values of the column `group`, which count as one in
+    the interval; differing; one for each way of `ENDS`; share and its interval; equal, the verdict of `equality`.
+    turned: as in `end_of`.
     """
     judged = [row for row in rows if row["class"] != "left out"]
     differs, groups = [row["class"] != "right" for row in judged], [row[group] for row in judged]
@@ -102,29 +104,29 @@ def tally(rows: Sequence[Mapping[str, Any]], group: str, turned: Callable[[Mappi
 
 
 def ends(rows: Sequence[Mapping[str, Any]]) -> tuple[Column, ...]:
-    """Columns of tables of `tally` rows: one for each way that any of them has, or in which outcomes could change."""
+    """Return columns for `tally` rows: one for each way that occurs, or that matters even at 0."""
     always = {TURNED, FALL, "failed", "edge"}
     return tuple(Column(head, way) for way, head in ENDS.items() if way in always or any(row[way] for row in rows))
 
 
 def ends_in_words(rows: Sequence[Mapping[str, Any]]) -> str:
-    """What `tally` rows of variants found, as a clause: of how many runs each, and how many turn."""
+    """Return `tally` rows of variants as a clause: how many runs differ, and how many overturnings do."""
     judged = [row for row in rows if row["runs"]]
     if not judged:
         return "no run is judged"
     single = len({row["engine"] for row in judged}) == len(judged)
-    found = [
+    clauses = [
         f"{row['differing']} of {row['runs']}{' runs' * (not k)} ({row['engine'] if single else NAME.of(row)})"
         for k, row in enumerate(judged)
     ]
     turned, failed = (sum(row[way] for row in judged) for way in (TURNED, "failed"))
     lost = f"{turned} miss or add an overturning" if turned else "no overturning is missed or added"
     how = "tuned, " if all(row["tier"] == "tuned" for row in judged) else ""
-    return f"{how}{listed(found)} end otherwise than the model’s{' or fail' * bool(failed)}; {lost}"
+    return f"{how}{listed(clauses)} end otherwise than the model’s{' or fail' * bool(failed)}; {lost}"
 
 
 def least_shown(rows: Iterable[Mapping[str, Any]], what: str) -> str:
-    """What so few groups, `what` they are, can show at best, from `tally` rows: a clause."""
+    """Return a clause on the smallest share that the groups of `tally` rows can show; what: the groups' name."""
     sizes = sorted({row["groups"] for row in rows if row["groups"]}, reverse=True)
     limits = [f"{size}{f' {what}' * (not k)} cannot show less than {percent(wilson(0, size)[1])}"
               for k, size in enumerate(sizes)]  # fmt: skip
@@ -132,38 +134,40 @@ def least_shown(rows: Iterable[Mapping[str, Any]], what: str) -> str:
 
 
 def left_out(row: Mapping[str, Any]) -> str:
-    """How many runs of a `tally` are not judged, and why."""
+    """Return in words how many runs of a `tally` are not judged, and why."""
     return f"left out: {row['edge']} near an outcome boundary" + (f", {row['out']} otherwise" if row["out"] else "")
 
 
-def equal_mark(found: Mapping[str, Any], *more: str) -> Mark:
-    """What a study says of a `tally`, and more in its note. Good: the upper limit of the interval is below `EQUAL`;
-    bad: the lower is above it; fair: neither, or too few runs to be good, of which more than `EQUAL` differ.
+def equal_mark(row: Mapping[str, Any], *more: str) -> Mark:
+    """Return the `Mark` of a `tally`; more: further clauses of its note.
+
+    Good: the upper limit of the interval is below `EQUAL`. Bad: the lower limit is above it. Fair: neither, or too few
+    runs to be good and a share above `EQUAL`. Part: too few runs, and a share of at most `EQUAL`.
     """
-    if not found["runs"]:
+    if not row["runs"]:
         return Mark("no run judged", "part")
-    equal, (low, high) = found["equal"], found["interval"]
+    equal, (low, high) = row["equal"], row["interval"]
     limit = f"{100 * EQUAL:g} %"
     level, note = {
         "yes": ("good", f"shown to be below {limit}"),
         "no": ("bad", f"shown to be above {limit}") if low > EQUAL else ("fair", f"not shown to be below {limit}"),
-    }.get(equal) or ("fair" if found["share"] > EQUAL else "part", f"too few motions to show less than {limit}")
-    words = f"{found['differing']} of {found['runs']} (at most {percent(high)})"
-    return Mark(words, level, "; ".join((note, f"{found['failed']} failed", *more)), found["share"])
+    }.get(equal) or ("fair" if row["share"] > EQUAL else "part", f"too few motions to show less than {limit}")
+    words = f"{row['differing']} of {row['runs']} (at most {percent(high)})"
+    return Mark(words, level, "; ".join((note, f"{row['failed']} failed", *more)), row["share"])
 
 
 def differing(comparable: str, differences: Iterable[Difference]) -> list[str]:
-    """In what a run differs from the analytic model, or why it cannot be compared: the end of a sentence, or none."""
-    found = "; ".join(map(str, differences))
+    """Return how a run differs from the analytic model, or why it cannot be compared: no or one end of a sentence."""
+    words = "; ".join(map(str, differences))
     if comparable == COMPARED:
-        return [f"differs from the analytic model: {found}"] if found else []
+        return [f"differs from the analytic model: {words}"] if words else []
     if comparable == EDGE:
-        return [f"differs from the analytic model: {found}" if found else ON_EDGE]
+        return [f"differs from the analytic model: {words}" if words else ON_EDGE]
     return [] if comparable == UNCOMPARED else [f"cannot be compared with the analytic model: {comparable}"]
 
 
 def outcomes(rows: Sequence[Mapping[str, Any]]) -> str:
-    """Who found what: "in all 3 solvers it overturns", or the solvers by outcome."""
+    """Return the outcomes and their solvers: "in all 3 solvers it overturns"."""
     by_outcome: dict[str, list[str]] = {}
     for row in rows:
         undecided = not row.get("decided", True) and row["outcome"] != "failed"
@@ -173,7 +177,7 @@ def outcomes(rows: Sequence[Mapping[str, Any]]) -> str:
     most = max(map(len, by_outcome.values()), default=0)
 
     def who(solvers):
-        """All of them, or the many of the commonest outcome, as a number: the others are worth their names."""
+        """Name solvers, or count them: all, or the many with the commonest outcome."""
         if len(solvers) == len(rows):
             return {1: solvers[0], 2: "both solvers"}.get(len(solvers), f"all {len(solvers)} solvers")
         if len(solvers) == most > MOST_NAMED:

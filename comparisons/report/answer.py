@@ -1,9 +1,8 @@
-"""The answers of all studies side by side, and what not to do; from results alone: the studies' stored ones, of which
-it also has what stands on the first page and on pages of their own.
+"""The report's answer: stored studies, the table of trust, the first screen, and its own runs.
 
-The first screen: what was found in five lines, two charts, and the one recommendation; from the studies alone.
-
-What the report's own runs found, in sentences.
+All of it comes from result files. `stored_studies` reads the studies' results and draws their pages. `setups_of` builds
+the table of trust of all variants. `screen` builds the first screen: five lines, two charts, and the recommendation.
+`summary` puts the outcomes of the report's own runs into sentences.
 """
 
 import math
@@ -27,11 +26,11 @@ from ..studies.rows import read_study
 
 @dataclass(frozen=True)
 class Stored:
-    """One result. section: all of it; finding: its answer for the first page; judgements: its rows of the first
-    table; glance: what the first screen has of it.
+    """A stored result of a study, drawn.
 
-    wrong: why it cannot be shown, "" where it can. origin: machine, versions, date and commit in one line. variants:
-    those it knows, as `setups_of` takes them.
+    section: the study's own page. finding: its section of the first page. judgements: its rows of the first table.
+    glance: its part of the first screen. origin: machine, versions, date and commit in one line. variants: those of its
+    settings, for `setups_of`. wrong: why it cannot be shown; "": it can.
     """
 
     name: str
@@ -45,53 +44,56 @@ class Stored:
 
     @classmethod
     def damaged(cls, name: str, title: str, words: str, **more: Any) -> Self:
-        """One of which nothing but why can be shown."""
+        """Return a result that cannot be shown, with the reason in words."""
         return cls(name, Section(title, (words,), age=more.pop("age", None)), wrong=words, **more)
 
 
 def stored_studies(
     folder: Path = RESULTS, progress: Callable[[int, int], object] = lambda done, total: None
 ) -> list[Stored]:
-    """All results in `folder`, each a folder of files by solver, in the studies' order; one that cannot be shown says
-    why.
+    """Return all results in `folder`, each a folder of files by solver, in the studies' order.
 
-    progress : is called with how many of them are done, of how many.
+    A result that cannot be shown has the reason in `wrong`. progress : called with (results done, all results).
     """
     order = {name: place for place, name in enumerate(study_names())}
-    found = sorted(results_in(folder), key=lambda path: (order.get(path.name, len(order)), path.name))
+    paths = sorted(results_in(folder), key=lambda path: (order.get(path.name, len(order)), path.name))
     stored = []
-    for path in found:
+    for path in paths:
         stored.append(_stored(path))
-        progress(len(stored), len(found))
+        progress(len(stored), len(paths))
     return stored
 
 
 def variants_of(stored: Iterable[Stored], *more: Mapping[str, Any]) -> list[Mapping[str, Any]]:
-    """Each variant once: `more`, and those that the studies know."""
-    listed = [*more, *(variant for one in stored for variant in one.variants)]
-    return list({(one["engine"], one["variant"]): one for one in reversed(listed)}.values())
+    """Return each variant once: `more`, and those that the studies know."""
+    variants = [*more, *(variant for study in stored for variant in study.variants)]
+    return list({(variant["engine"], variant["variant"]): variant for variant in reversed(variants)}.values())
 
 
 def judgements_of(stored: Iterable[Stored]) -> list[Judgement]:
-    """The rows of the first table. Where studies have one of the same heading it says what each found."""
-    found: dict[str, Judgement] = {}
-    for each in (each for one in stored for each in one.judgements):
-        known = found.setdefault(each.heading, each)
-        both = known.marks.keys() & each.marks.keys() if known is not each else set()
-        marks = {who: _together(known.marks[who], each.marks[who]) for who in both}
-        found[each.heading] = replace(known, marks={**known.marks, **each.marks, **marks})
-    return list(found.values())
+    """Return the rows of the first table. Judgements with the same heading are joined: each mark names all findings."""
+    joined: dict[str, Judgement] = {}
+    for judgement in (judgement for study in stored for judgement in study.judgements):
+        first = joined.get(judgement.heading, replace(judgement, marks={}))
+        new = {
+            who: _joined(first.marks[who], mark) if who in first.marks else mark
+            for who, mark in judgement.marks.items()
+        }
+        joined[judgement.heading] = replace(first, marks={**first.marks, **new})
+    return list(joined.values())
 
 
-def _together(*marks: Mark) -> Mark:
-    """Marks of one solver as one: the greatest error first, the level of the worst."""
-    first, *others = sorted(marks, key=lambda one: math.inf if one.value is None else one.value, reverse=True)
-    words, notes = ("; ".join(some) for some in zip(*((one.words, one.note) for one in (first, *others)), strict=True))
-    return replace(first, words=words, note=notes, level=max(marks, key=_level).level)
+def _joined(*marks: Mark) -> Mark:
+    """Join marks of one solver: the words of the greatest error first, the level of the worst."""
+    first, *others = sorted(marks, key=lambda mark: math.inf if mark.value is None else mark.value, reverse=True)
+    words, notes = (
+        "; ".join(parts) for parts in zip(*((mark.words, mark.note) for mark in (first, *others)), strict=True)
+    )
+    return replace(first, words=words, note=notes, level=max(marks, key=_badness).level)
 
 
 def origin_of(result: Result) -> str:
-    """Date, commit, processor, versions and the last check, in one line; of engines run apart from the rest, theirs."""
+    """Return date, commit, processor, versions and last check of a result in one line, by engine where they differ."""
 
     def words(origin):
         return ", ".join((date_of(origin), f"commit {commit_of(origin)}", origin["machine"]["processor"]))
@@ -106,7 +108,7 @@ def origin_of(result: Result) -> str:
 
 
 def commit_of(origin: Mapping[str, Any]) -> str:
-    """The commit of a provenance, and whether there was more than that."""
+    """Return the commit of a provenance, and whether there were uncommitted changes."""
     if origin["commit"] is None:
         return "outside a checkout"
     return origin["commit"][:12] + (", with uncommitted changes" if origin["dirty"] else "")
@@ -139,26 +141,27 @@ def _stored(path):
 
 
 def _variants(settings):
-    """The variants that settings list with their engine's default one."""
-    best = settings.get("default_variants", {})
+    """Return the variants in a result's settings, each with whether it is its engine's main variant ("best")."""
+    mains = settings.get("default_variants", {})
     return tuple(
-        {**one, "best": best[one["engine"]] == one["variant"]}
-        for one in settings.get("variants", ())
-        if best and one["engine"] in best
+        {**variant, "best": mains[variant["engine"]] == variant["variant"]}
+        for variant in settings.get("variants", ())
+        if mains and variant["engine"] in mains
     )
 
 
-# part: good in all that was tested, and something was not
+# {level of a rating: its words}; part: good in all tests made, but tests are missing
 LEVELS = {"good": "✓ trust", "part": "✓ as far as tested", "fair": "~ with care", "bad": "✗ do not trust"}
 UNTESTED = Mark("not tested", "none")
 
 
 @dataclass(frozen=True)
 class Setup:
-    """A variant with its marks, {heading of a `Judgement`: its `Mark`}, and its rating, the worst of those that rate.
+    """A variant with its marks.
 
-    best: the engine's main variant. subject: `engines.contract.Engine.subject`. applies_impact: the adapter applies
-    the model's equations. cost: CPU time over the analytic model's, infinite where not measured.
+    best: whether it is the engine's main variant. subject: `engines.contract.Engine.subject`. applies_impact: whether
+    the adapter applies the model's equations of impact. marks: {heading of a `Judgement`: `Mark`}. rating: the worst of
+    the marks that rate. cost: CPU time over the analytic model's, infinite where not measured.
     """
 
     engine: str
@@ -173,7 +176,7 @@ class Setup:
 
     @property
     def in_first_table(self) -> bool:
-        """Whether it is a column of the first table: a subject engine as a user takes it, tuned or by default."""
+        """Whether it is a column of the first table: a subject engine's main variant, or its defaults."""
         return self.subject and not self.applies_impact and (self.best or self.tier == "defaults")
 
     @property
@@ -186,50 +189,52 @@ class Setup:
 
 
 def setups_of(variants: Iterable[Mapping[str, Any]], judgements: Sequence[Judgement]) -> list[Setup]:
-    """The variants that any study judges: those of the first table first (tuned, defaults); then by rating and cost.
+    """Return the variants that a study judges: the first table's, tuned before defaults; then by rating and cost.
 
     variants: dicts of engine, variant, kind (key "tier"), best and applies_impact.
     """
-    found = []
-    for one in variants:
-        marks = {each.heading: _mark(each, one) for each in judgements}
+    setups = []
+    for variant in variants:
+        marks = {judgement.heading: _mark_of(judgement, variant) for judgement in judgements}
         if all(mark is UNTESTED for mark in marks.values()):
             continue
-        how = {key: one[key] for key in ("engine", "variant", "tier", "best", "applies_impact")}
-        subject = one["engine"] in ENGINES and ENGINES[one["engine"]].subject
-        costs = [marks[each.heading].value for each in judgements if each.key == COST]
-        rated = _rating([marks[each.heading] for each in judgements if each.rates])
-        found.append(Setup(**how, subject=subject, marks=marks, rating=rated, cost=next(filter(None, costs), math.inf)))
-    return sorted(found, key=_place)
+        fields = {key: variant[key] for key in ("engine", "variant", "tier", "best", "applies_impact")}
+        subject = variant["engine"] in ENGINES and ENGINES[variant["engine"]].subject
+        costs = [marks[judgement.heading].value for judgement in judgements if judgement.key == COST]
+        rating = _rating([marks[judgement.heading] for judgement in judgements if judgement.rates])
+        setups.append(
+            Setup(**fields, subject=subject, marks=marks, rating=rating, cost=next(filter(None, costs), math.inf))
+        )
+    return sorted(setups, key=_order)
 
 
-def _place(one):
-    if one.in_first_table:
-        return (0, one.tier == "defaults", list(ENGINES).index(one.engine), one.cost)
-    return (1, False, list(LEVELS).index(one.rating.level), one.cost)
+def _order(setup):
+    if setup.in_first_table:
+        return (0, setup.tier == "defaults", list(ENGINES).index(setup.engine), setup.cost)
+    return (1, False, list(LEVELS).index(setup.rating.level), setup.cost)
 
 
-def _mark(judgement, one):
-    """A study's mark of a variant; a study without variants has marks of the main variant without a name."""
-    unnamed = judgement.marks.get((one["engine"], ""), UNTESTED) if one["best"] else UNTESTED
-    return judgement.marks.get((one["engine"], one["variant"]), unnamed)
+def _mark_of(judgement, variant):
+    """Return a study's mark of a variant; a study without variants marks the main variant under the name ""."""
+    unnamed = judgement.marks.get((variant["engine"], ""), UNTESTED) if variant["best"] else UNTESTED
+    return judgement.marks.get((variant["engine"], variant["variant"]), unnamed)
 
 
 def _rating(marks):
-    worst = list(LEVELS)[max(map(_level, marks))]
+    worst = list(LEVELS)[max(map(_badness, marks))]
     return Mark(LEVELS[worst], worst)
 
 
-def _level(mark):
-    """How bad a mark is: the place of its level among `LEVELS`."""
+def _badness(mark):
+    """Return the place of a mark's level among `LEVELS`; larger is worse."""
     return list(LEVELS).index(mark.level if mark.level in LEVELS else "part")
 
 
 def own_restitution(block: Result, outside: str = "") -> Judgement:
-    """Restitution of the scenes' own block, from its free rocking; takes the place of the study's.
+    """Return the judgement on restitution of the scenes' own block in free rocking, in place of the study's.
 
-    outside : the warning of a scene outside the range of a statue; the error of the restitution then says little on the
-    loss in an impact.
+    outside : warning of a scene outside the range of statues, "" without. There the error of restitution says little
+    about the energy lost in an impact, so that no engine is rated.
     """
     marks = {
         (row["engine"], row["variant"]): Mark(
@@ -250,11 +255,11 @@ def own_restitution(block: Result, outside: str = "") -> Judgement:
 
 
 def not_to_do(setups: Sequence[Setup]) -> list[str]:
-    """Three lines at most."""
-    defaults = [one for one in setups if one.tier == "defaults" and one.rating.level in LEVELS]
+    """Return warnings to users, three sentences at most."""
+    defaults = [setup for setup in setups if setup.tier == "defaults" and setup.rating.level in LEVELS]
     lines = []
     if defaults:
-        bad = sum(one.rating.level == "bad" for one in defaults)
+        bad = sum(setup.rating.level == "bad" for setup in defaults)
         lines.append(f"Do not use an engine with its defaults: {bad} of {len(defaults)} tested are not to be trusted.")
     lines.append(
         "Do not rely on an outcome whose margin (rocking margin SCENE) is smaller than the uncertainty of your data."
@@ -271,13 +276,15 @@ TUNED, DEFAULTS = "tuned", "defaults"
 
 
 def screen(setups: Sequence[Setup], judgements: Sequence[Judgement], glances: Iterable[Glance]) -> dict[str, Any]:
-    """What the page's template is given: title, lines, charts and tables of advice; charts None and no advice where no
-    study has them."""
-    found = list(glances)
-    curves = next((one for one in found if one.curves), None)
-    shares = shown([one for glance in found for one in glance.endings], setups)
-    says = {key: words for glance in found for key, words in glance.says.items()}
-    advised = next((one for one in found if one.advice), None)
+    """Return the first screen for the page's template: title, lines, charts and tables of advice.
+
+    Charts are None, and advice is empty, where no study has them.
+    """
+    given = list(glances)
+    curves = next((glance for glance in given if glance.curves), None)
+    shares = shown([ending for glance in given for ending in glance.endings], setups)
+    says = {key: words for glance in given for key, words in glance.says.items()}
+    advised = next((glance for glance in given if glance.advice), None)
     return {
         "title": title(shares),
         "lines": lines(setups, judgements, shares, says),
@@ -285,28 +292,30 @@ def screen(setups: Sequence[Setup], judgements: Sequence[Judgement], glances: It
         "costs": curves and costs(curves.curves),
         "endings": endings(shares) if shares else None,
         "swatches": swatches(shares),
-        "advice": advice(advised, [one for glance in found for one in glance.peaks]) if advised else [],
+        "advice": advice(advised, [peaks for glance in given for peaks in glance.peaks]) if advised else [],
     }
 
 
-def shown(found: Sequence[Endings], setups: Sequence[Setup]) -> list[Endings]:
-    """Those of the engines in question in the order of the first table, of each kind of motion: defaults first; of all
-    engines where none of these was run."""
-    asked = [one for one in setups if one.in_first_table] or setups
-    columns = {(one.engine, one.variant): place for place, one in enumerate(asked)}
-    kept = [one for one in found if (one.engine, one.variant) in columns]
-    motions = list(dict.fromkeys(one.motions for one in kept))
+def shown(shares: Sequence[Endings], setups: Sequence[Setup]) -> list[Endings]:
+    """Return the shares of the subject engines; of all engines where no subject engine was run.
+
+    They stand by motion, then defaults before tuned variants, then in the order of the first table.
+    """
+    columns = [setup for setup in setups if setup.in_first_table] or setups
+    places = {(setup.engine, setup.variant): place for place, setup in enumerate(columns)}
+    kept = [share for share in shares if (share.engine, share.variant) in places]
+    motions = list(dict.fromkeys(share.motions for share in kept))
     return sorted(
-        kept, key=lambda one: (motions.index(one.motions), one.kind == TUNED, columns[one.engine, one.variant])
+        kept, key=lambda share: (motions.index(share.motions), share.kind == TUNED, places[share.engine, share.variant])
     )
 
 
 def title(shares: Sequence[Endings]) -> str:
-    """The answer as a count of runs, where tuned engines and defaults were run; else the question."""
-    counts = [_changed(_tier(shares, tier)) for tier in (TUNED, DEFAULTS)]
+    """Return the answer as a count of runs, if tuned engines and defaults were run; else the question."""
+    counts = [_changed(_of_kind(shares, tier)) for tier in (TUNED, DEFAULTS)]
     if not all(runs for _, runs in counts):
         return QUESTION
-    names = listed(list(dict.fromkeys(one.engine for one in _tier(shares, TUNED))))
+    names = listed(list(dict.fromkeys(share.engine for share in _of_kind(shares, TUNED))))
     tuned, plain = (f"{changed} of {runs}" for changed, runs in counts)
     return (
         f"Away from outcome boundaries, tuned {names} end otherwise than the model, or fail, in {tuned} runs; with "
@@ -317,156 +326,180 @@ def title(shares: Sequence[Endings]) -> str:
 def lines(
     setups: Sequence[Setup], judgements: Sequence[Judgement], shares: Sequence[Endings], says: Mapping[str, str]
 ) -> list[tuple[str, str]]:
-    """Five lines, each (what it is about, its sentences). What no study tells is left out."""
+    """Return up to five lines, (subject, sentences); those without a result are left out."""
     near = " ".join(filter(None, (_left_out(shares), says.get("near", ""))))
-    found = [
+    pairs = [
         ("Restitution", _restitution(setups, judgements)),
         ("Outcomes", _outcomes(shares)),
         ("Near outcome boundaries", near),
         ("Cost", says.get("cost", "")),
         ("Real blocks", says.get("real", "")),
     ]
-    return [pair for pair in found if pair[1]]
+    return [pair for pair in pairs if pair[1]]
 
 
-def advice(found: Glance, peaks: Sequence[Peaks]) -> list[Table]:
-    """The recommendation by accuracy, and what its levels give elsewhere: in other scenes, and in the runs of `peaks`,
-    of which most are at another level."""
-    kept = [one for one in found.advice if one.engine]
-    names, scenes = listed(found.asked), list(dict.fromkeys(scene for one in kept for scene in one.elsewhere))
+def advice(glance: Glance, peaks: Sequence[Peaks]) -> list[Table]:
+    """Return a table of the recommendation by accuracy, and a table of the errors of its levels elsewhere.
+
+    Elsewhere: in other scenes, and in the runs of `peaks`, most of which were made at another level.
+    """
+    reached = [level for level in glance.advice if level.engine]
+    names, scenes = listed(glance.engines), list(dict.fromkeys(scene for level in reached for scene in level.elsewhere))
     first = Table(
-        f"What to use of {names}, tuned. Judged in one scene ({found.scene}): the cheapest level that, as all finer "
-        "ones, keeps peak tilt over slenderness, and the overturning boundary of pulses, this accurate. Costs "
-        f"within a factor of {number(found.alike, 2)} are the same; then each engine is named",
+        f"Which engine and level to use, of {names}, tuned. Each entry is the cheapest level that reaches the "
+        f"accuracy, and still reaches it at every finer level, in one scene ({glance.scene}). Accuracy is the error of "
+        "peak tilt over slenderness, and of the overturning boundary of pulses. Costs within a factor of "
+        f"{number(glance.alike, 2)} count as equal; then each engine is named",
         ("accuracy", "engine", "level", "CPU time per simulated second", "command"),
         [
-            [percent(one.accuracy, 1), one.engine, one.setting, f"{number(1e3 * one.cost, 2)} ms", one.command]
-            if one.engine
-            else [percent(one.accuracy, 1), "not reached", "–", "–", "–"]
-            for one in found.advice
+            [
+                percent(level.accuracy, 1),
+                level.engine,
+                level.setting,
+                f"{number(1e3 * level.cost, 2)} ms",
+                level.command,
+            ]
+            if level.engine
+            else [percent(level.accuracy, 1), "not reached", "–", "–", "–"]
+            for level in glance.advice
         ],
     )
-    motions = list(dict.fromkeys(one.motions for one in peaks))
+    motions = list(dict.fromkeys(peak.motions for peak in peaks))
     second = Table(
-        "The same levels elsewhere: error of peak tilt over slenderness in other scenes, and runs within the accuracy. "
-        "Under recorded motions engines were run at one level",
+        "The same levels in other scenes: error of peak tilt over slenderness, and number of runs within the accuracy. "
+        "Under recorded motions each engine was run at one level only",
         ("accuracy", "engine, level", *scenes, *motions),
         [
             [
-                percent(one.accuracy, 1),
-                f"{one.engine}, {one.setting}",
-                *(_missed(one, one.elsewhere.get(scene)) for scene in scenes),
-                *(_runs_within(one, [peak for peak in peaks if peak.motions == name]) for name in motions),
+                percent(level.accuracy, 1),
+                f"{level.engine}, {level.setting}",
+                *(_error_elsewhere(level, level.elsewhere.get(scene)) for scene in scenes),
+                *(_runs_within(level, [peak for peak in peaks if peak.motions == name]) for name in motions),
             ]
-            for one in kept
+            for level in reached
         ],
     )
-    return [first, *([second] if kept and (scenes or motions) else [])]
+    return [first, *([second] if reached and (scenes or motions) else [])]
 
 
-def _missed(one: Advised, error: float | None) -> str:
+def _error_elsewhere(level: Advised, error: float | None) -> str:
     words = percent(error)
-    return f"{words}: missed" if error is None or error > one.accuracy else words
+    return f"{words}: missed" if error is None or error > level.accuracy else words
 
 
-def _runs_within(one, peaks):
-    """Runs of an advised level within its accuracy; where it was not run, those of the variant's level that was."""
-    mine = [peak for peak in peaks if (peak.engine, peak.variant) == (one.engine, one.variant)]
-    if not mine:
+def _runs_within(level, peaks):
+    """Return in words how many runs of a level are within its accuracy, or those of the level that was run instead."""
+    levels_run = [peak for peak in peaks if (peak.engine, peak.variant) == (level.engine, level.variant)]
+    if not levels_run:
         return "not run"
-    here = next((peak for peak in mine if peak.level == one.level), None)
-    return here.within(one.accuracy) if here else f"not run; at {mine[0].setting}: {mine[0].within(one.accuracy)}"
+    same_level = next((peak for peak in levels_run if peak.level == level.level), None)
+    return (
+        same_level.within(level.accuracy)
+        if same_level
+        else f"not run; at {levels_run[0].setting}: {levels_run[0].within(level.accuracy)}"
+    )
 
 
-def _tier(shares, tier):
-    return [one for one in shares if one.kind == tier]
+def _of_kind(shares, tier):
+    return [share for share in shares if share.kind == tier]
 
 
 def _changed(shares):
-    """(runs with another outcome or none, runs) of all of them."""
-    return sum(one.changed for one in shares), sum(one.runs for one in shares)
+    """Return (runs with another outcome or none, all runs) of these shares together."""
+    return sum(share.changed for share in shares), sum(share.runs for share in shares)
 
 
 def _by_engine(counts):
-    """ "3 (a) and 2 (b)" of {engine: words}."""
+    """Return {engine: words} as "3 (a) and 2 (b)"."""
     return listed([f"{words} ({engine})" for engine, words in counts.items()])
 
 
 def _restitution(setups, judgements):
-    """How far the restitution is off, in the first study that tells it."""
-    head = next((one.heading for one in judgements if one.key == RESTITUTION), None)
+    """Return sentences on the error of restitution, from the first judgement on it."""
+    head = next((judgement.heading for judgement in judgements if judgement.key == RESTITUTION), None)
+    columns = [setup for setup in setups if setup.in_first_table and head]
     parts = []
     for tier, how, begin in (
-        (TUNED, "Tuned", "tuned engines are off by"),
-        (DEFAULTS, "With defaults", "With defaults they are off by"),
+        (TUNED, "Tuned", "tuned engines reproduce it to within"),
+        (DEFAULTS, "With defaults", "With defaults the error is"),
     ):
-        marks = {one.engine: one.marks[head] for one in setups if one.in_first_table and one.tier == tier and head}
+        marks = {setup.engine: setup.marks[head] for setup in columns if setup.tier == tier}
         known = {engine: mark for engine, mark in marks.items() if mark.value is not None}
         if known:
             parts.append(f"{begin} {_by_engine({engine: number(mark.value, 2) for engine, mark in known.items()})}.")
         deaf = [engine for engine, mark in known.items() if "missed" in mark.words]
         if deaf:
             who = "both" if len(deaf) == len(known) == 2 else listed(deaf)
-            parts.append(f"{how}, impacts are missed by {who}.")
-    return f"{' '.join(parts)} This is the {head}; restitution lies between 0 and 1." if parts else ""
+            parts.append(f"{how}, {who} miss{'es' * (len(deaf) == 1)} impacts.")
+    return f"{' '.join(parts)} Measured is the {head}. Restitution lies between 0 and 1." if parts else ""
 
 
 def _outcomes(shares):
-    """How many runs end otherwise under recorded motions, or under the first others that were run, and under all of the
-    others together."""
-    motions = next((one.motions for one in shares if "record" in one.motions), shares[0].motions if shares else "")
-    here = [one for one in shares if one.motions == motions]
-    found = (
-        (f"under {motions} the outcome is another or the run fails", _ends, here),
-        ("Engine and model both overturn, but at another time", _late, here if any(one.late for one in here) else []),
+    """Return sentences on how many runs end otherwise: under recorded motions, or the first ones; under all others."""
+    motions = next(
+        (share.motions for share in shares if "record" in share.motions), shares[0].motions if shares else ""
+    )
+    first = [share for share in shares if share.motions == motions]
+    groups = (
+        (f"under {motions}, {{}} end otherwise than the model, or fail, in {{}}.", _changed_by_engine, first),
         (
-            "Under all other motions the outcome is another or the run fails",
+            "In {1}, {0} overturn as the model does, but at another time.",
+            _late_by_engine,
+            first if any(share.late for share in first) else [],
+        ),
+        (
+            "Under all other motions, {} end otherwise than the model, or fail, in {}.",
             _all_motions,
-            [one for one in shares if one.motions != motions],
+            [share for share in shares if share.motions != motions],
         ),
     )
-    told = []
-    for words, count, chosen in found:
-        tiers = ((how, _tier(chosen, tier)) for tier, how in ((TUNED, "tuned"), (DEFAULTS, "with defaults")))
-        if parts := [f"{how}, in {count(some)}" for how, some in tiers if some]:
-            told.append(f"{words}: {'; '.join(parts)}.")
-    return " ".join(told)
+    sentences = []
+    for words, count, chosen in groups:
+        kinds = ((who, _of_kind(chosen, kind)) for kind, who in ((TUNED, "tuned engines"), (DEFAULTS, "defaults")))
+        counts = [(who, count(members)) for who, members in kinds if members]
+        sentences += [words.format(*counts[0])] if counts else []
+        sentences += [f"With {who}, this happens in {runs}." for who, runs in counts[1:]]
+    return " ".join(sentences)
 
 
-def _ends(shares):
-    return _by_engine({one.engine: f"{one.changed} of {one.runs}" for one in shares})
+def _changed_by_engine(shares):
+    return _by_engine({share.engine: f"{share.changed} of {share.runs}" for share in shares}) + " runs"
 
 
-def _late(shares):
-    return f"{_by_engine({one.engine: one.late or 0 for one in shares})} more"
+def _late_by_engine(shares):
+    return _by_engine({share.engine: str(share.late or 0) for share in shares}) + " more runs"
 
 
 def _all_motions(shares):
-    """Of all of them, and under which motions those of tuned engines are."""
+    """Return how many runs of all have another outcome or none; of tuned engines also under which motions."""
     changed, runs = _changed(shares)
-    by_motions = {motions: _changed(some)[0] for (motions,), some in grouped(shares, lambda one: one.motions).items()}
-    told = [f"{count} under {motions}" for motions, count in by_motions.items() if count and shares[0].kind == TUNED]
-    return f"{changed} of {runs}{f' ({listed(told)})' if told else ''}"
+    by_motions = {
+        motions: _changed(members)[0] for (motions,), members in grouped(shares, lambda share: share.motions).items()
+    }
+    counts = [f"{count} under {motions}" for motions, count in by_motions.items() if count and shares[0].kind == TUNED]
+    return f"{changed} of {runs} runs{f' ({listed(counts)})' if counts else ''}"
 
 
 def _left_out(shares):
-    """How many runs of tuned engines are left out above, by motion."""
-    told = []
-    for (motions,), some in grouped(_tier(shares, TUNED), lambda one: one.motions).items():
-        counts = dict.fromkeys(f"{one.left_out} of {one.runs + one.left_out}" for one in some)
-        told.append(f"{' or '.join(counts)} ({motions})")
-    return f"the counts above leave out, of the runs of each tuned engine, {listed(told)}." if told else ""
+    """Return a sentence on how many runs of tuned engines the counts leave out, by motion."""
+    parts = []
+    for (motions,), members in grouped(_of_kind(shares, TUNED), lambda share: share.motions).items():
+        counts = dict.fromkeys(f"{share.left_out} of {share.runs + share.left_out}" for share in members)
+        parts.append(f"{' or '.join(counts)} ({motions})")
+    return f"these counts leave out runs near a boundary: of each tuned engine, {listed(parts)}." if parts else ""
 
 
 MOST_WARNINGS = 3  # of a scene, at the top of the page
 
 
 def summary(scenes: Result, block: Result | None) -> list[str]:
-    """Sentences, list of str: outcomes, engines that are missing, runs that failed."""
+    """Return sentences on outcomes, missing engines, and failed runs."""
     sentences = []
     for name, scene in scenes.settings["scenes"].items():
         rows = [row for row in scenes.rows if row["scene"] == name]
-        sentences.append(f"{scene['name']}: {outcomes(rows)}.{_times(rows)}{_displacement(rows)}{_warned(rows)}")
+        sentences.append(
+            f"{scene['name']}: {outcomes(rows)}.{_times(rows)}{_displacement(rows)}{_warning_sentence(rows)}"
+        )
     sentences += [f"Not in this report: {words}." for words in missing_words(scenes.settings["missing"])]
     failed = [
         f"{row['engine']} on {row['scene']} ({row['failure']['reason']})" for row in scenes.rows if row["failure"]
@@ -481,8 +514,8 @@ def summary(scenes: Result, block: Result | None) -> list[str]:
     return sentences
 
 
-def _warned(rows):
-    """The warnings of a scene's runs, each once; the table beside the outcomes says whose they are."""
+def _warning_sentence(rows):
+    """Return the warnings of a scene's runs, each once; a table names the solvers that warn."""
     warnings = list(dict.fromkeys(warning["text"] for row in rows for warning in row.get("warnings", ())))
     if not warnings:
         return ""
@@ -503,8 +536,8 @@ def _displacement(rows):
     if "analytic" not in peaks:
         return ""
     text = f" In the model the base moves by at most {number(peaks['analytic'], 4)} m"
-    apart = {solver: abs(peak / peaks["analytic"] - 1) for solver, peak in peaks.items() if solver != "analytic"}
-    if apart:
-        worst = max(apart, key=lambda solver: apart[solver])
-        text += f"; engines are off by up to {percent(apart[worst])} ({worst})"
+    deviations = {solver: abs(peak / peaks["analytic"] - 1) for solver, peak in peaks.items() if solver != "analytic"}
+    if deviations:
+        worst = max(deviations, key=lambda solver: deviations[solver])
+        text += f"; engines are off by up to {percent(deviations[worst])} ({worst})"
     return f"{text}."

@@ -1,6 +1,6 @@
-"""A page of its own: of one study's result, or of what else the report folds away.
+"""Pages beside the report, one for each study; the templates, and the report's equations and glossary.
 
-The equations that the page prints, with the misprints of the paper beside their corrections, and its words.
+The equations stand as the model uses them; words beside them name the misprints of the paper.
 """
 
 import hashlib
@@ -38,8 +38,8 @@ from .answer import origin_of
 class Equation:
     """An equation of the model.
 
-    number: as in the paper, or ours with a letter. tex: see `comparisons.plotting.diagrams`. words: what it says.
-    modes: whether the drawing of the modes follows it.
+    number: as in the paper; with a letter: ours. tex: for `comparisons.plotting.diagrams.mathml`. words: its meaning.
+    modes: whether a link to the drawing of the modes follows.
     """
 
     number: str
@@ -164,10 +164,10 @@ SIZE = 190, 112  # of a frame
 
 
 def frames() -> list[tuple[Markup, str]]:
-    """(drawing, words) of four frames of one impact in equal steps of `STEP`: why engines err at a corner.
+    """Return (drawing, words) of four frames of one impact in equal steps of `STEP`: why engines err at a corner.
 
-    The steps are those of the project's own integrator, but for the third frame, which is no run's. The errors are
-    those over many steps of about that size: that of one step may be small by chance.
+    Steps are of the project's own integrator; the third frame is drawn by hand. Errors are rms values over many steps
+    of about that size, as the error of one step may be small by chance.
     """
     run = simulate_time_stepping(SCENE, step=STEP)
     history = run.history
@@ -196,7 +196,7 @@ def frames() -> list[tuple[Markup, str]]:
 
 
 def _foot(tilt, corner, says, lift=0.0):
-    """The foot of a block, its angle exaggerated, about its right (1) or left (-1) corner, `lift` above the ground."""
+    """Draw the foot of a block, its angle exaggerated, about its right (1) or left (-1) corner, `lift` above ground."""
     drawing = Drawing(*SIZE, 98, f"The foot of the block, {says}")
     return drawing.svg(
         drawing.line((6, 0), (184, 0), "floor"),
@@ -210,7 +210,7 @@ HERE = Path(__file__).parent
 def write_study(
     study: Study, path: str | PathLike[str], folder: str | PathLike[str] | None = None
 ) -> tuple[Path, Section]:
-    """Write the page of the result at `path` into `folder`, by default beside it: (its path, what it says).
+    """Write the page of the result at `path` into `folder`, by default beside it. Return (its path, its section).
 
     Raises
     ------
@@ -223,18 +223,16 @@ def write_study(
     if path.name in ("", ".."):  # the folder one is in, or the one above
         path = path.resolve()
     result = read_study(path, study.name)
-    old, file = age(result), path.name
+    outdated, file = age(result), path.name
     try:
         page = study.page(result).whole()
     except Exception as error:
-        if old is None:  # of the very code that fails
+        if outdated is None:  # of the very code that fails
             raise
-        words = (
-            f"{file}: its page cannot be drawn ({readable(repr(error))}); it is {old}; run rocking study {study.name}"
-        )
-        raise ResultError(words) from error
+        words = f"{file}: its page cannot be drawn ({readable(repr(error))}); it is {outdated}"
+        raise ResultError(f"{words}; run rocking study {study.name}") from error
     into = (path if folder is None else Path(folder) / file).with_suffix(".html")
-    html = detail(page.title, [replace(page, age=old)], origin_of(result))
+    html = detail(page.title, [replace(page, age=outdated)], origin_of(result))
     write_all(into.parent, {into.name: html})
     return into, page
 
@@ -248,8 +246,10 @@ def detail(
     home: str = "",
     file: str = "",
 ) -> str:
-    """The HTML of a page that needs no other file; pages: {"file", "title"} of those beside it, it being one of them,
-    and home, the report's own; none: it stands alone.
+    """Return the HTML of a page that needs no other file.
+
+    pages: {"file", "title"} of all pages in its navigation, itself among them. home: file of the report; "": the page
+    stands alone. file: its own place among `pages`.
     """
     template = environment().get_template("detail.html")
     shown = {"title": title, "sections": sections, "origin": origin}
@@ -258,24 +258,24 @@ def detail(
 
 @cache
 def environment() -> Environment:
-    """The templates, with what they write numbers, formulas and the glossary's words by."""
-    found = templates(HERE)
+    """Return the templates' environment, with filters for numbers, formulas and the glossary's terms."""
+    environment_ = templates(HERE)
     known = {re.sub(" [^ ]$", "", word): meaning for word, meaning in GLOSSARY.items()}
     words = re.compile("|".join(rf"\b{re.escape(word)}\b" for word in sorted(known, key=len, reverse=True)))
 
     def glossed(text):
-        """The text, its first use of each word of the glossary explained."""
+        """Return the text with an explanation at the first use of each term of the glossary."""
         seen = set()
 
-        def explained(found):
-            if found[0] in seen:
-                return found[0]
-            seen.add(found[0])
-            return f'<abbr title="{escape(known[found[0]])}">{found[0]}</abbr>'
+        def explained(environment_):
+            if environment_[0] in seen:
+                return environment_[0]
+            seen.add(environment_[0])
+            return f'<abbr title="{escape(known[environment_[0]])}">{environment_[0]}</abbr>'
 
         return Markup(words.sub(explained, indexed(str(escape(unbroken(text))))))
 
-    found.filters |= {
+    environment_.filters |= {
         "math": lambda tex: Markup(mathml(tex, display=True)),
         "indexed": lambda text: Markup(indexed(str(escape(unbroken(str(text)))))),
         "glossed": glossed,
@@ -286,18 +286,18 @@ def environment() -> Environment:
         "key": lambda who: Markup(key_of(who)),
         "colour": colour,
     }
-    return found
+    return environment_
 
 
 def assets() -> dict[str, Any]:
-    """Style and scripts, to stand on the page itself, and a policy that lets no others run and nothing be loaded."""
-    found = {
+    """Return style and scripts for the page itself, and a policy that forbids other scripts and all loading."""
+    parts = {
         "style": Markup(
             "".join(file.read_text(encoding="utf-8") for file in (STYLE, diagrams.STYLE, HERE / "style.css"))
         ),
         "script": Markup((HERE / "page.js").read_text(encoding="utf-8")),
         "animation": Markup((HERE / "animation.js").read_text(encoding="utf-8")),
     }
-    digests = (hashlib.sha256(found[name].encode()).digest() for name in ("script", "animation"))
+    digests = (hashlib.sha256(parts[name].encode()).digest() for name in ("script", "animation"))
     scripts = " ".join(f"'sha256-{b64encode(digest).decode()}'" for digest in digests)
-    return {**found, "policy": f"default-src 'none'; style-src 'unsafe-inline'; script-src {scripts}"}
+    return {**parts, "policy": f"default-src 'none'; style-src 'unsafe-inline'; script-src {scripts}"}

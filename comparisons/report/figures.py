@@ -1,9 +1,7 @@
-"""The figures of the report's own runs, each drawn from the arrays and rows of a result file; and the runs on one
-clock: what the page's script moves, and the frame shown without one.
+"""Histories of the report's own runs: in files, thinned for drawing, as charts and as an animation.
 
-Histories of the report's runs: kept in files, so that memory holds one at a time; reduced for drawing.
-
-Measured is what was computed; thinned only what a figure or the result file shows of a long record.
+Files hold the histories, so that memory holds one at a time. All measurements use whole histories; only figures and the
+result file have thinned ones. Charts and the animation are drawn from the arrays and rows of a result file.
 """
 
 import hashlib
@@ -29,13 +27,13 @@ from ..plotting.plots import mode_spans
 from ..schemas.columns import Row, number
 from .detail import environment
 
-# A history of up to so many samples is shown whole; of a longer one the extremes in each of so many parts.
+# A history of at most so many samples is drawn whole; of a longer one the extremes in each of so many parts.
 MOST_SHOWN, PARTS = 20_000, 1_500
 
 
 @dataclass(frozen=True)
 class ToFile:
-    """Measure: everything, the history as a file in `folder`, an array for each of its columns."""
+    """Measure that returns a whole response; its history becomes a file in `folder`, an array for each column."""
 
     folder: str
 
@@ -49,7 +47,7 @@ class ToFile:
 
 
 def response_of(values: Mapping[str, Any], folder: str | PathLike[str]) -> Response:
-    """The `Response` of a row's values, its history from `folder`."""
+    """Return the `Response` of a row's values, with its history from `folder`."""
     file = values["history"]
     return Response.from_json(
         {key: value for key, value in values.items() if key != "history"}, _history(Path(folder) / file)
@@ -66,9 +64,9 @@ def _history(path):
 
 
 def differences(history: History, reference: History) -> dict[str, np.ndarray]:
-    """{"apart/time", "apart/tilt", "apart/base_displacement": array}: history minus reference, thinned; and the slip's.
+    """Return history minus reference, thinned: {"apart/time", "apart/tilt", "apart/base_displacement": array}.
 
-    At the reference's samples up to the end of the shorter one.
+    It has "apart/slip", too, if both have slip. Samples are the reference's, up to the end of the shorter history.
     """
     time = reference.time[reference.time <= history.time[-1]]
     slip = ("slip",) if history.slip is not None and reference.slip is not None else ()
@@ -81,10 +79,10 @@ def differences(history: History, reference: History) -> dict[str, np.ndarray]:
 
 
 def thinned(*columns: np.ndarray, most: int = MOST_SHOWN, parts: int = PARTS) -> np.ndarray:
-    """Indices, in order, of the samples to draw of columns of equal length.
+    """Return the indices, in order, of the samples to draw of columns of equal length.
 
-    All of up to `most` samples. Else both ends, and where each column is least and greatest in each of so many
-    equal parts: no peak is lost, and a line through them covers what a line through all covers.
+    These are all samples up to `most`. Of more samples they are both ends, and the least and greatest of each column in
+    each of `parts` equal parts. So no peak is lost, and a line covers what a line through all samples covers.
     """
     count = len(columns[0])
     if count <= most:
@@ -98,42 +96,43 @@ def thinned(*columns: np.ndarray, most: int = MOST_SHOWN, parts: int = PARTS) ->
 
 
 ANALYTIC = "analytic"
-TILT = 0.01, 1.6  # least and largest limit of a tilt axis, over slenderness, so that contact noise is not shown
+TILT = 0.01, 1.6  # least and largest limit of a tilt axis, over slenderness; the least one hides contact noise
 SHOWN = 700  # samples of a line
-LEAST = 1e-9  # of a difference drawn
+LEAST = 1e-9  # smaller differences are drawn here
 WORDS = {"tilt": "tilt", "slip": "slip", "base_displacement": "displacement"}  # in the titles of panels
 
 
 def pairs(result: Result, name: str) -> Iterator[list[Chart]]:
-    """Of a scene tilt where the block lifts, slip where it slides, and base displacement where there is a base: all
-    solvers over each other, and how far the engines are from the analytic model.
+    """Yield charts of a scene, in pairs: all solvers overlaid, and the engines' differences from the analytic model.
+
+    There is a pair for tilt if the block lifts, for slip if it slides, and for base displacement if there is a base.
     """
     scene = result.settings["scenes"][name]
     rows = drawn(result, name)
     if any(row["outcome"] not in LEVEL for row in rows):
-        yield _pair(result, name, rows, "tilt", "tilt φ/γ [-]", scene["block"]["slenderness"])
+        yield _overlay_and_error(result, name, rows, "tilt", "tilt φ/γ [-]", scene["block"]["slenderness"])
     if slides(rows):
-        whole, *beside = _pair(result, name, rows, "slip", "slip on the support [m]", 1.0)
+        whole, *beside = _overlay_and_error(result, name, rows, "slip", "slip on the support [m]", 1.0)
         for row in rows:
-            _shade(whole, row)
+            _shade_sliding(whole, row)
         yield [whole, *beside]
     if scene["base"] and rows:
-        yield _pair(result, name, rows, "base_displacement", "base displacement x [m]", 1.0)
+        yield _overlay_and_error(result, name, rows, "base_displacement", "base displacement x [m]", 1.0)
 
 
 def drawn(result: Result, name: str) -> list[Row]:
-    """The rows of a scene whose histories are there."""
+    """Return the rows of a scene whose histories are stored."""
     rows = [row for row in result.rows if row["scene"] == name and not row["failure"]]
     return [row for row in rows if f"{name}/{row['engine']}/time" in result.arrays]
 
 
 def slides(rows: Sequence[Row]) -> bool:
-    """Whether the block slides in one of these runs."""
+    """Return whether the block slides in one of these runs."""
     return any((row.get("sliding") or {}).get("peak") for row in rows)
 
 
-def _shade(chart, row):
-    """Shade when the block of a run slides, if it tells."""
+def _shade_sliding(chart, row):
+    """Shade the times at which the block of a run slides, if the run tells them."""
     spans = [
         (begin, end)
         for begin, end, mode in mode_spans((row.get("sliding") or {}).get("modes") or (), row["end"]["time"])
@@ -146,16 +145,16 @@ def _shade(chart, row):
         chart.says += f" Shaded: the block slides in {row['engine']}."
 
 
-def _pair(result, name, rows, column, label, scale):
+def _overlay_and_error(result, name, rows, column, label, scale):
     scene = result.settings["scenes"][name]
-    lines, apart = {}, {}
+    lines, errors = {}, {}
     for row in rows:
         key = f"{name}/{row['engine']}"
         if f"{key}/{column}" not in result.arrays:
             continue
-        lines[row["engine"]] = _line(result, key, column, scale)
+        lines[row["engine"]] = _thinned_line(result, key, column, scale)
         if f"{key}/apart/{column}" in result.arrays and row["engine"] != ANALYTIC:
-            apart[row["engine"]] = _line(result, f"{key}/apart", column, scale)
+            errors[row["engine"]] = _thinned_line(result, f"{key}/apart", column, scale)
     end = max(float(time[-1]) for time, _ in lines.values())
     limit = 1.08 * (max(float(np.abs(values).max()) for _, values in lines.values()) or 1.0)
     limit = float(np.clip(limit, *TILT)) if column == "tilt" else limit
@@ -168,23 +167,28 @@ def _pair(result, name, rows, column, label, scale):
     )
     for who, (time, values) in lines.items():
         whole.line(time, values, who)
-    if not apart:
+    if not errors:
         return [whole]
-    sizes = {who: np.maximum(np.abs(values), LEAST) for who, (_, values) in apart.items()}
-    most = max(float(values.max()) for values in sizes.values())
+    sizes = {who: np.maximum(np.abs(values), LEAST) for who, (_, values) in errors.items()}
+    largest_error = max(float(values.max()) for values in sizes.values())
     largest = "; ".join(f"{who} {number(float(values.max()), 2)}" for who, values in sizes.items())
-    # copies of a block that overturns part as it falls: nothing to mark
+    # neighbouring motions of a falling block part as it falls: no horizon to mark
     marked = bool(scene["horizon"]) and scene["horizon"] < 0.99 * end
     beside = Chart(
         Axis("time [s]", 0.0, end),
-        Axis(f"|engine − model| {label[label.index('[') :]}", LEAST, 10.0 ** max(np.ceil(np.log10(most)), -7), "log"),
+        Axis(
+            f"|engine − model| {label[label.index('[') :]}",
+            LEAST,
+            10.0 ** max(np.ceil(np.log10(largest_error)), -7),
+            "log",
+        ),
         f"{scene['name']}: how far the engines are from the analytic model in {label}; largest: {largest}.",
         title=f"{scene['name']}: {WORDS[column]}, error",
         height=240,
         head=16 * marked,
     )
     for who, values in sizes.items():
-        beside.line(apart[who][0], values, who)
+        beside.line(errors[who][0], values, who)
     if marked:
         beside.rule(scene["horizon"])
         beside.heading(scene["horizon"], "sensitivity horizon")
@@ -192,14 +196,14 @@ def _pair(result, name, rows, column, label, scale):
     return [whole, beside]
 
 
-def _line(result, key, column, scale):
+def _thinned_line(result, key, column, scale):
     time, values = result.arrays[f"{key}/time"], result.arrays[f"{key}/{column}"] / scale
     kept = thinned(values, most=SHOWN, parts=SHOWN // 2)
     return time[kept], values[kept]
 
 
 def loops(result: Result, name: str) -> Chart:
-    """Force over displacement of all bearings of a scene together."""
+    """Draw force over displacement of all bearings of a scene together."""
     scene, lines = result.settings["scenes"][name], {}
     for row in drawn(result, name):
         key = f"{name}/{row['engine']}"
@@ -217,7 +221,7 @@ def loops(result: Result, name: str) -> Chart:
 
 
 def blocks(scenes: Sequence[Mapping[str, Any]]) -> Figure:
-    """The blocks of scenes, as they stand in a result's settings, to scale on what carries them."""
+    """Draw the blocks of scenes, given as in a result's settings, to scale on their supports."""
     draw = environment().get_template("statue.html").module.block  # type: ignore[attr-defined]  # a macro there
     words = "; ".join(
         f"{scene['name']}: a block of {scene['block']['mass']:g} kg, {2 * scene['half_width']:.3f} m wide and "
@@ -234,6 +238,7 @@ def blocks(scenes: Sequence[Mapping[str, Any]]) -> Figure:
 
 
 def ground_motion(result: Result) -> Figure:
+    """Draw the ground acceleration of a result over time."""
     motion, time = result.settings["motion"], result.arrays["motion/time"]
     chart = Chart(
         Axis("time [s]", 0.0, float(time[-1])),
@@ -251,17 +256,18 @@ def ground_motion(result: Result) -> Figure:
 
 
 FRAMES = 25.0  # 1/s
-LONGEST = 2000  # frames; a longer run is shown in longer steps
+LONGEST = 2000  # frames; a longer run has longer steps between frames
 LYING = math.pi / 2
 PLATE = 0.4  # m, by which a base is drawn wider than the block and its slip
 
 
 def animation(result: Result) -> dict[str, Any] | None:
-    """What is moved, JSON-ready; None where no run has a history.
+    """Return the animation of a result's runs on one clock, ready for JSON; None if no run has a history.
 
-    step [s], count of frames, still [s] (the frame to begin with), ground: acceleration [m/s2] at the frames; scenes:
-    name, size (half width and height [m]), base, its half width [m], limit of what is drawn [m], and tracks: who, tilt
-    [rad] and, with a base, x [m], and of a block that slides slip [m] at the frames, up to where the run ended.
+    step [s]; count of frames; still [s]: time of the first frame shown; ground: acceleration [m/s2] at the frames;
+    scenes. A scene: name; size: half width and half height [m]; base, bearings and slides: whether it has them; plate:
+    half width of the base [m]; reach: largest displacement [m]; tracks. A track: who; tilt [rad], with a base x [m], of
+    a block that slides slip [m], at the frames up to the end of the run.
     """
     names = [name for name in result.settings["scenes"] if f"{name}/{ANALYTIC}/time" in result.arrays]
     if not names:
@@ -278,7 +284,7 @@ def animation(result: Result) -> dict[str, Any] | None:
     return {
         "step": round(step, 6),
         "count": len(times),
-        "still": _still(scenes, step),
+        "still": _still_time(scenes, step),
         "ground": [round(float(value), 3) for value in ground],
         "scenes": scenes,
     }
@@ -304,25 +310,25 @@ def _scene(result, name, times):
 
 
 def _track(result, key, times, who, moved):
-    """A run at the frames up to its end; a block that overturned lies down from there on."""
-    own = result.arrays[f"{key}/time"]
-    kept = times[times <= own[-1] + 1e-9]
-    tilt = np.clip(np.interp(kept, own, result.arrays[f"{key}/tilt"]), -LYING, LYING)
+    """Return a run at the frames up to its end; an overturned block lies from then on."""
+    time = result.arrays[f"{key}/time"]
+    shown = times[times <= time[-1] + 1e-9]
+    tilt = np.clip(np.interp(shown, time, result.arrays[f"{key}/tilt"]), -LYING, LYING)
     track = {"who": who, "tilt": [round(float(value), 4) for value in tilt]}
     for name, column in moved.items():
         if f"{key}/{column}" in result.arrays:
-            values = np.interp(kept, own, result.arrays[f"{key}/{column}"])
+            values = np.interp(shown, time, result.arrays[f"{key}/{column}"])
             track[name] = [round(float(value), 4) for value in values]
     return track
 
 
-def _still(scenes, step):
-    """Time of the still frame: during the first overturning, before the block lies down, else at the peak."""
+def _still_time(scenes, step):
+    """Return the time of the still frame [s]: during the first overturning, else at the peak."""
     for scene in scenes:
         tilt = np.abs(scene["tracks"][0]["tilt"])
         if tilt.max(initial=0.0) > 1.0:
             return round(float(np.argmax(tilt > 0.5)) * step, 4)
-    found = [np.abs(scene["tracks"][0].get("x", scene["tracks"][0]["tilt"])) for scene in scenes]
-    if not found[-1].any():
-        found = [np.abs(scene["tracks"][0].get("slip", scene["tracks"][0]["tilt"])) for scene in scenes]
-    return round(float(np.argmax(found[-1])) * step, 4)
+    motions = [np.abs(scene["tracks"][0].get("x", scene["tracks"][0]["tilt"])) for scene in scenes]
+    if not motions[-1].any():
+        motions = [np.abs(scene["tracks"][0].get("slip", scene["tracks"][0]["tilt"])) for scene in scenes]
+    return round(float(np.argmax(motions[-1])) * step, 4)

@@ -1,7 +1,6 @@
-"""What the README shows of the studies' stored results, the report's first screen, and where each result comes from,
-for the README beside them.
+"""Generated parts of the READMEs: the report's first screen, its charts, the origin of each result.
 
-``python -m comparisons.report.gallery`` makes all of it anew.
+``python -m comparisons.report.gallery`` writes them anew from the stored results.
 """
 
 from collections.abc import Mapping, Sequence
@@ -26,45 +25,45 @@ ALT = {"costs": "Error of peak tilt over CPU time of every solver", "endings": "
 
 
 def gallery(first: Mapping[str, Any]) -> dict[str, str]:
-    """{name of a file: SVG} of the charts of the first screen, as `first.screen` gives it, for a wide page."""
+    """Return {file name: SVG} of the charts of a first screen (`answer.screen`), for a wide page."""
     charts = {name: first[name] for name in ("costs", "endings") if first[name]}
-    made = {}
+    files = {}
     for name, picture in charts.items():
         wide, *_ = ElementTree.fromstring(f"<both>{picture.svg.decode()}</both>")
-        made[f"{name}.svg"] = alone(ElementTree.tostring(wide[0], encoding="unicode"))
-    return made
+        files[f"{name}.svg"] = alone(ElementTree.tostring(wide[0], encoding="unicode"))
+    return files
 
 
 def first_screen(stored: Sequence[Stored]) -> dict[str, Any]:
-    """The report's first screen from stored results alone."""
+    """Return the report's first screen from stored results alone."""
     judgements = judgements_of(stored)
     columns = setups_of(variants_of(stored), judgements)
-    return screen(columns, judgements, [one.glance for one in stored if one.glance])
+    return screen(columns, judgements, [study.glance for study in stored if study.glance])
 
 
 def headlines(first: Mapping[str, Any]) -> str:
-    """The first screen as Markdown: its lines, its charts, and the recommendation."""
+    """Return the first screen as Markdown: its lines, its charts, and the recommendation."""
     charts = " ".join(f"![{ALT[name]}](comparisons/report/gallery/{name}.svg)" for name in ALT if first[name])
-    told = [line for about, words in first["lines"] for line in (*wrap(f"**{about}:** {words}", 120), "")]
-    return "\n".join((*told, charts, *(line for one in first["advice"] for line in _markdown(one))))
+    paragraphs = [line for about, words in first["lines"] for line in (*wrap(f"**{about}:** {words}", 120), "")]
+    return "\n".join((*paragraphs, charts, *(line for advised in first["advice"] for line in _markdown(advised))))
 
 
-def _markdown(one):
-    """A table with its caption above."""
-    rows = [one.columns, ["---"] * len(one.columns), *one.rows]
-    return ["", *wrap(f"{one.caption}:", 120), "", *(f"| {' | '.join(row)} |" for row in rows)]
+def _markdown(shown):
+    """Return a table as lines of Markdown, with its caption above."""
+    rows = [shown.columns, ["---"] * len(shown.columns), *shown.rows]
+    return ["", *wrap(f"{shown.caption}:", 120), "", *(f"| {' | '.join(row)} |" for row in rows)]
 
 
 def origins(results: Mapping[str, Result]) -> str:
-    """Where results {name: result} come from, as a table in Markdown."""
+    """Return a table, in Markdown, of the origin of results {name: result}."""
     rows = [["result", "computed", "commit", "processor, cores, memory", "engines", "runs that held when done again"]]
     rows += [["---"] * len(rows[0])]
     for name, result in results.items():
         engines = sorted({row["engine"] for row in result.rows if row.get("engine") in ENGINES})
         last = checked(result)
         again = f"{held(last)}, {last['date']}" if last else "none"
-        told = (by_engine(result, words) for words in (date_of, commit_of, _machine))
-        rows.append([f"`{name}`", *told, ", ".join(engines) or "none", again])
+        cells = (by_engine(result, words) for words in (date_of, commit_of, _machine))
+        rows.append([f"`{name}`", *cells, ", ".join(engines) or "none", again])
     return "\n".join(f"| {' | '.join(row)} |" for row in rows)
 
 
@@ -74,17 +73,16 @@ def _machine(origin):
 
 
 def with_findings(readme: str, words: str) -> str:
-    """The text of a README with these words between its marks."""
+    """Return the text of a README with these words between its marks."""
     before, begin, rest = readme.partition(BEGIN)
     _, end, after = rest.partition(END)
     return f"{before}{begin}\n{words}\n{end}{after}"
 
 
 if __name__ == "__main__":
-    # one that cannot be read must not leave the README without its rows
+    # read all results before writing: an unreadable one must not leave a README without its rows
     results = {path.name: read_study(path) for path in results_in(RESULTS)}
-    found = stored_studies()
-    first = first_screen(found)
+    first = first_screen(stored_studies())
     for readme, words in ((README, headlines(first)), (RESULTS_README, origins(results))):
         write(readme, with_findings(readme.read_text(encoding="utf-8"), words))
     write_all(GALLERY, gallery(first))

@@ -1,9 +1,7 @@
-"""The runs behind the report: scenes in every solver and, where their block rocks, its restitution; as result files.
+"""The report's own runs, as a study: scenes in every solver, and the restitution of blocks that rock.
 
-The report's own runs as a study, and their results in the report's folder.
+Their results are files in the report's folder.
 """
-
-from __future__ import annotations
 
 import math
 import shutil
@@ -12,7 +10,7 @@ from dataclasses import asdict
 from functools import partial
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy.integrate import trapezoid
@@ -25,31 +23,27 @@ from analytic.scene import RADIUS
 from engines import available_engines, get_engine
 
 from ..execution.cases import Case
-from ..execution.plan import Batch, Computed, Study
+from ..execution.plan import Batch, Computed, Plan, Request, Study
 from ..execution.progress import spinner
 from ..execution.provenance import copy_result
 from ..execution.study import compute
+from ..execution.sweep import Row
 from ..metrics.errors import compare, impact_errors, lost_impacts, rms, sensitivity_horizon, solver_horizon, worst
+from ..plotting.parts import grouped
 from .figures import ToFile, differences, response_of, thinned
 from .statue import statue_of
 
-if TYPE_CHECKING:
-    from analytic.motion import Motion
-
-    from ..execution.plan import Plan, Request
-    from ..execution.sweep import Row
-
 SCENES, RESTITUTION = "scenes.json", "restitution.json"  # result files
-CARYATID = ("caryatid-rigid", "caryatid-isolated")  # the scenes of a report without scenes of one's own
+CARYATID = ("caryatid-rigid", "caryatid-isolated")  # the scenes of a report on no scenes of the user
 STARTS = (0.3, 0.45, 0.6, 0.75)  # released tilt over slenderness
 SECONDS = 3.0  # of a block of the Caryatid's size
-# Outer limit of a run [s], and what a second and a sample of the motion add to it; the longest under a usual record
-# takes a few seconds. A hang becomes a failed row.
+# Time limit of a run [s], and what each second and each sample of the motion adds to it. The longest run under a usual
+# record takes a few seconds. A run that hangs becomes a failed row.
 TIME_LIMIT, LIMIT_PER_SECOND, LIMIT_PER_SAMPLE = 60.0, 1.0, 1e-3
 
 
 def load_scenes(places: Sequence[str], motion: Motion | None = None) -> dict[str, Scene]:
-    """{a name of its own: scene} of scene files or shipped scenes; with a motion in place of theirs where it is given.
+    """Return {unique name: scene} of scene files or shipped scenes; a `motion` replaces theirs.
 
     Raises
     ------
@@ -71,13 +65,13 @@ def plan(
     variants: Mapping[str, str | None],
     motions: Mapping[str, Mapping[str, Sequence[Motion]]],
     left: Mapping[str, Sequence[str]],
-    own: bool,
+    own_scenes: bool,
 ) -> Plan:
-    """The plan of a report's runs: the scenes in every solver and, of scenes of one's own, what the page of a statue
-    asks, and the restitution of a block that rocks.
+    """Plan a report's runs: the scenes in every solver; for a user's scenes their cards and their blocks' restitution.
 
-    histories: folder in which those of the runs are kept meanwhile. variants: of the engines not taken as they come.
-    motions: of each scene, {record: its motions} besides its own; left: what was left out.
+    histories: folder that keeps the runs' histories meanwhile. variants: {engine: variant} in place of main variants.
+    motions: {scene: {record: its motions}}, besides the scene's own. left: {scene: what was left out of them}.
+    own_scenes: whether the scenes are the user's.
     """
     cases = [
         Case(
@@ -94,19 +88,19 @@ def plan(
     samples = max((len(getattr(scene.motion, "samples", ())) for scene in scenes.values()), default=0)
     limit = TIME_LIMIT + LIMIT_PER_SECOND * longest + LIMIT_PER_SAMPLE * samples
     rows = yield Batch(cases, ToFile(str(Path(histories).resolve())), "runs", limit, rates=False, long=True)
-    more: dict[str, Any] = {"variants": described_variants(request.engines), "own": own}
-    if own:
-        more["statues"] = {}
+    further: dict[str, Any] = {"variants": described_variants(request.engines), "own": own_scenes}
+    if own_scenes:
+        further["statues"] = {}
         for name, scene in scenes.items():
             with spinner(f"{scene.name}: the analytic model") as tell:
-                more["statues"][name] = statue_of(
+                further["statues"][name] = statue_of(
                     scene, motions.get(name, {}), left.get(name, ()), partial(_tell, tell, scene.name)
                 )
-    found = scenes_computed(Path(histories), rows, scenes, **more)
+    computed = scenes_computed(Path(histories), rows, scenes, **further)
     rocking = [row.case.scene for row in rows if row.case.solver == "analytic" and row.values["outcome"] not in LEVEL]
-    if not (own and rocking):
-        return found
-    yield found
+    if not (own_scenes and rocking):
+        return computed
+    yield computed
     rows = yield Batch(restitution_cases(request.engines, rocking), impacts_only, "restitution", limit, long=True)
     return restitution_computed(rows)
 
@@ -116,7 +110,7 @@ def _tell(tell, name, quantity):
 
 
 def restitution_cases(engines: Sequence[str], scenes: Sequence[Scene]) -> list[Case]:
-    """The block of the first scene released from rest, on the grounds of all, in every solver and variant."""
+    """Return cases of the first scene's block, released on each scene's ground, in all solvers and variants."""
     block = Block(**{**scenes[0].block.model_dump(), "restitution": None})  # engines decide it
     bases = {scene.base and scene.base.mass for scene in scenes}
     solvers = [("analytic", None), *((name, variant) for name in engines for variant in get_engine(name).variants)]
@@ -139,32 +133,29 @@ def restitution_cases(engines: Sequence[str], scenes: Sequence[Scene]) -> list[C
 
 
 def impacts_only(case: Case, response: Response) -> dict[str, Any]:
-    """Measure: everything but the history."""
+    """Measure a whole response but its history."""
     return response.to_json()
 
 
 def restitution_computed(rows: Sequence[Row]) -> Computed:
-    """The answer of the block released: a row for each solver and variant, over all grounds and starts."""
-    groups: dict[tuple[str, str | None], list[Row]] = {}
+    """Return the result of a released block: a row for each solver and variant, over all grounds and starts."""
+    groups = grouped(rows, lambda row: row.case.solver, lambda row: row.case.variant)
     models = {row.case.scene.digest(): Response.from_json(row.values) for row in rows if row.case.solver == "analytic"}
-    for row in rows:
-        groups.setdefault((row.case.solver, row.case.variant), []).append(row)
-    settings = {"starts": STARTS, "seconds": rows[0].case.scene.duration, "bases": list(_bases(rows))}
+    bases = dict.fromkeys(row.case.scene.base and row.case.scene.base.mass for row in rows)
+    settings = {"starts": STARTS, "seconds": rows[0].case.scene.duration, "bases": list(bases)}
     return Computed(
-        settings, [_restitution_row(*key, of, models) for key, of in groups.items()], name=Path(RESTITUTION).stem
+        settings,
+        [_restitution_row(engine, variant, members, models) for (engine, variant), members in groups.items()],
+        name=Path(RESTITUTION).stem,
     )
 
 
-def _bases(rows):
-    return dict.fromkeys(row.case.scene.base and row.case.scene.base.mass for row in rows)
-
-
 def _restitution_row(engine, variant, members, models):
-    """Errors of one solver and variant. models : {digest of a scene: the analytic model's run}."""
+    """Return the errors of one solver and variant. models : {digest of a scene: the analytic model's run}."""
     sound = [(row, Response.from_json(row.values)) for row in members if not row.failed]
     errors = [impact_errors(row.case.scene, response) for row, response in sound]
-    of_states = np.concatenate([one["state"] for one in errors]) if errors else np.empty(0)
-    jumps = [value for one in errors for value in one.get("jump", ())]
+    of_states = np.concatenate([error["state"] for error in errors]) if errors else np.empty(0)
+    jumps = [value for error in errors for value in error.get("jump", ())]
     simulated = sum(response.end.time for _, response in sound)
     spec = get_engine(engine).variants[variant] if variant else None
     return {
@@ -187,7 +178,7 @@ def _restitution_row(engine, variant, members, models):
 
 
 def described_variants(engines: Sequence[str]) -> dict[str, dict[str, dict[str, Any]]]:
-    """{engine: {variant: its kind, what the engine computes and the adapter imposes, whether that is the impact}}."""
+    """Return {engine: {variant: kind, what the engine computes, what the adapter imposes, including the impact}}."""
     return {
         name: {
             variant: {
@@ -204,12 +195,12 @@ def described_variants(engines: Sequence[str]) -> dict[str, dict[str, dict[str, 
 
 
 def scenes_computed(folder: Path, rows: Sequence[Row], scenes: Mapping[str, Scene], **more: Any) -> Computed:
-    """The answer of the scenes' runs; memory holds two histories at a time, one the analytic model's.
+    """Return the result of the scenes' runs; memory holds two histories at a time, one of them the analytic model's.
 
-    The motion described is the first scene's that has one; more: further settings.
+    The motion described is that of the first scene that has one. more: further settings.
     """
     motion = next((scene.motion for scene in scenes.values() if scene.motion is not None), None)
-    arrays = _drawn_motion(motion)
+    arrays = _motion_arrays(motion)
     described: dict[str, Any] = {}
     entries: list[dict[str, Any]] = []
     for name, scene in scenes.items():
@@ -253,8 +244,8 @@ def scenes_computed(folder: Path, rows: Sequence[Row], scenes: Mapping[str, Scen
     return Computed(settings, entries, arrays, name=Path(SCENES).stem)
 
 
-def _drawn_motion(motion):
-    """Arrays of a motion to draw: a record's samples, thinned, or a pulse's from its formula."""
+def _motion_arrays(motion):
+    """Return arrays of a motion to draw: a record's samples, thinned, or a pulse's from its formula."""
     if motion is None:
         return {}
     if not hasattr(motion, "samples"):
@@ -265,9 +256,9 @@ def _drawn_motion(motion):
 
 
 def _scene_entry(scene, row, reference, horizon, folder):
-    """(what is told of one run, what is drawn of it); measured from all samples, drawn from `thinned` ones.
+    """Return (row of one run, arrays to draw). The row comes from all samples, the arrays from `thinned` ones.
 
-    An engine's run agrees up to the horizon common to all, and ("own_agreement") up to its own.
+    An engine's run is compared up to the common horizon ("agreement") and up to its own ("own_agreement").
     """
     values = {key: value for key, value in row.values.items() if key != "history"}
     entry = {**values, "engine": row.case.solver, "failure": row.failure, **row.cost}
@@ -285,17 +276,17 @@ def _scene_entry(scene, row, reference, horizon, folder):
     drawn = {column: getattr(history, column)[shown] for column in history.columns}
     if reference is not None:
         if row.case.solver != "analytic":
-            own = solver_horizon(scene, response, reference)
-            entry["perturbation"] = own.perturbation
-            for key, until in (("agreement", horizon), ("own_agreement", own.horizon)):
+            own_horizon = solver_horizon(scene, response, reference)
+            entry["perturbation"] = own_horizon.perturbation
+            for key, until in (("agreement", horizon), ("own_agreement", own_horizon.horizon)):
                 entry[key] = asdict(compare(scene, response, reference, until=until))
         drawn.update(differences(history, reference.history))
     return entry, drawn
 
 
-# Under a record of more samples one engine runs at a time: each needs some 100 bytes a step several times over.
-SHORT_RECORD = 200_000
-UNFINISHED = "unfinished"  # folder of what a report that is broken off goes on from
+# Under a longer record one engine runs at a time, as each needs some 100 bytes a step several times over.
+SHORT_RECORD = 200_000  # samples
+UNFINISHED = "unfinished"  # folder from which an interrupted report continues
 
 STUDY = Study("report", "Scenes in every solver.", plan, by_solver=False)
 
@@ -309,10 +300,10 @@ def make_own_results(
     motions: Mapping[str, Mapping[str, Sequence[Motion]]] | None = None,
     left: Mapping[str, Sequence[str]] | None = None,
 ) -> None:
-    """Simulate what the report on one's own scenes shows, {name: scene}, and write its result files into `folder`.
+    """Simulate the user's scenes, {name: scene}, for a report, and write its result files into `folder`.
 
-    engines: those to compare, all that are installed without it; variants: of those not taken as they come; motions: of
-    each scene, {record: its motions} besides its own; left: of each scene, what was left out of them and why.
+    engines: those to compare; None: all that are installed. variants: {engine: variant} in place of main variants.
+    motions: {scene: {record: its motions}}, besides the scene's own. left: {scene: what was left out of them, and why}.
 
     >>> from tempfile import mkdtemp
     >>> from analytic import load_scene
@@ -322,8 +313,8 @@ def make_own_results(
     >>> write_page(folder).name
     'report.html'
     """
-    many = {"motions": dict(motions or {}), "left": dict(left or {})}
-    _make(folder, engines, scenes=scenes, variants=dict(variants or {}), **many, own=True)
+    others = {"motions": dict(motions or {}), "left": dict(left or {})}
+    _compute_into(folder, engines, scenes=scenes, variants=dict(variants or {}), **others, own_scenes=True)
 
 
 def make_results(
@@ -334,19 +325,19 @@ def make_results(
     Parameters
     ----------
     folder : path
-        Made if it does not exist. A report that is broken off goes on from what it finds here.
+        Made if it does not exist. An interrupted report continues from the files here.
     motion : SampledMotion
     duration : float or None
-        Of the runs [s]; None: until their outcome is decided.
+        Duration of the runs [s]; None: until their outcome is decided.
     engines : sequence of str or None
-        Those to compare; None: all that are installed.
+        Engines to compare; None: all that are installed.
     """
     scenes = {name: scene.with_(duration=duration) for name, scene in load_scenes(CARYATID, motion).items()}
-    _make(folder, engines, scenes=scenes, variants={}, motions={}, left={}, own=False)
+    _compute_into(folder, engines, scenes=scenes, variants={}, motions={}, left={}, own_scenes=False)
 
 
-def _make(folder, engines, *, scenes, **options):
-    """Compute the runs into `folder`, in place of what an earlier report left there."""
+def _compute_into(folder, engines, *, scenes, **options):
+    """Compute the runs into `folder`, and remove the results of an earlier report there."""
     unfinished = Path(folder) / UNFINISHED
     samples = max((len(getattr(scene.motion, "samples", ())) for scene in scenes.values()), default=0)
     workers = None if samples <= SHORT_RECORD else 1

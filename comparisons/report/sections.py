@@ -1,4 +1,4 @@
-"""The answer in words, and the sections on the report's own runs; every number in them stands in the result files."""
+"""Sections of the report on its own runs; every number in them stands in the result files."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -12,12 +12,11 @@ from ..plotting.parts import Section, Table, across, grouped, table
 from ..plotting.wording import TRUSTED, USABLE, differing, outcomes, trust
 from ..schemas.columns import NAME, Column, number
 from . import figures
-from .figures import ANALYTIC, pairs
 
 
 def scene_sections(result: Result) -> list[Section]:
-    """Scenes and motion, outcomes, and the histories that the scenes have."""
-    scenes, own = result.settings["scenes"], result.settings["own"]
+    """Return the sections of the page of runs: scenes and motion, outcomes, histories."""
+    scenes, own_scenes = result.settings["scenes"], result.settings["own"]
     pictures = [figures.blocks(list(scenes.values()))]
     if result.settings["motion"]:
         pictures.append(figures.ground_motion(result))
@@ -27,7 +26,7 @@ def scene_sections(result: Result) -> list[Section]:
         "it used (Duzce 1999). Under another motion they need not hold."
     )
     sections = [
-        Section("The scenes", () if own else (words,), (parameters(scenes),), tuple(pictures)),
+        Section("The scenes", () if own_scenes else (words,), (parameters(scenes),), tuple(pictures)),
         outcome_section(result),
     ]
     if shown := [picture for name in scenes for picture in _histories(result, name)]:
@@ -35,7 +34,7 @@ def scene_sections(result: Result) -> list[Section]:
             "Left: all solvers overlaid; right: difference from the analytic model. Tilt is not drawn for a block that "
             "never lifts in any solver."
         )
-        if not own:
+        if not own_scenes:
             words += (
                 " The bearings' damping in Table 1(a) of the paper, 30 %, is W_D/(2 π E_s); the usual equivalent "
                 "viscous damping, W_D/(4 π E_s), is half of it."
@@ -45,7 +44,7 @@ def scene_sections(result: Result) -> list[Section]:
 
 
 def _histories(result, name):
-    """Figures of the histories of a scene, none where every run failed or it stands on rigid ground."""
+    """Yield figures of a scene's histories and, with bearings, of their loops; none if every run failed."""
     scene = result.settings["scenes"][name]
     solvers = [row["engine"] for row in figures.drawn(result, name)]
     for charts in figures.pairs(result, name):
@@ -56,7 +55,7 @@ def _histories(result, name):
 
 
 def failures(result: Result) -> tuple[tuple[str, str], ...]:
-    """(run and reason, its message) of runs that failed."""
+    """Return (run and reason, message) of runs that failed."""
     return tuple(
         (f"{row['engine']} on {row['scene']}: {row['failure']['reason']}", row["failure"].get("message", ""))
         for row in result.rows
@@ -65,7 +64,7 @@ def failures(result: Result) -> tuple[tuple[str, str], ...]:
 
 
 def outcome_section(result: Result) -> Section:
-    """What each solver found, and how far it is from the analytic model."""
+    """Return the section on each solver's outcomes, and on its distance from the analytic model."""
     scenes = result.settings["scenes"]
     motion = "; ".join(dict.fromkeys(filter(None, (scene["motion"] for scene in scenes.values())))) or "no motion"
     return Section(
@@ -76,10 +75,10 @@ def outcome_section(result: Result) -> Section:
             "normal force under the block, is the friction coefficient needed not to slide; where the normal force N "
             "falls to 0 the block jumps. In the model it slides or jumps only if the scene gives a friction "
             "coefficient. Both quantities are taken over the run, without the fall of a block that overturns.",
-            "A run continues until its outcome is decided: nothing that may still come can make the block overturn or "
-            "prevent it. A run that ended earlier is “undecided”, with its outcome so far. A warning names what lies "
-            "outside the model, or is unusual about the record; do not rely on the outcome beside it. Every engine's "
-            "run is compared with the analytic model's.",
+            "A run continues until its outcome is decided: nothing later can make the block overturn or prevent it. A "
+            "run that ended earlier is “undecided”; its outcome so far is given. A warning names what lies outside the "
+            "model, or is unusual about the record; do not rely on the outcome beside it. Every engine's run is "
+            "compared with the analytic model's.",
             "Impact times and tilt graphs are compared up to the end of the run or the sensitivity horizon, whichever "
             "is first. The common horizon is that of a change of restitution, motion or start by 10⁻⁴, the same for "
             "all. A solver's own horizon is that of a change as large as its errors; a difference beyond it says "
@@ -90,9 +89,9 @@ def outcome_section(result: Result) -> Section:
             table
             for name in scenes
             for table in (
-                _outcomes(result, name),
-                *_warnings(scenes[name]["name"], warned(result, name)),
-                *_agreement(result, name),
+                _outcome_table(result, name),
+                *_warning_tables(scenes[name]["name"], warned(result, name)),
+                *_agreement_tables(result, name),
             )
         ),
         evidence=failures(result),
@@ -117,38 +116,38 @@ PARAMETERS: tuple[tuple[str, Callable[[Mapping[str, Any]], Any]], ...] = (
 
 
 def parameters(scenes: Mapping[str, Any]) -> Table:
-    """The numbers of the scenes, a column each; a row that none of them has is left out."""
+    """Return a table of the scenes' numbers, a column for each scene; a row without any number is left out."""
 
     def cell(value):
         return "–" if value is None else value if isinstance(value, str) else f"{value:.6g}"
 
-    found = {label: [pick(scene) for scene in scenes.values()] for label, pick in PARAMETERS}
-    rows = [[label, *map(cell, values)] for label, values in found.items() if values.count(None) < len(values)]
+    values_of = {label: [pick(scene) for scene in scenes.values()] for label, pick in PARAMETERS}
+    rows = [[label, *map(cell, values)] for label, values in values_of.items() if values.count(None) < len(values)]
     return Table("Parameters", ("quantity", *(scene["name"] for scene in scenes.values())), rows)
 
 
-def _got(head: str, key: str, digits: int = 2) -> Column:
-    """A quantity that not every run has."""
+def _column(head: str, key: str, digits: int = 2) -> Column:
+    """Return the column of a quantity that not every run has."""
     return Column(head, lambda row: row.get(key), digits)
 
 
 OUTCOMES = (
     Column("outcome", "outcome_text"),
-    _got("overturns at [s]", "overturning_time", 5),
-    _got("peak |φ|/γ [-]", "peak_tilt_ratio", 4),
-    _got("impacts [-]", "impact_count"),
+    _column("overturns at [s]", "overturning_time", 5),
+    _column("peak |φ|/γ [-]", "peak_tilt_ratio", 4),
+    _column("impacts [-]", "impact_count"),
     Column("peak |H|/N [-]", lambda row: _demand(row), 3),
-    _got("least N/(m g) [-]", "min_normal_ratio", 3),
+    _column("least N/(m g) [-]", "min_normal_ratio", 3),
     Column("warnings [-]", lambda row: len(row.get("warnings") or ()) or "none"),
     Column("run until [s]", lambda row: (row.get("end") or {}).get("time"), 5),
-    _got("steps [-]", "steps"),
-    _got("CPU time [s]", "cpu_seconds"),
-    _got("CPU time per simulated second [s/s]", "cpu_per_second"),
+    _column("steps [-]", "steps"),
+    _column("CPU time [s]", "cpu_seconds"),
+    _column("CPU time per simulated second [s/s]", "cpu_per_second"),
 )
 BASE_OUTCOMES = (
-    _got("peak base displacement [m]", "peak_base_displacement", 5),
-    _got("peak absolute base acceleration [m/s²]", "peak_base_acceleration", 4),
-    _got("work of the bearings [J]", "bearing_work", 5),
+    _column("peak base displacement [m]", "peak_base_displacement", 5),
+    _column("peak absolute base acceleration [m/s²]", "peak_base_acceleration", 4),
+    _column("work of the bearings [J]", "bearing_work", 5),
 )
 
 
@@ -158,7 +157,7 @@ def _demand(row):
 
 
 def _slip(head: str, key: str) -> Column:
-    """A number of a block that slides."""
+    """Return the column of a number that only a sliding block has."""
     return Column(head, lambda row: (row.get("sliding") or {}).get(key), 4)
 
 
@@ -170,8 +169,8 @@ SLIP = (
 )
 
 
-def _outcomes(result, name):
-    """A row for each quantity, a column for each solver."""
+def _outcome_table(result, name):
+    """Return the table of outcomes of a scene: a row for each quantity, a column for each solver."""
     rows = [row for row in result.rows if row["scene"] == name]
     scene = result.settings["scenes"][name]
     span = "until decided" if scene["duration"] is None else f"{scene['duration']:g} s at most"
@@ -180,51 +179,51 @@ def _outcomes(result, name):
 
 
 def warned(result: Result, name: str) -> dict[str, list[str]]:
-    """{warning, or difference from the analytic model: the solvers whose runs of a scene carry it}."""
+    """Return {warning, or difference from the analytic model: the solvers whose runs of a scene have it}."""
     rows = [row for row in result.rows if row["scene"] == name]
     texts = [[*different(row), *(warning["text"] for warning in row.get("warnings", ()))] for row in rows]
-    return _carried([row["engine"] for row in rows], texts)
+    return _names_by_text([row["engine"] for row in rows], texts)
 
 
-def _carried(names, texts):
-    """{text: the names whose texts hold it}; texts: of each name its own."""
-    pairs = [(name, text) for name, own in zip(names, texts, strict=True) for text in own]
-    return {text: [name for name, _ in found] for (text,), found in grouped(pairs, lambda pair: pair[1]).items()}
+def _names_by_text(names, texts):
+    """Return {text: the names that have it}; texts: a list of texts for each name."""
+    pairs = [(name, text) for name, carried in zip(names, texts, strict=True) for text in carried]
+    return {text: [name for name, _ in members] for (text,), members in grouped(pairs, lambda pair: pair[1]).items()}
 
 
 def different(row: Mapping[str, Any]) -> list[str]:
-    """In what the run of a row differs from the analytic model, or why it cannot be compared; sentences."""
-    found = [Difference(**one) for one in row.get("differences", ())]
-    return differing(row.get("comparable", UNCOMPARED), found)
+    """Return how the run of a row differs from the analytic model, or why it cannot be compared, in sentences."""
+    differences = [Difference(**difference) for difference in row.get("differences", ())]
+    return differing(row.get("comparable", UNCOMPARED), differences)
 
 
-def _warnings(name, found):
-    """A table of `warned`, none where there is nothing to warn of."""
-    rows = [[", ".join(solvers), warning] for warning, solvers in found.items()]
+def _warning_tables(name, carried):
+    """Return the table of warnings as `warned` gives them, in a tuple; an empty tuple without warnings."""
+    rows = [[", ".join(solvers), warning] for warning, solvers in carried.items()]
     return (Table(f"{name}: warnings", ("solver", "outside what is modelled, or differing"), rows),) if rows else ()
 
 
-def _apart(head: str, key: str, digits: int = 2, *, percent: bool = False, until: str = "agreement") -> Column:
-    """How far a run is from the analytic model's, up to the common horizon or, "own_agreement", its own."""
+def _distance(head: str, key: str, digits: int = 2, *, percent: bool = False, until: str = "agreement") -> Column:
+    """Return the column of a distance from the analytic model, up to the common horizon ("agreement") or its own."""
     return Column(head, lambda row: row[until][key], digits, percent)
 
 
-def _trajectory(which: str, until: str) -> tuple[Column, ...]:
+def _trajectory_columns(which: str, until: str) -> tuple[Column, ...]:
     return (
-        _apart(f"up to {which} sensitivity horizon [s]:", "until", 4, until=until),
-        _apart("impact times, rms [s]", "impact_time_error", until=until),
-        _apart("missed impacts [-]", "lost_impacts", until=until),
-        _apart("distance of the tilt graphs [-]", "graph_distance", until=until),
+        _distance(f"up to {which} sensitivity horizon [s]:", "until", 4, until=until),
+        _distance("impact times, rms [s]", "impact_time_error", until=until),
+        _distance("missed impacts [-]", "lost_impacts", until=until),
+        _distance("distance of the tilt graphs [-]", "graph_distance", until=until),
     )
 
 
 AGREEMENT = (
     Column("same outcome", lambda row: "yes" if row["agreement"]["same_outcome"] else "no"),
-    _apart("overturning time [s]", "overturning_time_error"),
-    _apart("peak |φ|/γ [-]", "peak_tilt_error"),
-    *_trajectory("the common", "agreement"),
+    _distance("overturning time [s]", "overturning_time_error"),
+    _distance("peak |φ|/γ [-]", "peak_tilt_error"),
+    *_trajectory_columns("the common", "agreement"),
     Column("size of its errors: change of the model that does as much [-]", "perturbation"),
-    *_trajectory("its own", "own_agreement"),
+    *_trajectory_columns("its own", "own_agreement"),
 )
 
 
@@ -232,17 +231,17 @@ def _peak_slip(row):
     return (row.get("sliding") or {}).get("peak")
 
 
-def _agreement(result, name):
-    """What each engine's run differs by from the analytic model: a row for each measure, a column for each engine."""
+def _agreement_tables(result, name):
+    """Return a table of differences from the analytic model: a row for each measure, a column for each engine."""
     rows = [row for row in result.rows if row["scene"] == name and row["engine"] != "analytic" and "agreement" in row]
     if not rows:
         return ()
     scene, measures = result.settings["scenes"][name], [*AGREEMENT]
     model = next(row for row in result.rows if row["scene"] == name and row["engine"] == "analytic")
-    if slip := (model.get("sliding") or {}).get("peak"):
+    if slip := _peak_slip(model):
         measures.append(Column("largest slip", lambda row: _peak_slip(row) and _peak_slip(row) / slip - 1, 2, True))
     if scene["base"]:
-        measures.append(_apart("peak base displacement", "peak_displacement_error", percent=True))
+        measures.append(_distance("peak base displacement", "peak_displacement_error", percent=True))
     if scene["bearings"]:
         work = model["bearing_work"]
         error = Column("work of the bearings", lambda row: row["bearing_work"] / work - 1 if work else None, 2, True)
@@ -251,7 +250,7 @@ def _agreement(result, name):
 
 
 def restitution_section(result: Result, given: bool = False) -> Section:
-    """Restitution of the scenes' block against eq. (7), beside its cost; given: a scene gives another one."""
+    """Return the section on restitution of the scenes' block against eq. (7); given: whether a scene states another."""
     starts = ", ".join(f"{start:g}" for start in result.settings["starts"])
     grounds = " and ".join(
         "on rigid ground" if mass is None else f"on a base of {mass:g} kg that slides without friction"
@@ -262,9 +261,9 @@ def restitution_section(result: Result, given: bool = False) -> Section:
         (
             f"Free rocking for {result.settings['seconds']:g} s, released from rest at φ/γ = {starts}, {grounds}. "
             "Restitution is measured by states, φ̇⁺/φ̇⁻ at the impact, without slip, and compared with eq. (7). Error "
-            "and CPU time are those of the same runs. Trusted: error, root mean square, at most "
+            "and CPU time come from the same runs. Trusted: error, root mean square, at most "
             f"{TRUSTED:g}, no failed run and no missed impact; usable: at most {USABLE:g}.",
-            *(["The scene gives a restitution; it is left out here, as it rates no engine."] if given else []),
+            *(["The scene states a restitution. It is not used here, as it would rate no engine."] if given else []),
         ),
         (
             table(
@@ -280,7 +279,9 @@ def restitution_section(result: Result, given: bool = False) -> Section:
                 Column("CPU time per simulated second [s/s]", "cpu_per_second"),
                 Column("failed runs [-]", "{failed} of {runs}"),
             ),
-            *_warnings("Free rocking", _carried(map(NAME.text, result.rows), [row["warnings"] for row in result.rows])),
+            *_warning_tables(
+                "Free rocking", _names_by_text(map(NAME.text, result.rows), [row["warnings"] for row in result.rows])
+            ),
         ),
     )
 
@@ -292,9 +293,10 @@ CAPTION = (
 
 
 def earthquake(result: Result) -> Section:
+    """Return the section of the first page on the report's own runs."""
     scenes, motion = result.settings["scenes"], result.settings["motion"]
-    charts = [chart for name in scenes for pair in pairs(result, name) for chart in pair]
-    found = "; ".join(
+    charts = [chart for name in scenes for pair in figures.pairs(result, name) for chart in pair]
+    found_words = "; ".join(
         f"{scene['name']}: {outcomes([{**row, 'differences': ()} for row in result.rows if row['scene'] == name])}"
         for name, scene in scenes.items()
     )
@@ -302,14 +304,14 @@ def earthquake(result: Result) -> Section:
     warnings = [
         [scenes[name]["name"], ", ".join(who), words] for name in scenes for words, who in warned(result, name).items()
     ]
-    told = Table("Warnings, and differences from the analytic model", ("scene", "solver", "warning"), warnings)
+    warning_table = Table("Warnings, and differences from the analytic model", ("scene", "solver", "warning"), warnings)
     return Section(
-        f"{'One earthquake' if motion else 'One scene'}: {found}",
+        f"{'One earthquake' if motion else 'One scene'}: {found_words}",
         (
             f"{under}Each solver runs until its outcome is decided. Tilt is compared up to the common sensitivity "
             "horizon.",
         ),
-        (_table(result), told) if warnings else (_table(result),),
+        (_first_page_table(result), warning_table) if warnings else (_first_page_table(result),),
         (
             figure(
                 charts,
@@ -329,9 +331,9 @@ def earthquake(result: Result) -> Section:
     )
 
 
-def _table(result):
+def _first_page_table(result):
     def agreement(key):
-        return lambda row: (row.get("agreement") or {}).get(key) if row["engine"] != ANALYTIC else None
+        return lambda row: (row.get("agreement") or {}).get(key) if row["engine"] != figures.ANALYTIC else None
 
     return table(
         "Outcomes, and distance from the analytic model up to the sensitivity horizon",

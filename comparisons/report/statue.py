@@ -1,6 +1,7 @@
-"""The card of a statue: results of the analytic model for a scene, on one page.
+"""The card of a statue: results of the analytic model for a scene, and the next step for it.
 
-The next step for a statue: a command that runs on its file, and the necessary width of a plate under it.
+The next step is a command that runs on the scene's file. Beside it stands the width of a plate under the statue that
+keeps it from lifting or overturning.
 """
 
 import math
@@ -30,20 +31,22 @@ PLATE_STEP = 0.01  # relative, of the widths tried
 
 
 def needed_by(scene: Scene, motions: Sequence[Motion]) -> dict[str, float | None]:
-    """What keeps the block of a scene from lifting under all these motions; None where nothing does.
+    """Return what keeps the block of a scene from lifting under all these motions; None: nothing of that kind.
 
-    stroke : first one to try in a search for bearings [m]: their x_max, or `first_stroke`. stands, upright : width of
-    a plate fixed to the block [m] with which it does not lift, or, where it overturns on a narrower one, does not, nor
-    slips beyond the plate's half width. slip : how far it slips [m] on the plate on which it does not lift or, where
-    that is farther, on the other. friction : what it needs not to slide on a plate so wide, where the scene's is less.
+    stroke : stroke for a first search for bearings [m]: the bearings' x_max, or `first_stroke`. stands : width of a
+    plate fixed to the block [m] on which it does not lift. upright : width of a narrower plate [m] on which it does not
+    overturn, nor slip by more than the plate's half width; None if it overturns on none. slip : the largest slip [m] on
+    these plates. friction : coefficient at which it does not slide on a plate, if the scene's is less.
     """
     if scene.start.tilt or scene.start.tilt_rate or not motions:  # it lifts however it stands
         return dict.fromkeys(("stroke", "stands", "upright", "slip", "friction"))
     stroke, height = first_stroke(scene, motions), 2 * scene.block.half_height
     broad = scene.with_(block=on_plate(scene.block, BROAD * height), friction=None)
-    demand = max(found.friction_demand[0] for found in _runs([broad], motions))  # tan(gamma) at which it just lifts
+    demand = max(
+        outcomes.friction_demand[0] for outcomes in _outcomes_by_motion([broad], motions)
+    )  # tan(gamma) at which it just lifts
     lifts = min(demand, scene.friction or math.inf)  # with tan(gamma) above its friction a block at rest slides
-    stands = _up(height * lifts) if math.tan(scene.block.slenderness) < lifts < BROAD else None
+    stands = _rounded_up(height * lifts) if math.tan(scene.block.slenderness) < lifts < BROAD else None
     upright = stands and _upright(scene, motions, stands)
     slips = {width: _slip_on_plate(scene, motions, width) for width in (stands, upright) if width}
     if upright and (upright >= stands or slips[upright] > upright / 2):
@@ -53,18 +56,18 @@ def needed_by(scene: Scene, motions: Sequence[Motion]) -> dict[str, float | None
         "stands": stands,
         "upright": upright,
         "slip": max((slips[width] for width in (stands, upright) if width), default=None),
-        "friction": _up(demand) if scene.friction is not None and demand > scene.friction else None,
+        "friction": _rounded_up(demand) if scene.friction is not None and demand > scene.friction else None,
     }
 
 
-def _up(value):
-    """To three digits."""
+def _rounded_up(value):
+    """Round up to three digits."""
     digit = 10.0 ** (math.floor(math.log10(value)) - 2)
     return math.ceil(value / digit) * digit
 
 
 def on_plate(block: Block, width: float) -> Block:
-    """The block on a plate without weight that is fixed to it and so wide [m]."""
+    """Return the block with a weightless plate of this width [m] fixed under it."""
     radius = math.hypot(block.half_height, width / 2)
     return Block(
         mass=block.mass,
@@ -75,19 +78,22 @@ def on_plate(block: Block, width: float) -> Block:
     )
 
 
-def _runs(scenes, motions):
-    """`Outcomes` of the scenes under each of the motions."""
+def _outcomes_by_motion(scenes, motions):
+    """Yield the `Outcomes` of the scenes under each motion."""
     for motion in motions:
-        yield simulate_many([one.with_(motion=motion, duration=None) for one in scenes], contact=True)
+        yield simulate_many([scene.with_(motion=motion, duration=None) for scene in scenes], contact=True)
 
 
 def _slip_on_plate(scene, motions, width):
-    """The largest slip [m] of the block on a plate so wide [m]."""
-    return max(float(found.peak_slip[0]) for found in _runs([scene.with_(block=on_plate(scene.block, width))], motions))
+    """Return the largest slip [m] of the block on a plate of this width [m]."""
+    return max(
+        float(outcomes.peak_slip[0])
+        for outcomes in _outcomes_by_motion([scene.with_(block=on_plate(scene.block, width))], motions)
+    )
 
 
 def _upright(scene, motions, widest):
-    """The width [m] from which on the block overturns under none; None where it is as it is, or it takes too long."""
+    """Return the width [m] from which on the block never overturns; None: it never does, or the search is too long."""
     least = 2 * scene.block.half_width
     widths = np.geomspace(least, widest, 1 + math.ceil(math.log(widest / least) / PLATE_STEP))
     try:
@@ -95,23 +101,27 @@ def _upright(scene, motions, widest):
     except SceneError:
         return None
     scenes = [scene.with_(block=on_plate(scene.block, width)) for width in widths]
-    falls = np.any([found.overturns | found.failed for found in _runs(scenes, motions)], axis=0)
+    falls = np.any([outcomes.overturns | outcomes.failed for outcomes in _outcomes_by_motion(scenes, motions)], axis=0)
     last = np.flatnonzero(falls[:-1])
-    return _up(widths[last[-1] + 1]) if len(last) else None
+    return _rounded_up(widths[last[-1] + 1]) if len(last) else None
 
 
 def next_step(scene: Mapping[str, Any], needed: Mapping[str, float | None] | None, call: str) -> tuple[str, str]:
-    """(a command, in words what it is for) for a scene as the settings of a result have it.
+    """Return (a command, its purpose in words) for a scene as in a result's settings.
 
-    needed : as of `needed_by`, None where the block does not lift. call : on a command line the scene's file, and the
-    options for its motions.
+    needed : of `needed_by`; None: the block does not lift. call : the scene's file, and options for its motions, as on
+    a command line.
     """
     margin = f"rocking margin {call}"
     if needed is None:
-        held = scene["base"] is None or scene["bearings"]
-        ends = "It does not lift: there is nothing to do." if held else "On a base that nothing holds it does not lift."
+        restrained = scene["base"] is None or scene["bearings"]
+        ends = (
+            "It does not lift: there is nothing to do."
+            if restrained
+            else "On a base that nothing holds it does not lift."
+        )
         return margin, f"says how much it has to spare. {ends}"
-    sizes, rubs = _sizes(scene, needed), scene.get("friction")
+    sizes, rubs = _plate_words(scene, needed), scene.get("friction")
     if needed["stroke"] is None:
         does, cure = ("lifting", "widen, fix or lower it") if rubs is None else ("lifting or sliding", "fix it")
         return margin, f"says what changes the outcome. No bearings are likely to keep it from {does}; {sizes or cure}."
@@ -127,8 +137,8 @@ def next_step(scene: Mapping[str, Any], needed: Mapping[str, float | None] | Non
     return f"rocking design {call}{base} --stroke {needed['stroke']:g}", words
 
 
-def _sizes(scene, needed):
-    """On how wide a plate it does not overturn, and does not lift; and with what friction it does not slide."""
+def _plate_words(scene, needed):
+    """Return a clause: the plates on which the block does not overturn or lift, the friction that keeps it in place."""
     held = ""
     if needed.get("friction"):
         limit, mu = number(needed["friction"], 3), number(scene["friction"], 3)
@@ -150,7 +160,7 @@ def _sizes(scene, needed):
     return f"{words} {upright} m wide (now {now} m) it does not overturn, to one of {stands} m it does not lift{held}"
 
 
-WORST = ("stands", "slides", "rocks", "failed", "overturns")  # of a record's motions, from the best to the worst
+WORST = ("stands", "slides", "rocks", "failed", "overturns")  # outcomes from the best to the worst
 WORDS = {
     "stands": "does not lift",
     "slides": "slides and does not lift",
@@ -158,17 +168,17 @@ WORDS = {
     "overturns": "overturns",
     "failed": "leaves the model",
 }
-BEYOND = ("limit", "model")  # kinds of warnings that belong into the title
-STATES = {"slides": "Sliding", "tilt": f"Tilt above {TILT:g} γ", "stroke": "Base beyond x_max"}  # beside the outcome
+BEYOND = ("limit", "model")  # kinds of warnings that stand in the title
+STATES = {"slides": "Sliding", "tilt": f"Tilt above {TILT:g} γ", "stroke": "Base beyond x_max"}  # other limit states
 
 
 @dataclass(frozen=True)
 class Card:
-    """title: name and worst outcome. loud: sentences as important as that. next: a command, and what it is for. scene:
-    as the result's settings have it.
+    """The card of a scene.
 
-    margin: of the quantity whose outcome changes nearest, None where none does. sentences: (heading, sentence) pairs.
-    tables: page parts.
+    title: name and worst outcome. loud: sentences as important as that. next: a command, and its purpose. scene: as in
+    the result's settings. margin: the margin of the quantity whose change changes the outcome first, None: none does.
+    sentences: (heading, sentence) pairs. tables: parts of the page.
     """
 
     title: str
@@ -183,21 +193,22 @@ class Card:
 def statue_of(
     scene: Scene, motions: Mapping[str, Sequence[Motion]], left: Sequence[str] = (), progress: Any = None
 ) -> dict[str, Any]:
-    """Results of the model for a scene, ready for a result file.
+    """Return results of the model for a scene, ready for a result file.
 
-    motions : {record: its motions}. The scene's own is one more where it is not among them. left : what was left out.
+    motions : {record: its motions}; the scene's own motion is added if it is not among them. left : what was left out.
+    progress : called with the name of each quantity whose margin is searched.
     """
-    found: dict[str, Any] = {"own": _figures(scene), "cautions": [], "near": [], "margins": []}
-    found["cautions"] += map(str, scene_warnings(scene))
+    statue: dict[str, Any] = {"own": _numbers(scene), "cautions": [], "near": [], "margins": []}
+    statue["cautions"] += map(str, scene_warnings(scene))
     if scene.base is not None and scene.bearings is not None:
         start = {"base_displacement": 0.0, "base_velocity": 0.0}
-        found["free"] = _copy(scene.with_(base=None, bearings=None, start=start))
+        statue["free"] = _numbers_of_copy(scene.with_(base=None, bearings=None, start=start))
     try:
         if scene.motion is not None:
             changes, outcomes = nearby(scene)
-            found["cautions"] += map(str, cliffs(scene, changes, outcomes))
-            found["near"] = _near(scene, changes, outcomes)
-        found["margins"] = [
+            statue["cautions"] += map(str, cliffs(scene, changes, outcomes))
+            statue["near"] = _near_rows(scene, changes, outcomes)
+        statue["margins"] = [
             {
                 "quantity": margin.quantity,
                 "nearest": margin.nearest,
@@ -214,38 +225,42 @@ def statue_of(
             for margin in margins(scene, step=STEP, progress=progress)
         ]
     except SceneError as error:  # too long to be run so often
-        found["cautions"].append(f"The distance to another outcome was not searched: {error.remedy}.")
+        statue["cautions"].append(f"The distance to another outcome was not searched: {error.remedy}.")
     if scene.motion is not None and not same_reversed(scene):  # else it is the mirrored run
-        found["reversed"] = _copy(scene.with_(motion=reversed_sign(scene.motion)))
+        statue["reversed"] = _numbers_of_copy(scene.with_(motion=reversed_sign(scene.motion)))
     records = with_own(scene.motion, motions)
-    rows = [row_of(scene, record, motion, _decided) for record, group in records.items() for motion in group]
-    found |= {"motions": rows if motions else [], "left_out": [*left]}
-    found["needed"] = None
-    if _lifts_or_goes_too_far(scene, found, rows):
-        found["needed"] = needed_by(scene, [motion for group in records.values() for motion in group])
-    return found
+    rows = [
+        row_of(scene, record, motion, _run_until_decided)
+        for record, of_record in records.items()
+        for motion in of_record
+    ]
+    statue |= {"motions": rows if motions else [], "left_out": [*left]}
+    statue["needed"] = None
+    if _lifts_or_goes_too_far(scene, statue, rows):
+        statue["needed"] = needed_by(scene, [motion for of_record in records.values() for motion in of_record])
+    return statue
 
 
-def _lifts_or_goes_too_far(scene, found, rows):
-    """Whether the block lifts, or the base goes beyond x_max, under one of its motions or within SHARE of its own."""
-    rows = [found["own"], *found["near"], *rows]
+def _lifts_or_goes_too_far(scene, statue, rows):
+    """Return whether the block lifts, or the base exceeds x_max, under one motion or within SHARE of its own."""
+    rows = [statue["own"], *statue["near"], *rows]
     x_max = math.inf if scene.bearings is None else scene.bearings.x_max or math.inf
     return any(row["outcome"] != "stands" or (row["stroke"] or 0.0) > x_max for row in rows)
 
 
-def _decided(scene):
+def _run_until_decided(scene):
     return with_near(scene, simulate(scene.with_(duration=None), history=False))
 
 
-def _copy(scene):
-    """The figures of a copy of the scene, or why the model refuses it."""
+def _numbers_of_copy(scene):
+    """Return the numbers of a copy of the scene, or why the model refuses it."""
     try:
-        return _figures(scene)
+        return _numbers(scene)
     except SceneError as error:
         return {"refused": f"{error.key}: {error.problem}"}
 
 
-def _figures(scene):
+def _numbers(scene):
     response = simulate(scene, history=False)
     warnings = dict.fromkeys((*about_record(scene.motion), *response.warnings))
     slid = response.sliding if response.sliding and response.sliding.peak else None
@@ -267,67 +282,64 @@ def _figures(scene):
     }
 
 
-def _near(scene, changes, found):
-    """[{change, outcome, tilt, stroke}] at -SHARE, 0, SHARE; and what is largest between them."""
+def _near_rows(scene, changes, outcomes):
+    """Return [{change, outcome, tilt, stroke, slip}] at -SHARE, 0, SHARE; last, the largest between them."""
     rows = [
         {
             "change": float(changes[at]),
-            "outcome": str(found.names[at]),
-            "tilt": float(found.peak_tilt[at]) / scene.block.slenderness,
-            "stroke": float(found.peak_base_displacement[at]),
-            "slip": float(found.peak_slip[at]),
+            "outcome": str(outcomes.names[at]),
+            "tilt": float(outcomes.peak_tilt[at]) / scene.block.slenderness,
+            "stroke": float(outcomes.peak_base_displacement[at]),
+            "slip": float(outcomes.peak_slip[at]),
         }
         for at in (0, len(changes) // 2, len(changes) - 1)
     ]
     worst = {
         "change": None,
-        "outcome": ", ".join(dict.fromkeys(found.names.tolist())),
-        "tilt": float(found.peak_tilt.max()) / scene.block.slenderness,
-        "stroke": float(found.peak_base_displacement.max()),
-        "slip": float(found.peak_slip.max()),
+        "outcome": ", ".join(dict.fromkeys(outcomes.names.tolist())),
+        "tilt": float(outcomes.peak_tilt.max()) / scene.block.slenderness,
+        "stroke": float(outcomes.peak_base_displacement.max()),
+        "slip": float(outcomes.peak_slip.max()),
     }
     return [*rows, worst]
 
 
 def card_of(result: Result, name: str, call: str = "FILE", first: str = "") -> Card:
-    """The `Card` of one of the scenes of a result.
+    """Return the `Card` of a scene of a result.
 
-    call : on a command line its file, and the options for its motions. first : what is to be done to the file before.
+    call : the scene's file, and options for its motions, as on a command line. first : what must be done to the file
+    first, a sentence.
     """
-    scene, found = result.settings["scenes"][name], result.settings["statues"][name]
-    own = found["own"]
-    sentences = [*_sentences(found), *(("Warning", one["text"]) for one in own["warnings"])]
-    sentences += [(_heading(found), words) for words in _failures(found["motions"]) + motion_warnings(found["motions"])]
-    sentences.append(("Engines", _engines([row for row in result.rows if row["scene"] == name])))
-    tables = [_main(found)]
-    if found["near"]:
-        tables.append(_near_table(found["near"], scene))
-    if found["motions"]:
-        tables.append(_motion_table(_by_record(found["motions"]), unit_of(found["motions"]), scene))
-    if found["left_out"]:
-        tables.append(table("Left out of the folder", found["left_out"], Column("file or channel, and why", str)))
-    nearest = next((margin for margin in found["margins"][:1] if margin["nearest"] is not None), None)
-    title = f"{scene['name']}: the block {'; '.join([_worst(found, scene), *_beyond(found)])}"
-    command, words = next_step(scene, found["needed"], call)
+    scene, statue = result.settings["scenes"][name], result.settings["statues"][name]
+    run = statue["own"]
+    sentences = [*_sentences(statue), *(("Warning", warning["text"]) for warning in run["warnings"])]
+    failed = [f"{row['motion']}: {row['failure']}" for row in statue["motions"] if row["failure"]]
+    sentences += [(_heading(statue), words) for words in failed + motion_warnings(statue["motions"])]
+    sentences.append(("Engines", _engine_sentences([row for row in result.rows if row["scene"] == name])))
+    tables = [_main_table(statue)]
+    if statue["near"]:
+        tables.append(_near_table(statue["near"], scene))
+    if statue["motions"]:
+        tables.append(_motion_table(_by_record(statue["motions"]), unit_of(statue["motions"]), scene))
+    if statue["left_out"]:
+        tables.append(table("Left out of the folder", statue["left_out"], Column("file or channel, and why", str)))
+    nearest = next((margin for margin in statue["margins"][:1] if margin["nearest"] is not None), None)
+    title = f"{scene['name']}: the block {'; '.join([_worst_words(statue, scene), *_exceeded(statue)])}"
+    command, words = next_step(scene, statue["needed"], call)
     step = command, f"{words} {first}".rstrip()
-    return Card(title, found["cautions"], step, scene, nearest, sentences, tables)
+    return Card(title, statue["cautions"], step, scene, nearest, sentences, tables)
 
 
-def _beyond(found):
-    """What of the base or the block is beyond a limit, and under how many of the records."""
-    if rows := found["motions"]:
+def _exceeded(statue):
+    """Return clauses on limits that base or block exceed, and under how many records."""
+    if rows := statue["motions"]:
         return [f"{clause} under {records}" for clause, records in doubts(rows, BEYOND).items()]
-    return list(doubts([{"record": "", **found["own"]}], BEYOND))
-
-
-def _failures(rows):
-    """Why motions have no outcome."""
-    return [f"{row['motion']}: {row['failure']}" for row in rows if row["failure"]]
+    return list(doubts([{"record": "", **statue["own"]}], BEYOND))
 
 
 def _by_record(rows):
-    """A row for each record, that of the worst of its motions; the worst record first."""
-    found = [
+    """Return a row for each record, of the worst of its motions; the worst record first."""
+    records = [
         {
             "record": record,
             "motions": len(group),
@@ -340,78 +352,84 @@ def _by_record(rows):
         }
         for (record,), group in grouped(rows, "record").items()
     ]
-    return sorted(found, key=lambda one: (-WORST.index(one["outcome"]), not one["doubts"], -(one["tilt"] or 0.0)))
+    return sorted(
+        records,
+        key=lambda record_row: (
+            -WORST.index(record_row["outcome"]),
+            not record_row["doubts"],
+            -(record_row["tilt"] or 0.0),
+        ),
+    )
 
 
 def _largest(rows, name):
-    """The largest number of a name; None where no run has one."""
-    known = (row[name] for row in rows if row[name] is not None)
-    return max(known, default=None)
+    """Return the largest number of this name; None if no run has one."""
+    return max((row[name] for row in rows if row[name] is not None), default=None)
 
 
-def _worst(found, scene):
-    """The worst outcome of all motions, and under how many of the records; and that of the scene's own."""
-    own = found["own"]
+def _worst_words(statue, scene):
+    """Return the worst outcome, under how many records, and the outcome under the scene's own motion."""
+    run = statue["own"]
     rows = [
         max((row["outcome"] for row in group), key=WORST.index)
-        for group in grouped(found["motions"], "record").values()
+        for group in grouped(statue["motions"], "record").values()
     ]
-    words = WORDS[own["outcome"]] + ("" if own["decided"] else " (not decided when the run ended)")
+    words = WORDS[run["outcome"]] + ("" if run["decided"] else " (not decided when the run ended)")
     worst = max(rows, key=WORST.index, default=None)
-    known = scene["motion"] and own["decided"] and own["outcome"] == worst
+    known = scene["motion"] and run["decided"] and run["outcome"] == worst
     if not rows or (known and len(rows) == 1):
         return words
     count = "any" if worst == "stands" else rows.count(worst)
-    under = f"{WORDS[worst]} under {count} of {counted(found['motions'], len(rows))}"
+    under = f"{WORDS[worst]} under {count} of {counted(statue['motions'], len(rows))}"
     if known:
         return f"{under}, its own among them"
     return f"{under}; {'under its own motion' if scene['motion'] else 'without a motion'} it {words}"
 
 
-def _sentences(found):
-    """(heading, sentence) of what the model says beyond the scene's own run."""
-    sentences = _slid(found["own"])
-    if "free" in found:
-        sentences.append(("Without isolation", f"Free-standing, the block {_does(found['free'])}."))
-    sentences += _nearest(found["margins"])
-    if "reversed" in found:
-        sentences.append(("Motion reversed", f"The block {_does(found['reversed'])}."))
-    elif found["near"]:
+def _sentences(statue):
+    """Return (heading, sentence) pairs on results of the model beyond the scene's own run."""
+    sentences = _slip_sentences(statue["own"])
+    if "free" in statue:
+        sentences.append(("Without isolation", f"Free-standing, the block {_copy_words(statue['free'])}."))
+    sentences += _nearest_changes(statue["margins"])
+    if "reversed" in statue:
+        sentences.append(("Motion reversed", f"The block {_copy_words(statue['reversed'])}."))
+    elif statue["near"]:
         sentences.append(("Motion reversed", "The same, mirrored: block and start are symmetric."))
-    if rows := found["motions"]:
-        sentences.append((_heading(found), headline(rows, found["left_out"])))
+    if rows := statue["motions"]:
+        sentences.append((_heading(statue), headline(rows, statue["left_out"])))
     return sentences
 
 
-def _heading(found):
-    return f"{unit_of(found['motions']).capitalize()}s"
+def _heading(statue):
+    return f"{unit_of(statue['motions']).capitalize()}s"
 
 
-def _does(copy):
-    """What the block does in a copy of the scene, or why that is not known."""
+def _copy_words(copy):
+    """Return what the block does in a copy of the scene, or why that is not known."""
     return f"is outside the model ({copy['refused']})" if "refused" in copy else WORDS[copy["outcome"]]
 
 
-def _slid(own):
-    """How far the block slides on its support, if it does."""
-    if not own.get("slip"):
+def _slip_sentences(run):
+    """Return how far the block slides on its support, if it does."""
+    if not run.get("slip"):
         return []
-    far, end = number(own["slip"], 3), number(abs(own["slip_end"]), 3)
-    if own["outcome"] == "overturns":
+    far, end = number(run["slip"], 3), number(abs(run["slip_end"]), 3)
+    if run["outcome"] == "overturns":
         return [("Slip", f"It slides by up to {far} m before it lies, the last of it as it falls.")]
     return [("Slip", f"It slides by up to {far} m, and ends {end} m from where it stood.")]
 
 
 def _slip_column(rows, head):
-    """The column of the slip [m], none where no block of these rows slides."""
+    """Return the column of the slip [m] in a list; no column if no block of these rows slides."""
     return [Column(head, "slip", 3)] if any(row.get("slip") for row in rows) else []
 
 
-def _nearest(found):
-    """What the smallest change of one quantity changes: the outcome, and the limit states beside it."""
-    if not found:
+def _nearest_changes(margins_found):
+    """Return (heading, sentence) pairs on the smallest changes that change the outcome and other limit states."""
+    if not margins_found:
         return []
-    first, span = found[0], f"{100 * SPAN:g} %"
+    first, span = margins_found[0], f"{100 * SPAN:g} %"
     if first["nearest"] is None:
         sentences = [("Nearest change", f"No change of one quantity by up to {span} changes the outcome.")]
     else:
@@ -420,17 +438,19 @@ def _nearest(found):
             text += " Outcomes alternate there: do not rest a decision on this distance."
         sentences = [("Nearest change", text)]
     for state, label in STATES.items():
-        known = [(one["quantity"], *one["states"][state]) for one in found if state in one["states"]]
-        changing = [one for one in known if one[2] is not None]
+        known = [
+            (margin["quantity"], *margin["states"][state]) for margin in margins_found if state in margin["states"]
+        ]
+        changing = [margin for margin in known if margin[2] is not None]
         if changing:
-            quantity, reached, change = min(changing, key=lambda one: abs(one[2]))
+            quantity, reached, change = min(changing, key=lambda margin: abs(margin[2]))
             sentences.append((label, f"{'No longer from' if reached else 'From'} {quantity} {signed(change)} on."))
-    ends = [f"{one['quantity']} at {signed(at)} ({why})" for one in found for at, why in one["ends"]]
+    ends = [f"{margin['quantity']} at {signed(at)} ({why})" for margin in margins_found for at, why in margin["ends"]]
     return [*sentences, ("Ranges that end", f"{'; '.join(ends)}.")] if ends else sentences
 
 
-def _engines(rows):
-    """Which engines agree with the model, and in what the others differ or why they failed."""
+def _engine_sentences(rows):
+    """Return sentences on which engines agree with the model, how the others differ, or why they failed."""
     engines = [row for row in rows if row["engine"] != "analytic"]
     if not engines:
         return "None was run."
@@ -443,25 +463,25 @@ def _engines(rows):
     return "; ".join(sentences) + "."
 
 
-def _main(found):
-    columns = [{"name": "this scene", **found["own"]}]
-    columns += [{"name": "free-standing", **found["free"]}] if "outcome" in found.get("free", ()) else []
+def _main_table(statue):
+    columns = [{"name": "this scene", **statue["own"]}]
+    columns += [{"name": "free-standing", **statue["free"]}] if "outcome" in statue.get("free", ()) else []
 
     def share(value, limit):
         return number(value) if limit is None else f"{number(value)} of {number(limit)}"
 
-    sway = Column("base displacement, of x_max [m]", lambda one: share(one["stroke"], one["x_max"]))
+    sway = Column("base displacement, of x_max [m]", lambda run: share(run["stroke"], run["x_max"]))
     return across(
         "The analytic model",
         columns,
         Column("quantity", "name"),
         Column("outcome", "outcome"),
-        Column("peak tilt over slenderness [-]", lambda one: _tilt(one["outcome"], one["tilt"])),
-        Column("peak ground acceleration [g]", lambda one: one["pga"] and one["pga"] / one["gravity"], 3),
-        Column("uplift acceleration g tan γ [g]", lambda one: one["uplift"] / one["gravity"], 3),
-        *([sway] if found["own"]["stroke"] is not None else []),
+        Column("peak tilt over slenderness [-]", lambda run: _tilt(run["outcome"], run["tilt"])),
+        Column("peak ground acceleration [g]", lambda run: run["pga"] and run["pga"] / run["gravity"], 3),
+        Column("uplift acceleration g tan γ [g]", lambda run: run["uplift"] / run["gravity"], 3),
+        *([sway] if statue["own"]["stroke"] is not None else []),
         *_slip_column(columns, "largest slip on the support [m]"),
-        Column("friction demand, of the coefficient [-]", lambda one: share(one["demand"], one["friction"])),
+        Column("friction demand, of the coefficient [-]", lambda run: share(run["demand"], run["friction"])),
         Column("least normal force N/(m g) [-]", "normal", 3),
     )
 
@@ -475,10 +495,10 @@ def _near_table(near, scene):
         f"Within {100 * SHARE:g} % of the motion",
         near,
         Column(
-            "change of the motion", lambda one: "anywhere between" if one["change"] is None else signed(one["change"])
+            "change of the motion", lambda run: "anywhere between" if run["change"] is None else signed(run["change"])
         ),
         Column("outcome", "outcome"),
-        Column("peak tilt over slenderness [-]", lambda one: _tilt(one["outcome"], one["tilt"])),
+        Column("peak tilt over slenderness [-]", lambda run: _tilt(run["outcome"], run["tilt"])),
         *([Column("base displacement [m]", "stroke", 3)] if scene["base"] else []),
         *_slip_column(near, "slip [m]"),
     )
@@ -490,11 +510,11 @@ def _motion_table(motions, unit, scene):
         motions,
         Column(unit, "record"),
         Column("runs", "motions"),
-        Column("largest peak [g]", lambda one: one["pga"] / scene["gravity"], 3),
+        Column("largest peak [g]", lambda record: record["pga"] / scene["gravity"], 3),
         Column("lifts", "lifts"),
         Column("overturns", "overturns"),
-        Column("largest tilt over slenderness [-]", lambda one: _tilt(one["outcome"], one["tilt"])),
+        Column("largest tilt over slenderness [-]", lambda record: _tilt(record["outcome"], record["tilt"])),
         *([Column("largest base displacement [m]", "stroke", 3)] if scene["base"] else []),
         *_slip_column(motions, "largest slip [m]"),
-        *([Column("warnings", "doubts")] if any(one["doubts"] for one in motions) else []),
+        *([Column("warnings", "doubts")] if any(record["doubts"] for record in motions) else []),
     )

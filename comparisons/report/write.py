@@ -1,6 +1,4 @@
-"""Writing of the pages from result files: the report, and a page for each study."""
-
-from __future__ import annotations
+"""Write the report's pages from result files: the report, and a page for each study."""
 
 import json
 import math
@@ -8,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from markupsafe import Markup
 
@@ -16,14 +14,12 @@ from engines.simulating import RANGE, in_words
 
 from ..execution.by_solver import age
 from ..execution.files import write_all
-from ..execution.provenance import PACKAGES, RESULTS, read_result
+from ..execution.provenance import PACKAGES, RESULTS, Result, read_result
 from ..metrics.statistics import wilson
 from ..plotting import diagrams
-from ..plotting import diagrams as modes
 from ..plotting.parts import SIGNS, Section, Table
 from ..plotting.wording import TRUSTED, USABLE
 from ..schemas.columns import NAME, percent
-from . import detail as equations
 from .answer import (
     Stored,
     commit_of,
@@ -37,19 +33,16 @@ from .answer import (
     summary,
     variants_of,
 )
-from .detail import assets, detail, environment
+from .detail import EQUATIONS, GLOSSARY, REFERENCES, assets, detail, environment, frames
 from .figures import animation
 from .runs import RESTITUTION, SCENES
 from .sections import earthquake, restitution_section, scene_sections
 from .statue import card_of
 
-if TYPE_CHECKING:
-    from ..execution.provenance import Result
-
 PAGE, PAGES = "report.html", "pages"
 HERE = Path(__file__).parent
-CONTACT_OURS = "contact law: ours"  # so begins what such an adapter imposes
-# Short names of sections in the contents, by the study whose finding it is; studies of others follow.
+CONTACT_OURS = "contact law: ours"  # begin of `Variant.imposes` if the adapter supplies the contact law
+# {study: short name of its section in the contents}, in order; studies of other packages follow.
 SHORT = {
     "restitution": "One impact",
     "overturning": "Many pulses",
@@ -64,13 +57,12 @@ SHORT = {
 }
 
 
-FOLDED = ("sensitivity", "mistakes")  # what does not answer the page's question by itself
+FOLDED = ("sensitivity", "mistakes")  # studies that do not answer the page's question by themselves
 
 
 @dataclass(frozen=True)
 class Part:
-    """A section of the page. short: its name in the contents; page: where all of its study stands; folded: whether it
-    is opened by a click."""
+    """A section of the page. short: its name in the contents. page: the study's own page. folded: shown by a click."""
 
     id: str
     short: str
@@ -86,53 +78,56 @@ def write_page(
     progress: Callable[[int, int], object] = lambda done, total: None,
     calls: Mapping[str, Sequence[str]] | None = None,
 ) -> Path:
-    """Write ``report.html`` into `folder`, and beside it ``pages/``, from result files there and of the studies.
+    """Write ``report.html`` and ``pages/`` into `folder`, from result files there and in `studies`. Return its path.
 
-    progress : is called with how much of it is done, of how much. calls : of scenes, the file and the options for the
-    motions as on a command line, and what is to be done to the file first. Returns the path of the page.
+    progress : called with (steps done, all steps). calls : {scene: (its file, and options for its motions, as on a
+    command line; what must be done to the file first)}.
 
     Raises
     ------
     ResultError
         A result file of the report is missing or damaged.
     PlaceError
-        A page cannot be written; those that are not written yet are as before.
+        A page cannot be written; pages not written yet are as before.
     """
     folder = Path(folder)
     scenes = read_result(folder / SCENES)
     block = read_result(folder / RESTITUTION) if (folder / RESTITUTION).exists() else None
     read = {SCENES: scenes} | ({RESTITUTION: block} if block else {})
     stored = stored_studies(studies, lambda done, total: progress(done, total + 1))  # and the pages themselves
-    pages = [("runs", "The report’s own runs"), *((one.name, one.section.title.partition(":")[0]) for one in stored)]
+    pages = [
+        ("runs", "The report’s own runs"),
+        *((study.name, study.section.title.partition(":")[0]) for study in stored),
+    ]
     listed = [{"file": f"{PAGES}/{name}.html", "title": title} for name, title in pages]
     first = (
         environment()
         .get_template("page.html")
         .render(
-            **_answer(scenes, block, stored),
+            **_first_screen(scenes, block, stored),
             **assets(),
             cards=_cards(scenes, calls or {}),
             motion=scenes.settings["motion"]["label"] if scenes.settings["motion"] else "no motion",
             contents=_contents(scenes, stored),
-            equations=equations.EQUATIONS,
+            equations=EQUATIONS,
             drawings=[diagrams.rocking(), diagrams.impact(), diagrams.isolated()],
-            frames=equations.frames(),
-            modes=(modes.modes(), modes.CAPTION),
-            glossary=equations.GLOSSARY,
-            references=equations.REFERENCES,
+            frames=frames(),
+            modes=(diagrams.modes(), diagrams.CAPTION),
+            glossary=GLOSSARY,
+            references=REFERENCES,
             provenance=_provenance(scenes, block),
             pages=listed,
             ages=[f"{name} is {text}" for name, text in ((name, age(result)) for name, result in read.items()) if text],
-            damaged=[one.wrong.rstrip(".") for one in stored if one.wrong],
+            damaged=[study.wrong.rstrip(".") for study in stored if study.wrong],
             files=[file for name in read for file in (name, name.replace(".json", ".npz"))],
         )
     )
     given = any(scene["block"]["restitution"] is not None for scene in scenes.settings["scenes"].values())
-    own_runs = [*scene_sections(scenes), *([restitution_section(block, given)] if block else ())]
+    sections_of_runs = [*scene_sections(scenes), *([restitution_section(block, given)] if block else ())]
     files: dict[str, str] = {}
     for name, title, sections, origin in (
-        ("runs", "The report’s own runs", own_runs, origin_of(scenes)),
-        *((one.name, one.section.title, [one.section], one.origin) for one in stored),
+        ("runs", "The report’s own runs", sections_of_runs, origin_of(scenes)),
+        *((study.name, study.section.title, [study.section], study.origin) for study in stored),
     ):
         file = f"{PAGES}/{name}.html"
         files[file] = detail(title, sections, origin, pages=listed, home=PAGE, file=file)
@@ -140,20 +135,20 @@ def write_page(
 
 
 def _cards(scenes, calls):
-    """Of the scenes of one's own."""
+    """Return the cards of the user's scenes."""
     names = scenes.settings["scenes"] if scenes.settings["own"] else ()
     return [card_of(scenes, name, *calls.get(name, ())) for name in names]
 
 
-def _answer(scenes: Result, block: Result | None, stored: list[Stored]) -> dict[str, Any]:
-    """What the first screen shows: the studies' numbers; restitution of the scenes' own block where it rocks."""
-    where = {each.heading: f"{PAGES}/{one.name}.html" for one in stored for each in one.judgements}
+def _first_screen(scenes: Result, block: Result | None, stored: list[Stored]) -> dict[str, Any]:
+    """Return the first screen: the studies' numbers; restitution of the scenes' own block if it rocks."""
+    where = {judgement.heading: f"{PAGES}/{study.name}.html" for study in stored for judgement in study.judgements}
     outside = _outside(scenes)
     judgements = judgements_of(stored)
     if block:
-        own = own_restitution(block, outside)
-        where[own.heading] = f"{PAGES}/runs.html"
-        judgements = [own, *(each for each in judgements if each.key != own.key)]
+        own_block = own_restitution(block, outside)
+        where[own_block.heading] = f"{PAGES}/runs.html"
+        judgements = [own_block, *(judgement for judgement in judgements if judgement.key != own_block.key)]
     own_variants = [
         {**kind, "engine": engine, "variant": variant}
         for engine, variants in scenes.settings["variants"].items()
@@ -161,14 +156,14 @@ def _answer(scenes: Result, block: Result | None, stored: list[Stored]) -> dict[
     ]
     setups = setups_of(variants_of(stored, *own_variants), judgements)
     return {
-        **screen(setups, judgements, [one.glance for one in stored if one.glance]),
+        **screen(setups, judgements, [study.glance for study in stored if study.glance]),
         "outside": outside,
         "own": _contact_ours(scenes),
         "limits": in_words(),
         "summary": summary(scenes, block),
         "not_to_do": not_to_do(setups),
         "decision": setups,
-        "headings": {each.heading: where[each.heading] for each in judgements},
+        "headings": {judgement.heading: where[judgement.heading] for judgement in judgements},
         "signs": SIGNS,
         "least": percent(wilson(0, 50)[1]),
         "trusted": f"{TRUSTED:g}",
@@ -180,7 +175,7 @@ def _answer(scenes: Result, block: Result | None, stored: list[Stored]) -> dict[
 
 
 def _contact_ours(scenes: Result) -> set[tuple[str, str]]:
-    """(engine, variant) of those whose contact law is the adapter's."""
+    """Return (engine, variant) of the variants whose contact law is the adapter's."""
     return {
         (engine, variant)
         for engine, variants in scenes.settings["variants"].items()
@@ -190,13 +185,15 @@ def _contact_ours(scenes: Result) -> set[tuple[str, str]]:
 
 
 def _outside(scenes: Result) -> str:
-    """What an engine's run warns of where a scene lies outside the range of a statue, or ""."""
+    """Return an engine's warning of a scene outside the range of statues, or ""."""
     warnings = (warning for row in scenes.rows if "engine" in row for warning in row.get("warnings", ()))
-    return next((one["text"] for one in warnings if one["kind"] == "engine" and one["quantity"] in RANGE), "")
+    return next(
+        (warning["text"] for warning in warnings if warning["kind"] == "engine" and warning["quantity"] in RANGE), ""
+    )
 
 
 def _stage(scenes: Result) -> Mapping[str, Any] | None:
-    """The animation with the frame that stands without a script."""
+    """Return the animation with the frame that is shown without a script."""
     stage = animation(scenes)
     if stage is None:
         return None
@@ -207,7 +204,7 @@ def _stage(scenes: Result) -> Mapping[str, Any] | None:
         falls = any(abs(tilt) > 1.0 for track in scene["tracks"] for tilt in track["tilt"])
         scene["width"] = 2 * (max(b + 2 * h if falls else 0.0, b + 0.5) + scene["reach"] + 0.15)
         scene["poses"] = [_pose(track, frame, b) for track in scene["tracks"]]
-        scene["moved"] = round(_at(scene["tracks"][0], "x", frame), 4)
+        scene["moved"] = round(_number_at(scene["tracks"][0], "x", frame), 4)
         scene["skew"] = round(-math.degrees(math.atan2(scene["moved"], 0.2)), 3)  # of a bearing .2 m high
     peak = max((abs(value) for value in stage["ground"]), default=0.0) or 1.0
     path = "M" + "L".join(f"{k} {-value / peak:.3f}" for k, value in enumerate(stage["ground"]))
@@ -215,18 +212,18 @@ def _stage(scenes: Result) -> Mapping[str, Any] | None:
 
 
 def _pose(track, frame, b):
-    """(displacement [m], angle [degrees], corner [m]) of a block at a frame."""
-    tilt, x = _at(track, "tilt", frame), _at(track, "x", frame) + _at(track, "slip", frame)
+    """Return (displacement [m], angle [degrees], corner [m]) of a block at a frame."""
+    tilt, x = _number_at(track, "tilt", frame), _number_at(track, "x", frame) + _number_at(track, "slip", frame)
     return round(x, 4), round(math.degrees(tilt), 3), -b if tilt < 0 else b
 
 
-def _at(track, name, frame):
-    """A number of a run at a frame, or at its end; 0 where it has none of that name."""
+def _number_at(track, name, frame):
+    """Return a number of a run at a frame, or at its end; 0 if it has none of that name."""
     return track[name][min(frame, len(track[name]) - 1)] if name in track else 0.0
 
 
 def _contents(scenes: Result, stored: list[Stored]) -> list[Part]:
-    """The sections of the page in the order in which one reads them."""
+    """Return the sections of the page in reading order."""
     setting = Section(
         "Scene and equations: a block that rocks about its corners, on a base carried by bearings",
         (
@@ -236,24 +233,24 @@ def _contents(scenes: Result, stored: list[Stored]) -> list[Part]:
         ),
     )
     parts = [Part("equations", "Scene and equations", setting)]
-    found = {one.name: one for one in stored if one.finding is not None}
+    findings = {study.name: study for study in stored if study.finding is not None}
     name = "One earthquake" if scenes.settings["motion"] else "The scenes"
-    own = Part("earthquake", name, earthquake(scenes), made(origin_of(scenes)), f"{PAGES}/runs.html")
-    order = [name for name in SHORT if name in found] + [name for name in found if name not in SHORT]
+    own_part = Part("earthquake", name, earthquake(scenes), made(origin_of(scenes)), f"{PAGES}/runs.html")
+    order = [name for name in SHORT if name in findings] + [name for name in findings if name not in SHORT]
     for name in order:
-        one = found[name]
+        study = findings[name]
         anchor = "impact" if name == "restitution" else name
-        short, page = SHORT.get(name, one.section.title), f"{PAGES}/{name}.html"
-        parts.append(Part(anchor, short, one.finding, made(one.origin), page, name in FOLDED))
+        short, page = SHORT.get(name, study.section.title), f"{PAGES}/{name}.html"
+        parts.append(Part(anchor, short, study.finding, made(study.origin), page, name in FOLDED))
         if name == "restitution":
-            parts += [Part("autopsy", "Why engines err", None), own]
-    if own not in parts:
-        parts.insert(1, own)
+            parts += [Part("autopsy", "Why engines err", None), own_part]
+    if own_part not in parts:
+        parts.insert(1, own_part)
     return [*parts, Part("method", "Method and words", None)]
 
 
 def made(origin: str) -> str:
-    """Date and commit of an origin; machine and versions stand on the study's own page."""
+    """Return date and commit of an origin; machine and versions stand on the study's own page."""
     return ", ".join(origin.split(", ")[:2])
 
 
@@ -270,7 +267,7 @@ def _computed(result: Result) -> Table:
 
 
 def _provenance(scenes: Result, block: Result | None) -> Section:
-    """Versions, machine and settings: how to obtain the same numbers."""
+    """Return versions, machine and settings, which are needed to obtain the same numbers."""
     origin = scenes.provenance
     machine = origin["machine"]
     rows = [

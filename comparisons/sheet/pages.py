@@ -1,6 +1,6 @@
-"""The scenes of the sheet, what is asked of each, and the reference answers.
+"""The problem sheet for other codes: scenes, quantities asked for, reference answers, and its files.
 
-The sheet as files: a page a problem in Markdown and HTML, the record, and a table of all reference answers.
+The files are a page for each problem in Markdown and HTML, the record, and a table of all reference answers.
 """
 
 import functools
@@ -33,15 +33,15 @@ from ..execution.files import write_all
 from ..plotting.parts import templates
 from ..plotting.wording import indexed
 
-VERSION = 1  # of the scenes and quantities: answers to another sheet are answers to other questions
+VERSION = 1  # version of scenes and quantities; answers to another version cannot be compared
 TIGHTEST = 1e-16  # tolerance of the model's run
-HISTORY_STEP = 1e-3  # s, of which every time asked for is a multiple
-DIGITS = 12  # of an answer; it is known to 1e-10 of its scale
-TOLERANCE = 1e-3  # of the scale: by so much may another code's answer differ
-RECORD_SAMPLES = 1601  # of the synthetic motion: its first 8 s
+HISTORY_STEP = 1e-3  # s; every time asked for is a multiple of it
+DIGITS = 12  # digits of an answer, which is known to 1e-10 of its scale
+TOLERANCE = 1e-3  # largest difference of another code's answer, over the scale of the quantity
+RECORD_SAMPLES = 1601  # samples taken of the synthetic motion: its first 8 s
 DAMPING = 0.15  # of the linear bearings, as a share of critical damping
 PERIOD = 2.0  # s, of the linear bearings under block and base
-# By kind of quantity: its unit, and its scale in symbols.
+# {kind of quantity: its unit}, and {kind: its scale in symbols}.
 UNITS = {"time": "s", "angle": "rad", "rate": "rad/s", "length": "m", "speed": "m/s", "force": "N", "outcome": "a word"}
 SCALES = {
     "time": "1/ω_r",
@@ -56,11 +56,11 @@ SCALES = {
 
 @dataclass(frozen=True)
 class Quantity:
-    """One number, or word, that is asked for.
+    """A number or word that is asked for.
 
-    kind: "time", "angle", "rate", "length", "speed", "force" or "outcome". source: what of a run it is: an attribute
-    of an `Impact`, of a `State`, or of the `Response`, of whose uplifts and rests the first. index: which impact, from
-    1 on, or the time [s] of the state.
+    kind: "time", "angle", "rate", "length", "speed", "force" or "outcome". source: its attribute of an `Impact`, of a
+    `State`, or of the `Response` (the first one of uplifts and of rests). index: number of the impact, from 1 on, or
+    time of the state [s].
     """
 
     name: str
@@ -72,7 +72,7 @@ class Quantity:
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """One page of the sheet; `scene` has a duration, up to which its quantities are asked."""
+    """A page of the sheet; its quantities are within the duration of `scene`."""
 
     name: str
     title: str
@@ -82,13 +82,15 @@ class Problem:
 
     @functools.cached_property
     def answers(self) -> dict[str, float | str]:
-        """{quantity: reference answer, in its unit}: those of the analytic model, to `DIGITS` digits."""
+        """Reference answers of the analytic model, {name of a quantity: answer in its unit}, to `DIGITS` digits."""
         response = simulate(self.scene, tolerance=TIGHTEST, output_step=HISTORY_STEP)
-        return {one.name: _shown(one, response) for one in self.quantities}
+        return {quantity.name: _value_of(quantity, response) for quantity in self.quantities}
 
     def tolerance(self, quantity: Quantity) -> float | None:
-        """By how much another code's answer may differ, in the quantity's unit: `TOLERANCE` of its scale, which
-        `SCALES` says in symbols; None for a word."""
+        """Return by how much another code's answer may differ, in the quantity's unit; None for a word.
+
+        It is `TOLERANCE` times the scale of the quantity, which `SCALES` gives in symbols.
+        """
         block, omega = self.scene.block, self.scene.rocking_frequency
         scales = {
             "time": 1 / omega,
@@ -101,21 +103,21 @@ class Problem:
         return TOLERANCE * scales[quantity.kind] if quantity.kind in scales else None
 
 
-def _shown(quantity: Quantity, response: Response) -> float | str:
-    """What a run with a history shows of a quantity: a word, or a number to `DIGITS` digits."""
-    found: Any
+def _value_of(quantity: Quantity, response: Response) -> float | str:
+    """Return the value of a quantity in a run with a history: a word, or a number to `DIGITS` digits."""
+    value: Any
     if quantity.source in STATE:
         time, values = (getattr(response.history, name) for name in ("time", quantity.source))
-        found = np.interp(quantity.index, time, values)
+        value = np.interp(quantity.index, time, values)
     elif quantity.source in IMPACT:
-        found = getattr(response.impacts[int(quantity.index) - 1], quantity.source)
+        value = getattr(response.impacts[int(quantity.index) - 1], quantity.source)
     else:
-        found = getattr(response, quantity.source)
-        found = found[0] if isinstance(found, tuple) else found  # of uplifts and rests, the first
-    return found if isinstance(found, str) else float(f"{found:.{DIGITS}g}")
+        value = getattr(response, quantity.source)
+        value = value[0] if isinstance(value, tuple) else value  # of uplifts and rests, the first
+    return value if isinstance(value, str) else float(f"{value:.{DIGITS}g}")
 
 
-# By source: name, kind and words, of the impact of a number or the state at a time [s].
+# {source: (name, kind, words)} of quantities of an impact, with its number, and of a state, with its time [s].
 IMPACT = {
     "time": ("impact_time_{:g}", "time", "time of impact {:g}"),
     "rate_before": ("rate_before_{:g}", "rate", "φ′ just before impact {:g}"),
@@ -147,8 +149,8 @@ OTHERS = {
 }
 
 
-def asked(indices: Iterable[float], *sources: str) -> list[Quantity]:
-    """The impacts of these numbers, or the states at these times [s], each by these of `IMPACT` or `STATE`."""
+def quantities_at(indices: Iterable[float], *sources: str) -> list[Quantity]:
+    """Return quantities of the impacts of these numbers, or of the states at these times [s], by these sources."""
     rows = {source: (IMPACT | STATE)[source] for source in sources}
     return [
         Quantity(name.format(index), kind, words.format(index), source, index)
@@ -162,7 +164,7 @@ def _block(slenderness: float) -> Block:
 
 
 def record() -> SampledMotion:
-    """The ground motion of the problem "record": the first 8 s of the synthetic one."""
+    """Return the ground motion of the problem "record": the first 8 s of the synthetic motion."""
     motion = synthetic_motion()
     return SampledMotion(motion.dt, motion.samples[:RECORD_SAMPLES], "record.csv")
 
@@ -174,7 +176,7 @@ SPRINGS = Bearings(law="linear", count=4, ka=1300 * OMEGA**2 / 4, damping=2 * DA
 
 
 def _pulse(name, words, amplitude):
-    """The two sides of the amplitude 3.21708 m/s2, beyond which the block overturns after one impact."""
+    """Return a problem beside the amplitude 3.21708 m/s2, beyond which the block overturns after one impact."""
     below = name == "pulse-below"
     return Problem(
         name,
@@ -184,9 +186,9 @@ def _pulse(name, words, amplitude):
         (
             OTHERS["outcome"],
             OTHERS["uplift"],
-            *asked((1,), "time", "rate_before", "rate_after"),
+            *quantities_at((1,), "time", "rate_before", "rate_after"),
             OTHERS["peak_tilt" if below else "overturning"],
-            *asked((0.5, 1.0, 2.0), "tilt"),
+            *quantities_at((0.5, 1.0, 2.0), "tilt"),
         ),
     )
 
@@ -199,8 +201,8 @@ PROBLEMS = (
         Scene(block=_block(0.25), start=Start(tilt=0.2), duration=4.0),
         (
             OTHERS["outcome"],
-            *asked((1, 2, 3), "time", "rate_before", "rate_after"),
-            *asked((1.5, 2.5, 4.0), "tilt", "tilt_rate"),
+            *quantities_at((1, 2, 3), "time", "rate_before", "rate_after"),
+            *quantities_at((1.5, 2.5, 4.0), "tilt", "tilt_rate"),
         ),
     ),
     Problem(
@@ -211,8 +213,8 @@ PROBLEMS = (
         Scene(block=_block(0.2), base=BASE, start=Start(tilt=0.15), duration=4.0),
         (
             OTHERS["outcome"],
-            *asked((1, 2, 3), "time", "rate_before", "rate_after", "base_velocity_jump"),
-            *asked((1.0, 2.0), "tilt", "base_displacement"),
+            *quantities_at((1, 2, 3), "time", "rate_before", "rate_after", "base_velocity_jump"),
+            *quantities_at((1.0, 2.0), "tilt", "base_displacement"),
         ),
     ),
     Problem(
@@ -224,7 +226,7 @@ PROBLEMS = (
         (
             OTHERS["outcome"],
             OTHERS["peak_displacement"],
-            *asked((0.75, 1.25, 1.5, 2.0, 2.25), "base_displacement", "bearing_force"),
+            *quantities_at((0.75, 1.25, 1.5, 2.0, 2.25), "base_displacement", "bearing_force"),
         ),
     ),
     Problem(
@@ -235,10 +237,10 @@ PROBLEMS = (
         (
             OTHERS["outcome"],
             OTHERS["uplift"],
-            *asked((1, 2), "time", "rate_before", "rate_after", "base_velocity_jump"),
+            *quantities_at((1, 2), "time", "rate_before", "rate_after", "base_velocity_jump"),
             OTHERS["peak_tilt"],
             OTHERS["peak_displacement"],
-            *asked((0.5, 1.25), "tilt", "base_displacement", "bearing_force"),
+            *quantities_at((0.5, 1.25), "tilt", "base_displacement", "bearing_force"),
         ),
     ),
     _pulse("pulse-below", "overturning is near", 3.14),
@@ -252,9 +254,9 @@ PROBLEMS = (
         (
             OTHERS["outcome"],
             OTHERS["uplift"],
-            *asked((1,), "time", "rate_before", "rate_after", "base_velocity_jump"),
+            *quantities_at((1,), "time", "rate_before", "rate_after", "base_velocity_jump"),
             OTHERS["peak_displacement"],
-            *asked((3.0, 4.0, 5.0, 6.0), "tilt", "base_displacement", "bearing_force"),
+            *quantities_at((3.0, 4.0, 5.0, 6.0), "tilt", "base_displacement", "bearing_force"),
         ),
     ),
     Problem(
@@ -267,11 +269,11 @@ PROBLEMS = (
         ),
         (
             OTHERS["outcome"],
-            *asked((1, 2, 3), "time"),
+            *quantities_at((1, 2, 3), "time"),
             OTHERS["rest"],
             OTHERS["uplift"],
             OTHERS["peak_tilt"],
-            *asked((2.4, 3.0), "tilt", "tilt_rate"),
+            *quantities_at((2.4, 3.0), "tilt", "tilt_rate"),
         ),
     ),
 )
@@ -284,7 +286,7 @@ ANSWERS, RECORD_FILE = "reference.csv", "record.csv"
 
 
 def write_sheet(folder: Path) -> list[Path]:
-    """Write the sheet into `folder`; returns the paths written, the first to be read first.
+    """Write the sheet into `folder`. Return the paths written; a reader starts with the first.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -298,8 +300,8 @@ def write_sheet(folder: Path) -> list[Path]:
     files = {
         "index.md": index["md"],
         "index.html": _html(TITLE, index["html"]),
-        ANSWERS: _answers(),
-        f"inputs/{RECORD_FILE}": _record(),
+        ANSWERS: _answer_table(),
+        f"inputs/{RECORD_FILE}": _record_file(),
     }
     for problem in PROBLEMS:
         text = markdown(problem)
@@ -308,7 +310,7 @@ def write_sheet(folder: Path) -> list[Path]:
 
 
 def markdown(problem: Problem) -> str:
-    """The page of a problem as Markdown."""
+    """Return the page of a problem as Markdown."""
     return _text(
         "problem",
         problem=problem,
@@ -327,20 +329,20 @@ def _text(name: str, **values: Any) -> str:
 
 
 def _html(title: str, text: str) -> str:
-    """A page in Markdown as HTML, readable without anything else."""
+    """Return a page in Markdown as HTML that needs no other file."""
     body = POWER.sub(_power, indexed(MARKDOWN.render(text)))
     body = body.replace("<table>", '<div class="scroll" tabindex="0"><table>').replace("</table>", "</table></div>")
     return TEMPLATES.get_template("page.html").render(title=title, body=Markup(body)) + "\n"
 
 
-def _power(found):
-    """1e-20 as one writes it, to all its digits."""
-    mantissa, sign, exponent = found.groups()
+def _power(match):
+    """Write a number like 1e-20 with a power of ten."""
+    mantissa, sign, exponent = match.groups()
     return f"{'' if mantissa == '1' else mantissa + '·'}10<sup>{'−' if sign == '-' else ''}{exponent}</sup>"
 
 
 def _equations(renderer, tokens, place, options, environment):
-    """Lines of code are equations here."""
+    """Write lines of code, which are equations here, as paragraphs."""
     lines = tokens[place].content.splitlines()
     return "".join(f'<p class="equation">{escape(line)}</p>\n' for line in lines if line)
 
@@ -349,16 +351,22 @@ MARKDOWN = MarkdownIt().enable("table")
 MARKDOWN.add_render_rule("code_block", _equations)
 
 
-def _answers():
-    lines = [
-        f"{problem.name},{one.name},{UNITS[one.kind]},{problem.answers[one.name]},{problem.tolerance(one) or ''}"
+def _answer_table():
+    rows = [
+        (
+            problem.name,
+            quantity.name,
+            UNITS[quantity.kind],
+            problem.answers[quantity.name],
+            problem.tolerance(quantity) or "",
+        )
         for problem in PROBLEMS
-        for one in problem.quantities
+        for quantity in problem.quantities
     ]
-    return "\n".join(["scene,quantity,unit,answer,tolerance", *lines]) + "\n"
+    return "\n".join(["scene,quantity,unit,answer,tolerance", *(",".join(map(str, row)) for row in rows)]) + "\n"
 
 
-def _record():
+def _record_file():
     motion = record()
     rows = (f"{k * motion.dt:.3f},{value!r}" for k, value in enumerate(motion.samples.tolist()))
     return "\n".join(["time [s],acceleration [m/s2]", *rows]) + "\n"

@@ -1,4 +1,4 @@
-"""The lessons, one module each: its content as a `lesson.Lesson` called LESSON, and what it computes."""
+"""The lessons, one module each, with a `lesson.Lesson` called LESSON and the functions it needs."""
 
 from importlib import import_module
 
@@ -10,12 +10,12 @@ NAMES = ("tipping", "impacts", "bearing", "caryatid", "corner", "chaos", "cost",
 
 
 def lesson(name: str) -> Lesson:
-    """The lesson called `name`.
+    """Return the lesson called `name`.
 
     Raises
     ------
     SettingError
-        There is none; the message lists them.
+        There is no such lesson; the message lists all.
     """
     if name not in NAMES:
         raise SettingError(f"unknown lesson {name!r}: choose one of {', '.join(NAMES)}")
@@ -23,4 +23,5 @@ def lesson(name: str) -> Lesson:
 
 
 def lessons() -> tuple[Lesson, ...]:
+    """Return all lessons in order."""
     return tuple(lesson(name) for name in NAMES)

@@ -19,7 +19,7 @@ def at(amplitude: float) -> BearingProperties:
 
 
 def loop(amplitude: float) -> tuple[np.ndarray, np.ndarray]:
-    """(x [m], force [N]) of one bearing: from rest to +amplitude, then a full cycle."""
+    """Return (x [m], force [N]) of one bearing: from rest to +amplitude, then a full cycle."""
     turn = np.linspace(amplitude, -amplitude, 160)
     x = np.concatenate([np.linspace(0, amplitude, 80), turn, turn[::-1]])
     return x, LAW.kb * x + LAW.path(x)
@@ -55,7 +55,7 @@ def view(amplitude: float) -> View:
 
 
 def secant_period() -> float:
-    """[s] at x_max."""
+    """Return the isolation period at x_max [s]."""
     return at(X_MAX).period
 
 
@@ -83,8 +83,8 @@ def code() -> float:
     law = BearingLaw.of(BEARINGS)
     x = np.concatenate([[0.0], 0.30 * np.cos(np.linspace(0, 2 * np.pi, 20001))])  # m, from rest to a cycle
     force = law.kb * x + law.path(x)  # N, of one bearing
-    found = np.trapezoid(force[1:], x[1:])  # J
-    return found
+    answer = np.trapezoid(force[1:], x[1:])  # J
+    return answer
 
 
 LESSON = Lesson(

@@ -25,13 +25,13 @@ from ..lesson import (
 
 BEARING_CHOICE = {"none": None, "as designed": 1.0, "twice as stiff": 2.0}
 NEAR_FAULT = synthetic_motion()
-LONG = 2 * math.pi / 1.8  # rad/s, near that of the bearings
+LONG = 2 * math.pi / 1.8  # rad/s, near the frequency of the isolated statue
 MOTIONS: dict[str, Motion] = {"near-fault": NEAR_FAULT, "long pulse": PulseMotion("one-sine", 0.22 * G, LONG)}
 WINDOW = 12.0  # s
 
 
 def scene_of(slenderness: float, stiffness: float | None, motion: Motion) -> Scene:
-    """The statue; stiffness: factor on its bearings', None: on rigid ground."""
+    """Return the statue's scene; stiffness: factor on the bearings' stiffness, None: on rigid ground."""
     block = caryatid_block(slenderness)
     if stiffness is None:
         return Scene(block=block, motion=motion)
@@ -92,8 +92,8 @@ def code() -> object:
 
     isolated = load_scene("caryatid-isolated")
     response = simulate(isolated)
-    found = 100 * (1 - response.peak_base_acceleration / (9.81 * tan(isolated.block.slenderness)))  # %
-    return response.outcome, found
+    answer = 100 * (1 - response.peak_base_acceleration / (9.81 * tan(isolated.block.slenderness)))  # %
+    return response.outcome, answer
 
 
 LESSON = Lesson(

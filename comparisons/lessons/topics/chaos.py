@@ -12,7 +12,7 @@ from ...schemas.columns import MINUS_DIGITS
 from ..lesson import MODEL, OTHER, SOFT, Control, Equation, Exercise, G, Lesson, View, canvas, legend
 
 SLENDERNESS, RESTITUTION, DURATION = 0.28, 0.98, 30.0  # rad, -, s
-APART = 0.1  # of the slenderness: tilts that differ by more have separated
+APART = 0.1  # tilts that differ by more, over slenderness, have separated
 EXPONENTS = tuple(float(k) for k in range(-12, -1))
 STEP = 0.01  # s
 TIMES = np.arange(0, DURATION + STEP / 2, STEP)  # s
@@ -30,39 +30,39 @@ def scene() -> Scene:
 
 @functools.cache
 def tilt_of(exponent: float | None) -> np.ndarray:
-    """Tilt over slenderness every `STEP`, of the block or, with an exponent k, of one whose e is 1 + 10^k times it."""
+    """Return tilt over slenderness every `STEP`; exponent k: of a block with a restitution 1 + 10^k times as large."""
     e = RESTITUTION * (1 + (0.0 if exponent is None else 10.0**exponent))
     history = simulate(scene().with_(block={"restitution": e}), output_step=STEP).history
     return np.interp(TIMES, history.time, history.tilt) / SLENDERNESS
 
 
 def horizon(exponent: float) -> float:
-    """Time [s] at which the two differ by `APART`; the whole run if they never do."""
+    """Return the time [s] at which both tilts differ by `APART`; the whole duration if they never do."""
     apart = np.flatnonzero(np.abs(tilt_of(exponent) - tilt_of(None)) > APART)
     return float(apart[0] * STEP) if len(apart) else DURATION
 
 
 def view(exponent: float) -> View:
-    """Both tilts and their difference; exponent: power of ten of the relative difference in restitution."""
-    one, other, end = tilt_of(None), tilt_of(exponent), horizon(exponent)
+    """Show both tilts and their difference; exponent: power of ten of the relative difference in restitution."""
+    block, neighbour, end = tilt_of(None), tilt_of(exponent), horizon(exponent)
     power = "10" + f"{exponent:.0f}".translate(MINUS_DIGITS)
     figure, (tilt, distance) = canvas(2, (1, 1), sharex=True)
     figure.subplots_adjust(hspace=0.12)
-    tilt.plot(TIMES, one, color=MODEL, linewidth=1.3, label=f"e = {RESTITUTION}")
-    tilt.plot(TIMES, other, "--", color=OTHER, linewidth=1.2, label=f"e = {RESTITUTION} (1 + {power})")
+    tilt.plot(TIMES, block, color=MODEL, linewidth=1.3, label=f"e = {RESTITUTION}")
+    tilt.plot(TIMES, neighbour, "--", color=OTHER, linewidth=1.2, label=f"e = {RESTITUTION} (1 + {power})")
     tilt.axvline(end, color=SOFT, linewidth=1)
     tilt.set(ylim=(-1.5, 2.0), ylabel="tilt φ / γ", xlim=(0, DURATION))
     legend(tilt, loc="upper left", ncols=2)
-    distance.semilogy(TIMES, np.maximum(np.abs(one - other), 1e-16), color=MODEL, linewidth=0.9)
+    distance.semilogy(TIMES, np.maximum(np.abs(block - neighbour), 1e-16), color=MODEL, linewidth=0.9)
     distance.axhline(APART, color=SOFT, linewidth=0.9, linestyle=(0, (4, 4)))
     distance.axvline(end, color=SOFT, linewidth=1)
     distance.set(ylim=(1e-15, 10), ylabel="distance / γ", xlabel="time [s]", yticks=[1e-15, 1e-10, 1e-5, 1])
-    last = "overturns" if abs(other[-1]) > 2 else "rocks"
+    last = "overturns" if abs(neighbour[-1]) > 2 else "rocks"
     return View(
         figure,
         {
             "horizon": (end, "s"),
-            "the first block": ("overturns" if abs(one[-1]) > 2 else "rocks", ""),
+            "the first block": ("overturns" if abs(block[-1]) > 2 else "rocks", ""),
             "the second block": (last, ""),
         },
         f"Two blocks that differ by 10^{exponent:.0f} in restitution separate after {end:.1f} s; the second {last}.",
@@ -90,8 +90,8 @@ def code() -> float:
 
     spread = RESTITUTION * (1 + 0.01 * np.linspace(-1, 1, 200))
     crowd = simulate_many([scene().with_(block={"restitution": e}) for e in spread])
-    found = 100 * crowd.overturns.mean()  # %
-    return found
+    answer = 100 * crowd.overturns.mean()  # %
+    return answer
 
 
 LESSON = Lesson(

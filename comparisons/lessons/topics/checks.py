@@ -19,10 +19,10 @@ from ...studies.rows import read_study
 from ..lesson import MODEL, SOFT, Control, Equation, Exercise, Lesson, View, canvas
 
 SLENDERNESS, START, DURATION = 0.28, 0.6, 2.5  # rad, tilt over slenderness, s
-TESTS, OVERTURNED = 490, 187  # of a granite boulder on a shake table, see the study
+TESTS, OVERTURNED = 490, 187  # tests of a granite boulder on a shake table, see the study
 SOLVERS = ("event-driven", "fixed steps")
-# s, twice the first level. The second impact falls at another phase of each halved step: with 0.02 s three halvings in
-# a row would end their steps at the same time beside it.
+# Step [s] of level 0. The second impact is at another place in each halved step; with 0.02 s three halvings in a row
+# would end their steps at the same time beside it.
 COARSEST = 0.0165
 LEVELS = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
 FLOOR = 1e-17  # zero is drawn here
@@ -35,7 +35,7 @@ def scene(side: float = 1.0) -> Scene:
 
 
 def run(solver: str, level: float, side: float = 1.0) -> Response:
-    """level: tolerance 10^-2 level for the event-driven solver, step `COARSEST` / 2^level for fixed steps."""
+    """Run the scene; level: tolerance 10^(-2 level) of the event-driven solver, step `COARSEST` / 2^level if fixed."""
     if solver == SOLVERS[0]:
         return simulate(scene(side), tolerance=10.0 ** (-2 * level))
     return simulate_time_stepping(scene(side), step=COARSEST / 2**level)
@@ -43,12 +43,12 @@ def run(solver: str, level: float, side: float = 1.0) -> Response:
 
 @functools.cache
 def second() -> float:
-    """Time of the second impact [s] in the second implementation: the same equations, scipy’s integrator."""
+    """Return the time of the second impact [s] in the second implementation: the same equations, scipy’s integrator."""
     return simulate_twin(scene(), history=False, energy=False).impacts[1].time
 
 
 def energy_defect(response: Response) -> float:
-    """|final energy + loss in impacts - initial energy| / initial energy."""
+    """Defect of the energy balance: |final energy + loss in impacts - initial energy| / initial energy."""
     model, end, start = RockingModel.of(scene()), response.end, scene().start
 
     def energy(tilt, rate):
@@ -78,27 +78,27 @@ def checks(solver: str, level: float) -> dict[str, float]:
 
 def view(solver: str, level: float) -> View:
     """The five defects as bars."""
-    found = checks(solver, level)
+    defects = checks(solver, level)
     figure, axis = canvas()
     figure.subplots_adjust(left=0.29)
-    names = list(found)[::-1]
-    sizes = [max(found[name], FLOOR) for name in names]
+    names = list(defects)[::-1]
+    sizes = [max(defects[name], FLOOR) for name in names]
     axis.barh(names, sizes, left=0, color=MODEL, height=0.55)
     for place, (name, size) in enumerate(zip(names, sizes, strict=True)):
-        axis.text(size * 2, place, "exact" if found[name] == 0 else number(size, 1), va="center", color=SOFT)
+        axis.text(size * 2, place, "exact" if defects[name] == 0 else number(size, 1), va="center", color=SOFT)
     axis.set(xscale="log", xlim=(FLOOR / 3, 30), xlabel="relative defect")
     axis.grid(axis="y", visible=False)
     fixed = f"step {number(1e3 * COARSEST / 2**level)} ms"
     setting = f"tolerance {power_of_ten(10.0 ** (-2 * level))}" if solver == SOLVERS[0] else fixed
     return View(
         figure,
-        {"setting": (setting, ""), **{name: (value, "") for name, value in found.items()}},
-        f"Five checks of {solver}, {setting}: the largest defect is {number(max(found.values()), 2)}.",
+        {"setting": (setting, ""), **{name: (value, "") for name, value in defects.items()}},
+        f"Five checks of {solver}, {setting}: the largest defect is {number(max(defects.values()), 2)}.",
     )
 
 
 def misprint_factor() -> float:
-    """Excess of e_x as printed, in per cent, which a trajectory would have to show."""
+    """Excess of e_x as printed over the corrected one, in per cent; a trajectory would have to show it."""
     on_base = Scene(block=caryatid_block(SLENDERNESS), base=BASE)
     return 100 * (base_jump_length_as_printed(on_base) / base_jump_length(on_base) - 1)
 
@@ -124,13 +124,15 @@ def observed_order() -> float:
 
 
 def mirror_defect() -> float:
-    """|tilt + tilt of the mirrored run| at the end of the event-driven run [rad]."""
+    """Defect of mirror symmetry: |tilt + tilt of the mirrored run| at the end of the event-driven run [rad]."""
     return abs(run(SOLVERS[0], 6.0).end.tilt + run(SOLVERS[0], 6.0, -1.0).end.tilt)
 
 
 def skill() -> float:
-    """Brier score of a forecast that knows the share of overturnings alone, over the model's on the shake table; nan if
-    its study is not stored."""
+    """Brier score of a forecast by the share of overturnings alone, over the model's score on the shake table.
+
+    It is nan if the study is not stored.
+    """
     path = RESULTS / "shake-table"
     rows = where(read_study(path).rows, part="fit", change="as it is") if path.exists() else ()
     share = OVERTURNED / TESTS
@@ -146,8 +148,8 @@ def code() -> float:
     before = block.mass * block.half_height * rate
     kept = block.mass * block.half_height * restitution(on_base) * rate
     pushed = -on_base.total_mass * base_jump_length_as_printed(on_base) * rate
-    found = 100 * abs((kept + pushed) / before - 1)  # %
-    return found
+    answer = 100 * abs((kept + pushed) / before - 1)  # %
+    return answer
 
 
 LESSON = Lesson(

@@ -37,7 +37,7 @@ from ..lesson import (
     straddled,
 )
 
-# ms. Where a step and its half are both here, the error falls; steps of 20 and of 10 ms would err by the same.
+# ms. The error falls from a step here to its half; steps of 20 and of 10 ms would have the same error.
 STEPS = (0.5, 1.0, 2.4, 3.0, 5.0, 6.0, 9.0, 12.0, 18.0, 28.0)
 SCAN = np.geomspace(4e-4, 0.05, 160)  # s
 EXAGGERATED = 12  # factor on the angles of the four frames
@@ -130,39 +130,38 @@ def engines_table() -> Table:
     )
 
 
-WHICH = ("engine", "variant")
-
-
 def bad_example() -> View:
-    """Error of restitution over the step for the engines under study: a finer level of their defaults does not help."""
+    """Show the error of restitution over the step of subject engines: finer levels of their defaults do not help."""
     study = read_study(RESULTS / "restitution")
-    best = study.settings["default_variants"]
+    mains = study.settings["default_variants"]
     chosen = [
         variant
         for variant in study.settings["variants"]
         if ENGINES[variant["engine"]].subject
         and variant["parameter"].endswith("step")
-        and (variant["tier"] == "defaults" or best[variant["engine"]] == variant["variant"])
+        and (variant["tier"] == "defaults" or mains[variant["engine"]] == variant["variant"])
     ]
     figure, axis = canvas()
     numbers: dict[str, tuple[float | str, str]] = {}
     for variant, colour in zip(chosen, (MODEL, OTHER, THIRD), strict=True):
         levels = sorted(
             (row["level"], row["rms"])
-            for row in where(study.rows, scope="levels", ground=RIGID, **{key: variant[key] for key in WHICH})
+            for row in where(
+                study.rows, scope="levels", ground=RIGID, engine=variant["engine"], variant=variant["variant"]
+            )
         )
-        steps, found = zip(*levels, strict=True)
+        steps, errors = zip(*levels, strict=True)
         name = f"{variant['engine']}, {variant['tier']}"
         axis.loglog(
             [1e3 * step for step in steps],
-            [100 * error for error in found],
+            [100 * error for error in errors],
             marker=marker(variant["engine"]),
             color=colour,
             linestyle=":" if variant["tier"] == "defaults" else "-",
             label=name,
         )
         over = f"{name}: error at {1e3 * steps[0]:g} ms over that at {1e3 * steps[-1]:.3g} ms"
-        numbers[over] = (found[0] / found[-1], "")
+        numbers[over] = (errors[0] / errors[-1], "")
     axis.set(xlabel="step [ms]", ylabel="error of restitution, rms [%]")
     legend(axis, loc="center right")
     return View(
@@ -174,13 +173,13 @@ def bad_example() -> View:
 
 
 def step_for_one_per_cent() -> float:
-    """Largest step of `SCAN` [ms] up to which the error of the rate is below 1 %."""
+    """Largest step of `SCAN` [ms] with an error of the rate below 1 % at it and at all smaller steps."""
     over = np.flatnonzero(~(scanned() < 0.01))
     return 1e3 * float(SCAN[over[0] - 1])
 
 
 def order() -> float:
-    """Order of the error in the step: slope of its upper envelope, the larger of every tenth of a decade."""
+    """Order of the error in the step: slope of its upper envelope, of the largest errors in each twelfth of `SCAN`."""
     parts = np.array_split(np.arange(len(SCAN)), 12)
     tops = [max(part, key=lambda k: scanned()[k]) for part in parts]
     return float(np.polyfit(np.log(SCAN[tops]), np.log(scanned()[tops]), 1)[0])
@@ -210,8 +209,8 @@ def code() -> float:
     exact = simulate(SCENE, history=False).impacts[0].time
     steps = np.linspace(4e-3, 5e-3, 41)  # s
     shifts = [simulate_time_stepping(SCENE, step=step).impacts[0].time - exact for step in steps]
-    found = 1e3 * max(abs(shift) for shift in shifts)  # ms
-    return found
+    answer = 1e3 * max(abs(shift) for shift in shifts)  # ms
+    return answer
 
 
 LESSON = Lesson(

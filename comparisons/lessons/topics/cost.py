@@ -30,7 +30,7 @@ from ..lesson import (
     timed,
 )
 
-TARGET = 0.01  # error asked for
+TARGET = 0.01  # required error
 MODEL = "event-driven"
 TOLERANCES = (1e-2, 1e-4, 1e-6, 1e-9)  # of the event-driven model
 FLOOR = 1e-12  # smaller errors are drawn here
@@ -43,12 +43,12 @@ def model_runs() -> tuple[EngineRun, ...]:
 
 
 def levels_by_variant(runs: tuple[EngineRun, ...]) -> dict[str, list[EngineRun]]:
-    """{solver: its runs}, from coarse to fine."""
+    """Return {solver: its runs}, from coarse to fine."""
     return {name: list(levels) for name, levels in groupby(runs, attrgetter("name"))}
 
 
 def trusted(runs: tuple[EngineRun, ...], target: float) -> dict[str, EngineRun]:
-    """The cheapest run of each solver whose error, and that of every finer level, is below the target."""
+    """Return the cheapest run of each solver with an error below the target at its level and at every finer one."""
 
     passing = {
         name: list(takewhile(lambda run: run.error < target, reversed(levels)))
@@ -114,17 +114,17 @@ def table() -> Table:
 
 
 def coarsest_step() -> float:
-    """Largest step of the fixed-step integrator [ms] with an error below 1 % at it and at all finer ones."""
+    """Largest step of the fixed-step integrator [ms] with an error below 1 % at it and at all smaller steps."""
     return 1e3 * max(run.value for run in takewhile(lambda run: run.error < TARGET, reversed(own_runs())))
 
 
 def event_driven_share() -> float:
-    """CPU time of a run of fixed steps at 1 % over that of the event-driven model."""
+    """CPU time of a run with fixed steps and an error of 1 %, over that of the event-driven model."""
     return trusted(own_runs(), TARGET)[OWN].cpu / min(run.cpu for run in model_runs())
 
 
 def passing_solvers() -> float:
-    """Number of solvers, variants apart, that reach 1 % and keep it."""
+    """Number of solvers, each variant counted, that reach 1 % and stay below it at finer levels."""
     return float(len(trusted(everything(), TARGET)))
 
 
@@ -133,7 +133,7 @@ def code() -> object:
     from comparisons.lessons.topics.cost import TARGET, model_runs, trusted
 
     best = trusted((*model_runs(), *own_runs(), *engine_runs()), TARGET)
-    found = len(best)
+    answer = len(best)
     return {name: (f"{run.parameter} = {run.value:g}", f"{1e3 * run.cpu:.3g} ms") for name, run in best.items()}
 
 

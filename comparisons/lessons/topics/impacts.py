@@ -12,8 +12,8 @@ from ..lesson import MODEL, OTHER, SOFT, Control, Equation, Exercise, Lesson, Vi
 
 START, WINDOW = 0.8, 8.0  # tilt over slenderness, s
 CURVE = np.linspace(0.02, 1.2, 80)
-SCRIPTED, MEASURED = "free-rocking-rigid", 0.8  # the scene whose script is changed, and a restitution
-# The engine whose contact has a restitution, and where its script would give it.
+SCRIPTED, MEASURED = "free-rocking-rigid", 0.8  # the scene whose script is changed, and a measured restitution
+# The engine whose contact has a restitution, and the call of its script that would state it.
 WHOSE, (WAS,) = next(
     (name, known["restitution 1"].replacements)
     for name, engine in ENGINES.items()
@@ -22,12 +22,12 @@ WHOSE, (WAS,) = next(
 
 
 def released(slenderness: float) -> Scene:
-    """The Caryatid's mass and radius, tilted to 0.8 of its slenderness and released on rigid ground."""
+    """Return a block of the Caryatid's mass and radius, released at 0.8 of its slenderness on rigid ground."""
     return Scene(block=Block(mass=MASS, radius=RADIUS, slenderness=slenderness), start=Start(tilt=START * slenderness))
 
 
 def restitution_of(slenderness: float, on_base: bool = False) -> float:
-    """e_phi of eq. (7), on rigid ground or on the Caryatid's base."""
+    """Return e_phi of eq. (7), on rigid ground or on the Caryatid's base."""
     return momentum_restitution(Scene(block=caryatid_block(slenderness), base=BASE if on_base else None))
 
 
@@ -68,12 +68,12 @@ def swings_to_a_tenth(scene: Scene | None = None) -> float:
 
 
 def with_a_material() -> float:
-    """e_phi of `SCRIPTED` with any coefficient of restitution at its contacts."""
+    """Restitution e_phi of `SCRIPTED`, whatever coefficient of restitution its contacts have."""
     return momentum_restitution(load_scene(SCRIPTED))
 
 
 def swings_of_the_measured() -> float:
-    """`swings_to_a_tenth` of `SCRIPTED` where the restitution is given."""
+    """Impacts as in `swings_to_a_tenth`, of `SCRIPTED` with the restitution `MEASURED`."""
     return swings_to_a_tenth(load_scene(SCRIPTED).with_(block={"restitution": MEASURED}))
 
 
@@ -93,8 +93,8 @@ def code() -> float:
     statue = Block(mass=3172.05, radius=1.0884, slenderness=0.28)  # kg, m, rad
     response = simulate(Scene(block=statue, start=Start(tilt=0.8 * 0.28)))
     first = response.impacts[0]
-    found = first.rate_after / first.rate_before
-    return found
+    answer = first.rate_after / first.rate_before
+    return answer
 
 
 LESSON = Lesson(

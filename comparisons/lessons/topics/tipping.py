@@ -41,10 +41,10 @@ def pulse_scene(amplitude: float, period: float = PERIOD, slenderness: float = S
 
 @functools.cache
 def overturning() -> np.ndarray:
-    """Over `AMPLITUDES` and `PERIODS`: 0 stands, 1 rocks, 2 overturns after impacts, 3 overturns without one."""
+    """Return the outcome over `AMPLITUDES` and `PERIODS`: 0 stands, 1 rocks, 2 overturns after impacts, 3 without."""
     scene, unit = Scene(block=caryatid_block(SLENDERNESS)), math.tan(SLENDERNESS)
-    found = overturning_map(scene, "one-sine", 2 * math.pi / PERIODS / scene.rocking_frequency, AMPLITUDES / unit)
-    return np.where(found.overturns, np.where(found.impacts > 0, 2, 3), np.where(found.lifted, 1, 0))
+    outcomes = overturning_map(scene, "one-sine", 2 * math.pi / PERIODS / scene.rocking_frequency, AMPLITUDES / unit)
+    return np.where(outcomes.overturns, np.where(outcomes.impacts > 0, 2, 3), np.where(outcomes.lifted, 1, 0))
 
 
 def view(amplitude: float) -> View:
@@ -87,7 +87,7 @@ def view(amplitude: float) -> View:
 
 
 def lifting_acceleration() -> float:
-    """Of a block 2 m high and 0.6 m wide [g]."""
+    """Uplift acceleration of a block 2 m high and 0.6 m wide [g]."""
     block = Block(mass=1.0, radius=math.hypot(1.0, 0.3), slenderness=math.atan2(0.3, 1.0))
     return RockingModel.of(Scene(block=block)).uplift_acceleration / G
 
@@ -98,12 +98,12 @@ def first_fall() -> float:
 
 
 def size_that_survives() -> float:
-    """Factor on the size of the block at which it survives 0.5 g and 0.8 s."""
+    """Factor on the size of the block at which it survives a sine of 0.5 g and 0.8 s."""
     return edge(lambda size: overturns(pulse_scene(0.5, size=size)), 1.0, 3.0)
 
 
 def slip_of_a_push() -> float:
-    """Of a block with tan(gamma) = 0.3 on friction 0.2 under 0.4 g that last half a second [m]."""
+    """Slip [m] of a block with tan(gamma) = 0.3 and friction 0.2 under 0.4 g for half a second."""
     block = Block(mass=1.0, radius=math.hypot(1.0, 0.3), slenderness=math.atan2(0.3, 1.0))
     push = PulseMotion("rectangular", 0.4 * G, math.pi / 0.5)
     response = simulate(Scene(block=block, motion=push, friction=0.2))
@@ -119,8 +119,8 @@ def code() -> object:
     statue = Block(mass=3172.05, radius=1.0884, slenderness=0.28)  # kg, m, rad
     pulse = PulseMotion("one-sine", amplitude=0.4 * 9.81, frequency=2 * pi / 0.8)  # m/s2, rad/s
     response = simulate(Scene(block=statue, motion=pulse))
-    found = response.peak_tilt_ratio
-    return response.outcome, found
+    answer = response.peak_tilt_ratio
+    return response.outcome, answer
 
 
 LESSON = Lesson(

@@ -14,7 +14,7 @@ from engines import missing_words
 
 from ...execution.provenance import Result
 from ...plotting.charts import Axis, Chart, figure
-from ...plotting.figures import lines, regions
+from ...plotting.figures import Series, lines, regions
 from ...plotting.parts import Figure, Head, Page, Table, grouped, table, where
 from ...schemas.columns import Column, number, percent
 from . import study as paper
@@ -307,7 +307,7 @@ def _agreement(runs):
         "Relative difference of an engine from the analytic model: in the overturning time if it overturns, otherwise "
         "in the peak. 1: another outcome.",
         panel="panel",
-        by=lambda row: "",
+        series=Series(by=lambda row: ""),
         log="y",
     )
 
@@ -354,7 +354,7 @@ def _vulnerable(result):
         "Longest rocking period of a block that overturns: the paper's are vulnerable below about 4 s. By the "
         "acceleration of the base alone, atan(max|a|/g), a block stays down on the bearings from a slenderness of "
         f"{result.settings['uplift_slenderness']:.4f} rad on.",
-        by=lambda row: "",
+        series=Series(by=lambda row: ""),
         rules=[("x", result.settings["slenderness"], "used here"), *(("y", at, f"{at:g} s") for at in about)],
     )
 

@@ -25,6 +25,7 @@ from ...plotting.figures import (
     PULSE,
     RATINGS,
     SHIFT,
+    Series,
     beside,
     failures,
     judged,
@@ -132,14 +133,16 @@ def over_frequency(rows: Sequence[Row]) -> Figure | None:
         "Boundary of the engine over that of the analytic model, less 1, of the main variants; smaller shifts are "
         f"drawn at {short(DECADES[0])} %, boundaries not found are in the table below.",
         panel="ground",
-        by=lambda row: f"overturning {'begins' if row['rises'] else 'ends'}",
+        series=Series(
+            by=lambda row: f"overturning {'begins' if row['rises'] else 'ends'}",
+            joined=False,
+            says=lambda row: (
+                f"{NAME.of(row)}: {percent(row['shift'])} at {row['shape']}, frequency {row['frequency']:g}, amplitude "
+                f"{AMPLITUDE.text(row)}"
+            ),
+        ),
         log="y",
         rules=[("y", 100 * LIMIT, "trusted")],
-        says=lambda row: (
-            f"{NAME.of(row)}: {percent(row['shift'])} at {row['shape']}, frequency {row['frequency']:g}, amplitude "
-            f"{AMPLITUDE.text(row)}"
-        ),
-        joined=False,
     )
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from ...execution.provenance import Result
 from ...metrics.errors import rms
 from ...plotting.charts import Axis, Chart, figure, key_of
-from ...plotting.figures import as_it_comes, beside, kind, lines, shades, subject
+from ...plotting.figures import Series, as_it_comes, beside, kind, lines, shades, subject
 from ...plotting.parts import RESTITUTION, Figure, Head, Judgement, Mark, Page, Table, grouped, setting_of, table, where
 from ...plotting.wording import TRUSTED, USABLE, rating, trust, with_counts
 from ...schemas.columns import NAME, Column, Row, number, percent, short
@@ -51,7 +51,9 @@ def causes(result: Result, variants: Mapping[str, Row]) -> Iterator[Figure | Tab
     phases, damped = where(result.rows, part="phase"), where(result.rows, part="flight damping")
     yield from _step_phases(result, phases)
     settings = [{**row, "ground": ground(row)} for row in where(result.rows, part="experiment")]
-    changed: dict[str, Any] = dict(panel=lambda row: f"{row['experiment']}: {NAME.of(row)}", by="ground", log="xy")
+    changed: dict[str, Any] = dict(
+        panel=lambda row: f"{row['experiment']}: {NAME.of(row)}", series=Series(by="ground"), log="xy"
+    )
     needed = [("x", mu, f"{ground}: {number(mu, 2)}") for ground, mu in result.settings["friction_needed"].items()]
     yield beside(
         lines(
@@ -108,8 +110,7 @@ def _step_phases(result, phases):
         Column("error of restitution over step [1/s]", "error"),
         "Step phase: with a fixed step the error depends on where in the step the impact falls.",
         panel=NAME.of,
-        by="by",
-        joined=False,
+        series=Series(by="by", joined=False),
     )
     yield table(
         "Step phase: a sawtooth of the impact's place within the step, fitted to the error by swings",
@@ -137,7 +138,7 @@ def _damping(damped, variants):
         "Damping in flight, built into the engine: the error it gives the model alone, and the error measured, where "
         "the block does not slide.",
         panel="whose",
-        by="by",
+        series=Series(by="by"),
     )
     yield table(
         "Damping in flight, on rigid ground",
@@ -169,7 +170,7 @@ def equation_8(result: Result, cells: Iterable[Row], ratings: Mapping[str, Row])
     jump = Column("jump over eq. (8), less 1, rms [-]", "error")
     size = Column("size of the block R [m]", lambda row: row["value"] * result.settings["radius"])
     yield beside(
-        lines(over_slenderness, GAMMA, jump, "Base velocity jump against eq. (8).", by="by", log="y"),
+        lines(over_slenderness, GAMMA, jump, "Base velocity jump against eq. (8).", series=Series(by="by"), log="y"),
         lines(
             over_size,
             size,
@@ -177,7 +178,7 @@ def equation_8(result: Result, cells: Iterable[Row], ratings: Mapping[str, Row])
             f"Over the block's size, in the variants that may be trusted, it is off by at most {errors[0]} from the "
             f"corrected form and by up to {errors[1]} from the printed one, which has a factor R cos γ [m] too many. "
             "The engines know nothing of the equation.",
-            by="by",
+            series=Series(by="by"),
             log="xy",
         ),
     )
@@ -506,9 +507,7 @@ def _over_slenderness(cells, defaults):
         "Error of restitution by states, rms; on the base, for the worst base mass. Coloured: main variants, and "
         "defaults of subject engines. Open marks: defaults. Grey: other variants. No mark: all runs failed.",
         panel=lambda row: f"{row['ground']}: restitution",
-        by=lambda row: row["variant"] if grey(row) else row["tier"],
-        grey=grey,
-        opened=as_it_comes,
+        series=Series(by=lambda row: row["variant"] if grey(row) else row["tier"], grey=grey, opened=as_it_comes),
         log="y",
         rules=[("y", TRUSTED, "trusted")],
     )
@@ -544,7 +543,7 @@ def _on_bearings(result):
                 axis,
                 STATE,
                 f"On bearings: error of restitution over {axis.head.partition(' [')[0]}, the other values together.",
-                grey=lambda row: defaults[row["engine"]] != row["variant"],
+                series=Series(grey=lambda row: defaults[row["engine"]] != row["variant"]),
                 log="y" if factor == "slenderness" else "xy",
                 rules=[("y", TRUSTED, "trusted")],
             )

@@ -17,7 +17,7 @@ from engines import ENGINES
 from ...execution.by_solver import timed_apart
 from ...execution.provenance import Result
 from ...metrics.scripts import NAME as SCRIPT
-from ...plotting.figures import beside, lines, mains
+from ...plotting.figures import Series, beside, lines, mains
 from ...plotting.glance import Advised, Curve, Glance
 from ...plotting.parts import COST, Head, Judgement, Mark, Page, Table, cheapest, grouped, kept_from, table, where
 from ...plotting.wording import listed
@@ -168,7 +168,7 @@ def glance(result: Result) -> Glance | None:
         curves=tuple(_curves(result, rows)),
         scene=result.settings["scenes"][PLAIN]["title"],
         advice=tuple(recommendation for error in WANTED for recommendation in advice(result, error)),
-        asked=tuple(name for name, engine in ENGINES.items() if engine.subject),
+        engines=tuple(name for name, engine in ENGINES.items() if engine.subject),
         alike=noise(result),
     )
 
@@ -435,10 +435,12 @@ def _figure(rows, x, caption, like, leads=()):
             Column(MEASURES[measure], lambda row: max(row["error"], FINEST if row["measure"] == FINE else DRAWN)),
             caption,
             panel=_panel,
-            grey=lambda row: (row["scene"], row["measure"], row["name"]) not in kept,
+            series=Series(
+                grey=lambda row: (row["scene"], row["measure"], row["name"]) not in kept,
+                like=like,
+                says=lambda row: f"{row['name']}, {level_words(row)}: {number(row['error'], 2)} in {CPU.text(row)} s",
+            ),
             log="xy",
-            says=lambda row: f"{row['name']}, {level_words(row)}: {number(row['error'], 2)} in {CPU.text(row)} s",
-            like=like,
         )
         for (measure,), members in grouped(rows, "measure").items()
     ]

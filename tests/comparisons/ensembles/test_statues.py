@@ -39,7 +39,7 @@ def test_scenes_with_a_friction_are_repeatable_within_the_range_and_of_every_kin
 
 
 def test_without_records_pulses_stay_as_they_are_and_synthetic_motions_take_their_place():
-    with_them, without = ([random_slider(some, 1, k) for k in range(40)] for some in (RECORDS, ()))
+    with_them, without = ([random_slider(records, 1, k) for k in range(40)] for records in (RECORDS, ()))
     assert {kind for _, kind in without} == {PULSE, SYNTHETIC}
     same = [a.digest() == b.digest() for (a, _), (b, _) in zip(with_them, without, strict=True)]
     assert same == [kind != RECORDED for _, kind in with_them] and not all(same)

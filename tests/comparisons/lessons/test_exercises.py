@@ -24,7 +24,7 @@ from comparisons.studies.rows import read_study
 def test_every_exercise_is_tried_here():
     """A new exercise needs a line of its own in this file."""
     source = Path(__file__).read_text()
-    answers = [one.compute for lesson in lessons() for one in lesson.exercises]
+    answers = [exercise.compute for lesson in lessons() for exercise in lesson.exercises]
     names = [f"{answer.__module__.rpartition('.')[2]}.{answer.__name__}" for answer in answers]
     assert [name for name in names if name not in source] == []
 
@@ -88,7 +88,9 @@ def test_the_script_of_the_lesson_does_what_is_told_of_it(tmp_path, given, e):
     pytest.importorskip("pybullet")
     scene = load_scene(impacts.SCRIPTED).with_(block={"restitution": given}, duration=2.0)
     script, plain = written(impacts.WHOSE, scene, tmp_path), impacts.WAS
-    question = next(one.question for one in impacts.LESSON.exercises if one.compute is impacts.with_a_material)
+    question = next(
+        exercise.question for exercise in impacts.LESSON.exercises if exercise.compute is impacts.with_a_material
+    )
     assert f"change `{plain}` to `{plain}, restitution=0.5`" in question
     assert script.read_text().count(plain) == 1 and ("couple" in script.read_text()) == (given is not None)
     if given is None:

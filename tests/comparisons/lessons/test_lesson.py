@@ -28,13 +28,13 @@ def names_of(tex):
 
 
 def test_every_symbol_is_explained_once_and_a_question_stands_before_the_controls():
-    for one in lessons():
-        assert len(set(one.symbols)) == len(one.symbols) and one.guess.rstrip().endswith("?")
-        used = set().union(*(names_of(equation.tex) for equation in one.equations))
-        assert used - {r"\pi"} <= set(one.symbols), one.name
-    assert {symbol for one in lessons() for symbol in one.symbols} == set(SYMBOLS)
-    assert [one.number for one in lessons() if one.drawing] == [1, 2, 3]  # the labelled block, at their head
-    assert all({"b", "h", r"\gamma", "R", "J_O", r"\phi"} <= set(one.symbols) for one in lessons()[:3])
+    for each in lessons():
+        assert len(set(each.symbols)) == len(each.symbols) and each.guess.rstrip().endswith("?")
+        used = set().union(*(names_of(equation.tex) for equation in each.equations))
+        assert used - {r"\pi"} <= set(each.symbols), each.name
+    assert {symbol for each in lessons() for symbol in each.symbols} == set(SYMBOLS)
+    assert [each.number for each in lessons() if each.drawing] == [1, 2, 3]  # the labelled block, at their head
+    assert all({"b", "h", r"\gamma", "R", "J_O", r"\phi"} <= set(each.symbols) for each in lessons()[:3])
 
 
 def check(text):
@@ -44,17 +44,17 @@ def check(text):
 
 
 def test_every_formula_is_set():
-    for one in lessons():
-        texts = [one.question, one.look, *one.wrong, *(equation.says for equation in one.equations)]
-        for text in [*texts, *(t for exercise in one.exercises for t in (exercise.question, exercise.because))]:
+    for each in lessons():
+        texts = [each.question, each.look, *each.wrong, *(equation.says for equation in each.equations)]
+        for text in [*texts, *(t for exercise in each.exercises for t in (exercise.question, exercise.because))]:
             assert text.count("$") % 2 == 0
             check(f"<p>{prose(text)}</p>")
-        for equation in one.equations:
+        for equation in each.equations:
             check(mathml(equation.tex, display=True))
     page = _environment().get_template("derivations.html").render(rocking="", impact="", isolated="")
-    found = re.findall("<math.*?</math>", page)
-    assert len(found) >= (PAGES / "derivations.html").read_text().count("eq(") - 1 > 10
-    check(f"<all>{''.join(found)}</all>")
+    formulas = re.findall("<math.*?</math>", page)
+    assert len(formulas) >= (PAGES / "derivations.html").read_text().count("eq(") - 1 > 10
+    check(f"<all>{''.join(formulas)}</all>")
     assert "<msup><mi>sin</mi><mn>2</mn></msup>" in mathml(r"\sin^2 \gamma")
 
 
@@ -74,22 +74,22 @@ PLACES = {"impacts": 0, "bearing": 0, "caryatid": 1, "corner": 0, "chaos": 2, "c
 def test_a_notebook_runs_and_its_few_lines_give_the_lessons_number(name, monkeypatch, tmp_path):
     """In those that run engines, with none here."""
     pytest.importorskip("marimo", reason="needs marimo: pip install marimo")
-    asked = functools.cache(engine_runs.engine_runs.__wrapped__)
+    runs = functools.cache(engine_runs.engine_runs.__wrapped__)
     for module in (engine_runs, corner, cost):
-        monkeypatch.setattr(module, "engine_runs", asked)
+        monkeypatch.setattr(module, "engine_runs", runs)
     monkeypatch.setattr(engine_runs, "installed_engines", tuple)
     (tmp_path / "notebook.py").write_text(notebook_of(lesson(name)), encoding="utf-8")
     outputs, definitions = runpy.run_path(str(tmp_path / "notebook.py"))["app"].run()
     first = name == "tipping" and lesson(name).first().numbers["peak tilt / γ"][0]
     known = first or lesson(name).exercises[PLACES[name]].compute()
-    assert definitions["found"] == pytest.approx(known, rel=1e-9)
+    assert definitions["answer"] == pytest.approx(known, rel=1e-9)
     assert len(outputs) == 6 and outputs[-1] is not None
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_the_few_lines_stand_in_the_notebook_and_are_few(name):
     code = code_of(lesson(name))
-    assert "found = " in code and "return" not in code and len(code.splitlines()) <= 12
+    assert "answer = " in code and "return" not in code and len(code.splitlines()) <= 12
     assert textwrap.indent(code, "    ") in notebook_of(lesson(name))
 
 

@@ -65,13 +65,13 @@ def data(**more):
 @pytest.fixture(scope="module")
 def runs():
     cases = [{**case_of(*case), "duration": DURATIONS[case[2]]} for case in GRID]
-    found = evaluate(
+    results = evaluate(
         sources() + TO_SCENE,
         f"DATA.cases.map((c) => Model.simulate(given(c), shaken(c.motion), "
         f"{{ duration: c.duration, outputStep: {OUTPUT_STEP} }}))",
         data(cases=cases),
     )
-    return dict(zip(GRID, found, strict=True))
+    return dict(zip(GRID, results, strict=True))
 
 
 @pytest.mark.parametrize("gamma", [0.15, 0.28, 0.4])

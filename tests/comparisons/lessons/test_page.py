@@ -100,16 +100,18 @@ def test_the_other_pages(browser, pages):
 
 
 def test_a_moved_slider_of_every_lesson_shows_the_kernels_number(browser, pages):
-    for one in lessons():
-        page = visit(browser, pages / f"lesson-{one.number}.html")
+    for lesson in lessons():
+        page = visit(browser, pages / f"lesson-{lesson.number}.html")
         before = page.inner_html("#picture")
-        for k, control in enumerate(one.controls):
+        for k, control in enumerate(lesson.controls):
             if control.in_words:
                 page.check(f'[name="c-{k}"][value="{len(control.values) - 1}"]')
             else:
                 page.press(f"#c-{k}", "End")
         assert page.inner_html("#picture") != before
-        numbers = {name: value for name, (value, _) in one.view(*one.places()[-1]).numbers.items() if "CPU" not in name}
+        numbers = {
+            name: value for name, (value, _) in lesson.view(*lesson.places()[-1]).numbers.items() if "CPU" not in name
+        }
         for label, number in numbers.items():
             shown = page.get_attribute(f'[data-name="{label}"]', "data-value")
             assert isinstance(number, str) or float(shown) == pytest.approx(float(number), rel=1e-12, abs=1e-300), label

@@ -50,9 +50,9 @@ def test_a_line_read_back_from_its_path_is_the_data():
     chart.line(xs, ys, "exudyn")
     root = element(chart)
     read = json.loads(root.get("data-read"))
-    found = np.array([(value(read["x"], x), value(read["y"], y)) for x, y in points(*drawn_lines(root))])
-    np.testing.assert_allclose(found[:, 0], xs, atol=8.0 / 300)  # a tenth of a unit of some 330
-    np.testing.assert_allclose(np.log10(found[:, 1]), np.log10(ys), atol=8.0 / 200)
+    drawn = np.array([(value(read["x"], x), value(read["y"], y)) for x, y in points(*drawn_lines(root))])
+    np.testing.assert_allclose(drawn[:, 0], xs, atol=8.0 / 300)  # a tenth of a unit of some 330
+    np.testing.assert_allclose(np.log10(drawn[:, 1]), np.log10(ys), atol=8.0 / 200)
 
 
 def test_a_line_is_parted_where_there_is_no_number_and_says_equal_points_once():
@@ -90,7 +90,7 @@ def test_marks_beyond_the_panel_stand_at_its_frame_with_an_arrowhead_that_points
     x, y = (round(float(at), 1) for at in chart.at([0.0], [1.0])[0])
     right, left, top, bottom = chart.right, chart.left, chart.top, chart.bottom
     assert list(map(place_of, marks)) == [(x, y), (right, y), (right, top), (left, y), (x, top), (x, bottom)]
-    assert [re.search(r"rotate\((.*)\)", one)[1] for one in arrows] == ["0", "-45", "180", "-90", "90"]
+    assert [re.search(r"rotate\((.*)\)", arrow)[1] for arrow in arrows] == ["0", "-45", "180", "-90", "90"]
 
 
 @pytest.mark.parametrize("scheme", [0, 1], ids=["light", "dark"])
@@ -111,7 +111,7 @@ def test_lines_and_shades_can_be_told_from_the_page(scheme):
 def test_every_mode_of_the_march_is_there_once_and_what_ends_it():
     words = [text.text for text in ElementTree.fromstring(str(modes.modes())).iter("text")]
     assert [word for word in words if word in (*MODES, modes.FALLEN)] == [*MODES, modes.FALLEN]
-    ends = "".join(words for _, _, told in modes.CHANGES for words, _ in told)
+    ends = "".join(words for _, _, labels in modes.CHANGES for words, _ in labels)
     for end in ("|H| = μ N", "|H| = N tan γ", "slip stops", "impact", "N = 0", "|φ| = π/2"):
         assert end in ends and end in " ".join(words) and (end in modes.SAYS or end == "slip stops")
 

@@ -32,8 +32,8 @@ ROWS = [
 
 
 def test_the_examples():
-    found = doctest.testmod(module)
-    assert found.attempted and not found.failed
+    report = doctest.testmod(module)
+    assert report.attempted and not report.failed
 
 
 def test_a_row_without_the_column_is_chosen_for_no_value():
@@ -135,10 +135,14 @@ def test_only_a_letter_has_an_index():
 
 
 def test_what_differs_is_said_near_an_edge_too():
-    found = Difference("peak_tilt", 0.0189, 0.009, 0.02, (0.00807, 0.00999))
+    difference = Difference("peak_tilt", 0.0189, 0.009, 0.02, (0.00807, 0.00999))
     near = "0.00807 to 0.00999 in the analytic model within 0.01 % of the scene"
     words = f"peak tilt 0.0189 rad, in the analytic model 0.009 ({near})"
-    assert differing(COMPARED, [found]) == differing(EDGE, [found]) == [f"differs from the analytic model: {words}"]
+    assert (
+        differing(COMPARED, [difference])
+        == differing(EDGE, [difference])
+        == [f"differs from the analytic model: {words}"]
+    )
     assert differing(COMPARED, []) == differing(UNCOMPARED, []) == []
     assert differing(EDGE, []) == [
         "agrees with the analytic model within what a change of the scene by 1e-4 does in the model"
@@ -157,8 +161,8 @@ def test_what_differs_is_said_near_an_edge_too():
     ],
 )
 def test_so_few_runs_that_they_say_nothing_are_no_trust_either(differing_runs, equal, interval, level):
-    found = {"differing": differing_runs, "failed": 0, "runs": 90, "equal": equal, "interval": interval}
-    mark = equal_mark(found | {"share": differing_runs / 90})
+    row = {"differing": differing_runs, "failed": 0, "runs": 90, "equal": equal, "interval": interval}
+    mark = equal_mark(row | {"share": differing_runs / 90})
     assert mark.level == level and mark.words.startswith(f"{differing_runs} of 90 (at most ")
 
 
@@ -186,10 +190,10 @@ RUNS = [
 
 
 def test_a_fall_at_another_time_is_no_other_outcome_and_each_run_is_in_one_column():
-    found = tally(RUNS, "group", turned)
-    assert [found[way] for way in ENDS] == [2, 2, 1, 1, 1, 1, 1]
-    assert (found["runs"], found["groups"], found["differing"]) == (8, 4, 7) and found["share"] == 7 / 8
-    assert [column.value for column in ends([found])] == list(ENDS)
+    counts = tally(RUNS, "group", turned)
+    assert [counts[way] for way in ENDS] == [2, 2, 1, 1, 1, 1, 1]
+    assert (counts["runs"], counts["groups"], counts["differing"]) == (8, 4, 7) and counts["share"] == 7 / 8
+    assert [column.value for column in ends([counts])] == list(ENDS)
     bare = tally(RUNS[:1], "group", turned)
     assert [ENDS[column.value] for column in ends([bare])] == [
         "overturning missed or added [-]",
@@ -197,7 +201,7 @@ def test_a_fall_at_another_time_is_no_other_outcome_and_each_run_is_in_one_colum
         "failed [-]",
         "left out near an outcome boundary [-]",
     ]
-    assert left_out(found) == "left out: 1 near an outcome boundary, 1 otherwise"
+    assert left_out(counts) == "left out: 1 near an outcome boundary, 1 otherwise"
     assert left_out(bare) == "left out: 0 near an outcome boundary"
 
 

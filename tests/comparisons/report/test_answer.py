@@ -39,14 +39,14 @@ JUDGED = Judgement(
 
 
 def decided(*judgements):
-    return {(one.engine, one.variant): one for one in setups_of(VARIANTS, judgements)}
+    return {(setup.engine, setup.variant): setup for setup in setups_of(VARIANTS, judgements)}
 
 
 def test_rows_of_one_heading_are_one_that_says_what_each_study_found_and_is_as_bad_as_the_worst():
-    one, other = ("e", ""), ("e", "fine")
-    first = Judgement("shift", {one: Mark("1 % (3 of 4)", "bad", "a", 0.01), other: Mark("2 %", "good", "b", 0.02)})
-    second = Judgement("shift", {one: Mark("3 % (5 of 5)", "fair", "c", 0.03)})
-    marks = {one: Mark("3 % (5 of 5); 1 % (3 of 4)", "bad", "c; a", 0.03), other: first.marks[other]}
+    main, finer = ("e", ""), ("e", "fine")
+    first = Judgement("shift", {main: Mark("1 % (3 of 4)", "bad", "a", 0.01), finer: Mark("2 %", "good", "b", 0.02)})
+    second = Judgement("shift", {main: Mark("3 % (5 of 5)", "fair", "c", 0.03)})
+    marks = {main: Mark("3 % (5 of 5); 1 % (3 of 4)", "bad", "c; a", 0.03), finer: first.marks[finer]}
     for order in ((first, second), (second, first)):
         stored = [Stored(str(k), Section(""), judgements=(each,)) for k, each in enumerate(order)]
         assert judgements_of([*stored, Stored("x", Section(""))]) == [Judgement("shift", marks)]
@@ -66,11 +66,11 @@ def test_rows_of_one_heading_are_one_that_says_what_each_study_found_and_is_as_b
     ],
 )
 def test_the_rating_is_the_worst_mark_and_what_was_not_tested_is_no_trust(marks, level):
-    found = decided(JUDGED, Judgement("a", marks))
-    assert found[FINE].rating.level == level and found[COARSE].rating.level == "bad"
-    assert list(found) == [FINE, COARSE, GIVEN, OTHER]  # the subject's tuned and default variants, then the others
-    assert [one.in_first_table for one in found.values()] == [True, True, False, False]
-    assert found[GIVEN].marks["a"].words == "not tested"
+    setups = decided(JUDGED, Judgement("a", marks))
+    assert setups[FINE].rating.level == level and setups[COARSE].rating.level == "bad"
+    assert list(setups) == [FINE, COARSE, GIVEN, OTHER]  # the subject's tuned and default variants, then the others
+    assert [setup.in_first_table for setup in setups.values()] == [True, True, False, False]
+    assert setups[GIVEN].marks["a"].words == "not tested"
 
 
 def test_the_blocks_own_restitution_is_that_of_its_engines():
@@ -103,10 +103,10 @@ def test_impacts_that_an_engine_misses_on_the_scenes_own_block_are_counted():
         SimpleNamespace(case=case, failed=False, values=response.to_json(), cost={"cpu_seconds": 1.0})
         for case, (_, _, response) in zip(cases, runs, strict=True)
     ]
-    found = restitution_computed(rows).rows
-    assert [row["lost"] for row in found] == [0, 1] and found[1]["failed"] == 0
+    rows_of_block = restitution_computed(rows).rows
+    assert [row["lost"] for row in rows_of_block] == [0, 1] and rows_of_block[1]["failed"] == 0
     settings = {"starts": [0.6], "seconds": 3.0, "bases": [None]}
-    (table,) = restitution_section(SimpleNamespace(rows=found, settings=settings)).tables
+    (table,) = restitution_section(SimpleNamespace(rows=rows_of_block, settings=settings)).tables
     assert [row[1] for row in table.rows] == ["may be trusted", "is not to be trusted"]
 
 
@@ -126,36 +126,36 @@ TABLE = Endings("a table", *FINE, "tuned", 80, 0, 0, 0, 0, (0.0, 0.2), untold=7,
 SHARES = [PLAIN, TUNED, replace(TUNED, engine="mujoco"), TABLE]
 
 
-def test_the_first_screen_counts_outcomes_that_are_changed_of_engines_in_question():
+def test_the_first_screen_counts_outcomes_that_are_changed_of_subject_engines():
     """Of 170 + 80 runs 1 + 7, of 50 ten; a fall at another time is no other outcome."""
-    found = shown(SHARES, SETUPS)
-    assert {one.engine for one in found} == {"exudyn"}
+    kept = shown(SHARES, SETUPS)
+    assert {share.engine for share in kept} == {"exudyn"}
     assert "tuned exudyn end otherwise than the model, or fail, in 8 of 250 runs; with defaults, in 10 of 50." in title(
-        found
+        kept
     )
     assert title([]) == title([TABLE]) == QUESTION
-    told = dict(lines(SETUPS, (JUDGED,), found, {}))
+    sentences = dict(lines(SETUPS, (JUDGED,), kept, {}))
     counts = (
-        "in 1 of 170 (exudyn); with defaults, in 10 of 50 (exudyn)",
-        "tuned, in 2 (exudyn) more",
-        "7 of 80 (7 under",
+        "in 1 of 170 (exudyn) runs. With defaults, this happens in 10 of 50 (exudyn) runs.",
+        "In 2 (exudyn) more runs, tuned engines overturn",
+        "7 of 80 runs (7 under",
     )
-    assert all(words in told["Outcomes"] for words in counts)
-    assert "30 of 200 (recorded motions) and 20 of 100 (a table)" in told["Near outcome boundaries"]
-    assert "by 1.0·10⁻⁵ (exudyn)" in told["Restitution"] and "by 0.20 (exudyn)" in told["Restitution"]
+    assert all(words in sentences["Outcomes"] for words in counts)
+    assert "30 of 200 (recorded motions) and 20 of 100 (a table)" in sentences["Near outcome boundaries"]
+    assert "to within 1.0·10⁻⁵ (exudyn)" in sentences["Restitution"] and "is 0.20 (exudyn)" in sentences["Restitution"]
 
 
 def test_advice_says_what_its_levels_give_elsewhere_and_where_they_were_not_run():
     level = Advised(1e-3, *FINE, "stiffness", 2e9, 0.02, "rocking run SCENE", {"a pulse": 2e-3, "a jump": 4e-4})
-    found = Glance(advice=(Advised(1e-2), level), asked=("exudyn",), scene="a scene", alike=1.5)
+    glance = Glance(advice=(Advised(1e-2), level), engines=("exudyn",), scene="a scene", alike=1.5)
     peaks = Peaks("recorded motions", *FINE, "stiffness", 1e9, (1e-5, 5e-4, 2e-3, float("inf")))
-    first, second = advice(found, [peaks])
+    first, second = advice(glance, [peaks])
     assert first.rows[0] == ["1 %", "not reached", "–", "–", "–"]
     assert first.rows[1] == ["0.1 %", "exudyn", "stiffness = 2·10⁹ N/m", "20 ms", "rocking run SCENE"]
     there = "not run; at stiffness = 10⁹ N/m: 2 of 4 (50 %)"
     assert second.rows == [["0.1 %", "exudyn, stiffness = 2·10⁹ N/m", "0.20 %: missed", "0.040 %", there]]
-    for other, words in ((replace(peaks, level=2e9), "2 of 4 (50 %)"), (replace(peaks, engine="another"), "not run")):
-        assert advice(found, [other])[1].rows[0][-1] == words
+    for changed, words in ((replace(peaks, level=2e9), "2 of 4 (50 %)"), (replace(peaks, engine="another"), "not run")):
+        assert advice(glance, [changed])[1].rows[0][-1] == words
 
 
 def test_endings_are_counted_run_by_run_and_an_interval_goes_by_group():
@@ -173,8 +173,8 @@ def test_endings_are_counted_run_by_run_and_an_interval_goes_by_group():
     )
     names = ("class", "model_falls", "falls", "changed", "group")
     rows = [dict(zip(names, kind, strict=True), engine="e", variant="v", tier="tuned") for kind in kinds]
-    (found,) = counted("pulses", rows)
-    assert (found.runs, found.failed, found.missed, found.added, found.other, found.late) == (6, 1, 1, 1, 1, 1)
-    assert (found.changed, found.differing, found.left_out, found.left_differing) == (4, 5, 3, 2)
+    (shares,) = counted("pulses", rows)
+    assert (shares.runs, shares.failed, shares.missed, shares.added, shares.other, shares.late) == (6, 1, 1, 1, 1, 1)
+    assert (shares.changed, shares.differing, shares.left_out, shares.left_differing) == (4, 5, 3, 2)
     (alone,) = counted("pulses", [{**row, "group": k} for k, row in enumerate(rows)])
-    assert alone.interval[0] > found.interval[0] and alone.interval[1] < found.interval[1]
+    assert alone.interval[0] > shares.interval[0] and alone.interval[1] < shares.interval[1]

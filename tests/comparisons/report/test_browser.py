@@ -96,8 +96,8 @@ def test_the_block_is_where_the_history_says(report, opened):
             moved = page.locator(f'svg[data-scene="0"] [data-track="{which}"]').get_attribute("transform")
             tilt = track["tilt"][min(frame, len(track["tilt"]) - 1)]
             corner = data["scenes"][0]["size"][0] * (-1 if tilt < 0 else 1)
-            found = list(map(float, re.search(r"rotate\(([-\d.]+) ([-\d.]+)", moved).groups()))
-            assert found == [pytest.approx(math.degrees(tilt), abs=2e-3), corner]
+            placed = list(map(float, re.search(r"rotate\(([-\d.]+) ([-\d.]+)", moved).groups()))
+            assert placed == [pytest.approx(math.degrees(tilt), abs=2e-3), corner]
     x = data["scenes"][1]["tracks"][0]["x"][140]
     assert f"translate({x:.4f} 0)" in page.locator('svg[data-scene="1"] .moves').get_attribute("transform")
     assert page.evaluate("document.querySelector('table.answers').getBoundingClientRect().bottom") < FIRST
@@ -129,7 +129,7 @@ def test_tables_sort_rows_unfold_and_solvers_hide(report, opened):
     column = table.locator("thead th").nth(2)
     for order, turned in (("ascending", False), ("descending", True)):
         column.get_by_role("button").click()
-        cells = [number_in(one) for one in table.locator("tbody tr td:nth-child(3)").all_text_contents()]
+        cells = [number_in(cell) for cell in table.locator("tbody tr td:nth-child(3)").all_text_contents()]
         assert cells == sorted(cells, reverse=turned) and column.get_attribute("aria-sort") == order
     folded = page.locator("details").first
     folded.locator("summary").first.click()
@@ -175,10 +175,14 @@ def test_every_page_is_as_wide_as_a_phone_or_the_paper_and_can_be_read_in_the_da
 def test_axe_finds_nothing_serious(pages, opened):
     axe = pytest.importorskip("axe_playwright_python.sync_playwright")
     kinds = ("report", "runs", "restitution", "overturning", "statues", "caryatid-paper")
-    some = [file for file in pages if file.stem in kinds]
-    for number, file in enumerate(some):
+    chosen = [file for file in pages if file.stem in kinds]
+    for number, file in enumerate(chosen):
         contrast = {"color-contrast": {"enabled": file.stem in ("report", "restitution")}}  # dear; one style for all
         page = opened(file, scheme=("light", "dark")[number % 2])
-        found = axe.Axe().run(page, options={"rules": contrast, "resultTypes": ["violations"]}).response["violations"]
-        serious = [one for one in found if one["impact"] in ("serious", "critical")]
-        assert not [(file.name, one["id"], node["html"][:120]) for one in serious for node in one["nodes"]]
+        violations = (
+            axe.Axe().run(page, options={"rules": contrast, "resultTypes": ["violations"]}).response["violations"]
+        )
+        serious = [violation for violation in violations if violation["impact"] in ("serious", "critical")]
+        assert not [
+            (file.name, violation["id"], node["html"][:120]) for violation in serious for node in violation["nodes"]
+        ]

@@ -54,7 +54,7 @@ def test_pages_need_nothing_but_themselves_and_each_link_leads_to_its_place(plac
 def test_outside_the_range_no_engine_is_recommended(tmp_path):
     file = tmp_path / runs.SCENES
     content = json.loads((ROWS / WITH_STUDIES / runs.SCENES).read_text(encoding="utf-8"))
-    recommended = "What to use of"
+    recommended = "Which engine and level to use"
     for words in ("", "No engine is recommended here: R 20 is outside."):
         content["rows"][1]["warnings"] = [{"kind": "engine", "quantity": "radius", "text": "R 20 is outside"}] * bool(
             words
@@ -73,14 +73,14 @@ def test_a_report_says_what_its_result_file_says(tmp_path):
     result = read_result(tmp_path / runs.SCENES)
     page = (tmp_path / "pages/runs.html").read_text(encoding="utf-8")
     for name in runs.CARYATID:
-        rows, own = where(result.rows, scene=name), simulate(load_scene(name))
+        rows, response = where(result.rows, scene=name), simulate(load_scene(name))
         assert [row["engine"] for row in rows] == ["analytic", *NAMES]
-        assert (rows[0]["outcome"], rows[0]["peak_tilt_ratio"]) == (own.outcome, own.peak_tilt_ratio)
+        assert (rows[0]["outcome"], rows[0]["peak_tilt_ratio"]) == (response.outcome, response.peak_tilt_ratio)
         table = page[page.index(f"{result.settings['scenes'][name]['name']}, until decided") :]
         cells = re.findall("<td[^>]*>(.*?)</td>", re.search("peak [|]φ[|]/γ.*?</tr>", table, re.DOTALL)[0])
         assert [number_in(cell) for cell in cells] == pytest.approx([row["peak_tilt_ratio"] for row in rows], rel=1e-3)
-        for column in own.history.COLUMNS:
-            np.testing.assert_array_equal(result.arrays[f"{name}/analytic/{column}"], getattr(own.history, column))
+        for column in response.history.COLUMNS:
+            np.testing.assert_array_equal(result.arrays[f"{name}/analytic/{column}"], getattr(response.history, column))
 
 
 def test_missing_engines_are_named_with_their_remedy(tmp_path, monkeypatch):
@@ -148,13 +148,13 @@ def test_errors_of_one_impact_in_steps_are_those_of_the_time_stepping():
     """Shift of the first impact [ms] and error of the rate after it [%], rms over 201 steps within a tenth."""
     exact = simulate(SCENE).impacts[0]
     first, _, _, fourth = (words for _, words in frames())
-    told = re.findall(r"by ([\d.]+) [m%]", f"{first} {fourth}")
-    for step, shift, rate in ((STEP, told[0], told[2]), (STEP / 2, told[1], told[3])):
+    numbers = re.findall(r"by ([\d.]+) [m%]", f"{first} {fourth}")
+    for step, shift, rate in ((STEP, numbers[0], numbers[2]), (STEP / 2, numbers[1], numbers[3])):
         hits = [simulate_time_stepping(SCENE, step=step * (0.9 + 0.001 * k)).impacts[0] for k in range(201)]
         apart = (
             [1e3 * (hit.time - exact.time) for hit in hits],
             [100 * (hit.rate_after / exact.rate_after - 1) for hit in hits],
         )
         assert [float(shift), float(rate)] == pytest.approx(
-            [np.sqrt(np.mean(np.square(some))) for some in apart], rel=0.1
+            [np.sqrt(np.mean(np.square(values))) for values in apart], rel=0.1
         )

@@ -20,7 +20,15 @@ from comparisons.execution.provenance import RESULTS, read_result
 from comparisons.report import statue
 from comparisons.report.detail import assets, environment
 from comparisons.report.runs import RESTITUTION, SCENES, load_scenes, make_own_results
-from comparisons.report.statue import _by_record, _engines, _worst, needed_by, next_step, on_plate, statue_of
+from comparisons.report.statue import (
+    _by_record,
+    _engine_sentences,
+    _worst_words,
+    needed_by,
+    next_step,
+    on_plate,
+    statue_of,
+)
 from comparisons.report.write import PAGE, write_page
 
 GROUND = load_scene("caryatid-rigid")
@@ -35,18 +43,18 @@ def written(folder, text):
 @pytest.mark.slow
 def test_the_nearest_change_and_five_per_cent_of_the_motion_are_where_single_runs_are(tmp_path):
     scene = written(tmp_path, BRONZE.format(scale=CLIFF))
-    found, own = statue_of(scene, {}), simulate(scene, history=False)
-    assert found["own"]["outcome"] == own.outcome and any("below 5%" in words for words in found["cautions"])
-    first = found["margins"][0]
+    statue, response = statue_of(scene, {}), simulate(scene, history=False)
+    assert statue["own"]["outcome"] == response.outcome and any("below 5%" in words for words in statue["cautions"])
+    first = statue["margins"][0]
     assert first["quantity"] == "slenderness"
-    for way, outcome in ((-1e-4, own.outcome), (1e-4, first["then"])):
+    for way, outcome in ((-1e-4, response.outcome), (1e-4, first["then"])):
         changed = scene.with_(block={"slenderness": scene.block.slenderness * (1 + first["nearest"] + way)})
         assert simulate(changed, history=False).outcome == outcome
-    for row in found["near"][:3]:
+    for row in statue["near"][:3]:
         run = simulate(scene.with_(motion=scene.motion.scaled(1 + row["change"])), history=False)
         assert row["outcome"] == run.outcome
         assert row["tilt"] == pytest.approx(run.peak_tilt_ratio, rel=1e-9)
-    assert found["near"][3]["tilt"] >= max(row["tilt"] for row in found["near"][:3])
+    assert statue["near"][3]["tilt"] >= max(row["tilt"] for row in statue["near"][:3])
 
 
 @pytest.fixture
@@ -57,16 +65,16 @@ def quick(monkeypatch):
 def test_a_copy_reversed_or_free_standing_is_a_run_of_its_own(quick, tmp_path):
     bearings = "[bearings]\nka = 22950.5\nkb = 2295.05\nalpha = 66.6021\ncount = 4\nx_max = 0.2"
     scene = written(tmp_path, BUST.format(bearings=bearings))
-    found = statue_of(scene, {})
+    statue = statue_of(scene, {})
     free = simulate(scene.with_(base=None, bearings=None), history=False)
-    assert "reversed" not in found and found["free"]["outcome"] == free.outcome == "overturns"
+    assert "reversed" not in statue and statue["free"]["outcome"] == free.outcome == "overturns"
     started = GROUND.with_(start={"tilt": 0.05})
-    found, mirrored = statue_of(started, {}), simulate(started.with_(start={"tilt": -0.05}), history=False)
-    assert "free" not in found and found["reversed"]["outcome"] == mirrored.outcome
-    assert found["reversed"]["tilt"] == pytest.approx(mirrored.peak_tilt_ratio, rel=1e-6)
+    statue, mirrored = statue_of(started, {}), simulate(started.with_(start={"tilt": -0.05}), history=False)
+    assert "free" not in statue and statue["reversed"]["outcome"] == mirrored.outcome
+    assert statue["reversed"]["tilt"] == pytest.approx(mirrored.peak_tilt_ratio, rel=1e-6)
     slid = simulate(SLIDES, history=False).sliding
-    own = statue_of(SLIDES, {})["own"]
-    assert (own["slip"], own["slip_end"]) == (slid.peak, slid.end)
+    numbers = statue_of(SLIDES, {})["own"]
+    assert (numbers["slip"], numbers["slip_end"]) == (slid.peak, slid.end)
 
 
 TITLES = {  # outcomes: of each record, the scene's own motion first; whether that run was decided
@@ -80,12 +88,12 @@ TITLES = {  # outcomes: of each record, the scene's own motion first; whether th
 
 @pytest.mark.parametrize("outcomes, words", TITLES.items())
 def test_the_title_is_the_worst_of_all_records_and_what_the_scenes_own_motion_does(outcomes, words):
-    own = {"outcome": outcomes[0], "decided": True}
-    rows = [{"record": k, "outcome": one} for k, one in enumerate(outcomes)]
-    assert _worst({"own": own, "motions": rows}, {"motion": "own" if outcomes[1:] else None}) == words
-    cut = _worst({"own": own | {"decided": False}, "motions": rows[1:]}, {"motion": "own"})
+    run = {"outcome": outcomes[0], "decided": True}
+    rows = [{"record": k, "outcome": outcome} for k, outcome in enumerate(outcomes)]
+    assert _worst_words({"own": run, "motions": rows}, {"motion": "own" if outcomes[1:] else None}) == words
+    cut = _worst_words({"own": run | {"decided": False}, "motions": rows[1:]}, {"motion": "own"})
     assert cut.endswith("(not decided when the run ended)")
-    assert _worst({"own": {"outcome": "rocks", "decided": True}, "motions": []}, {"motion": "own"}) == (
+    assert _worst_words({"own": {"outcome": "rocks", "decided": True}, "motions": []}, {"motion": "own"}) == (
         "rocks and stays upright"
     )
 
@@ -97,9 +105,9 @@ def test_the_engines_that_agree_and_what_the_others_have_other():
         {"engine": name, "failure": None, "comparable": how, "differences": [fell] * (name == "two")}
         for name, how in known.items()
     ]
-    agree, two, *others = _engines([*rows, {**rows[-1], "engine": "five", "failure": {"reason": "it gave up"}}]).split(
-        "; "
-    )
+    agree, two, *others = _engine_sentences(
+        [*rows, {**rows[-1], "engine": "five", "failure": {"reason": "it gave up"}}]
+    ).split("; ")
     assert agree == "one and near agree with the analytic model"
     assert two.startswith("two differs from the analytic model: the block overturns")
     three = "three cannot be compared with the analytic model: N <= 0"
@@ -127,9 +135,9 @@ def test_one_that_rocks_gets_its_own_restitution_and_replaces_an_older_report(qu
     assert result.settings["bases"] == [None] and max(row["rms"] for row in result.rows) < 1e-9
     assert sum(row["impacts"] for row in result.rows) >= 8
     assert "Table 1(a)" not in page and "aryatid" not in page
-    told = json.loads(form(tmp_path / PAGE).text())
-    assert told["schema"] == "rocking report 5" and len(told["results"]) == 2
-    assert [(row["scene"], row["outcome"]) for row in told["rows"]] == [("bust", "stands"), ("released", "rocks")]
+    report = json.loads(form(tmp_path / PAGE).text())
+    assert report["schema"] == "rocking report 5" and len(report["results"]) == 2
+    assert [(row["scene"], row["outcome"]) for row in report["rows"]] == [("bust", "stands"), ("released", "rocks")]
     make_own_results(tmp_path, {"bust": bust}, engines=[])
     assert not (tmp_path / RESTITUTION).exists()  # of a block that never rocks
 
@@ -203,11 +211,11 @@ def test_a_block_on_a_plate_has_the_same_mass_and_height_and_moves_about_the_pla
 
 def test_on_the_ground_the_width_that_does_not_lift_is_the_height_times_the_peak_in_g():
     motions = [GROUND.motion, synthetic_motion(seed=7).scaled(1.4)]
-    found = needed_by(GROUND, motions)
+    needed = needed_by(GROUND, motions)
     height = 2 * GROUND.block.half_height
-    assert found["stands"] == pytest.approx(height * max(motion.peak for motion in motions) / GROUND.gravity, rel=5e-3)
-    assert [fate(GROUND, motion, found["stands"]) for motion in motions] == ["stands"] * 2
-    assert "rocks" in [fate(GROUND, motion, 0.99 * found["stands"]) for motion in motions]
+    assert needed["stands"] == pytest.approx(height * max(motion.peak for motion in motions) / GROUND.gravity, rel=5e-3)
+    assert [fate(GROUND, motion, needed["stands"]) for motion in motions] == ["stands"] * 2
+    assert "rocks" in [fate(GROUND, motion, 0.99 * needed["stands"]) for motion in motions]
 
 
 def test_the_width_that_stays_upright_does_so_under_all_motions_and_a_little_less_does_not():
@@ -291,8 +299,8 @@ SAID = [
 
 @pytest.mark.parametrize("scene, needed, command, words", SAID)
 def test_what_is_said_next(scene, needed, command, words):
-    found, said = next_step(scene, needed, "FILE")
-    assert command in ("", found) and words in said and said.endswith(".")
+    given, sentence = next_step(scene, needed, "FILE")
+    assert command in ("", given) and words in sentence and sentence.endswith(".")
 
 
 @pytest.mark.parametrize("amplitude, beyond", [(5.0, False), (8.0, True)])
@@ -300,22 +308,22 @@ def test_a_plate_on_which_the_block_slips_beyond_half_of_it_is_not_advised(ampli
     """A block that does not lift slips as far on every plate: by the run of a broad one."""
     motions = [PulseMotion("one-sine", amplitude, 3.0), PulseMotion("one-sine", 1.0, 3.0)]
     rubs = GROUND.with_(friction=0.35)
-    found = needed_by(rubs, motions)
+    needed = needed_by(rubs, motions)
     broad = rubs.with_(block=on_plate(rubs.block, 9.0), motion=motions[0], duration=None)
-    assert found["slip"] == pytest.approx(simulate(broad, history=False).sliding.peak, rel=1e-6)
-    assert (found["slip"] > found["stands"] / 2) == beyond
-    words = next_step({**SCENE, "friction": 0.35}, found, "FILE")[1]
+    assert needed["slip"] == pytest.approx(simulate(broad, history=False).sliding.peak, rel=1e-6)
+    assert (needed["slip"] > needed["stands"] / 2) == beyond
+    words = next_step({**SCENE, "friction": 0.35}, needed, "FILE")[1]
     assert ("a plate does not do" in words) == beyond and ("fixed to a plate" in words) != beyond
 
 
 def test_where_the_friction_is_less_than_the_block_needs_it_is_said_and_how_wide_it_only_slides():
     rubs = GROUND.with_(friction=0.35)  # tan(gamma) is .288, the peak of the motion .515 g
-    found = needed_by(rubs, [rubs.motion])
-    assert found["friction"] == pytest.approx(rubs.motion.peak / rubs.gravity, rel=5e-3)
-    assert fate(rubs, rubs.motion, found["stands"]) == "slides"
-    assert fate(rubs, rubs.motion, 0.95 * found["stands"]) in ("rocks", "overturns")
-    held = rubs.with_(friction=found["friction"])
-    assert fate(held, held.motion, found["stands"] * found["friction"] / 0.35 * 1.01) == "stands"
+    needed = needed_by(rubs, [rubs.motion])
+    assert needed["friction"] == pytest.approx(rubs.motion.peak / rubs.gravity, rel=5e-3)
+    assert fate(rubs, rubs.motion, needed["stands"]) == "slides"
+    assert fate(rubs, rubs.motion, 0.95 * needed["stands"]) in ("rocks", "overturns")
+    held = rubs.with_(friction=needed["friction"])
+    assert fate(held, held.motion, needed["stands"] * needed["friction"] / 0.35 * 1.01) == "stands"
     assert needed_by(held, [held.motion])["friction"] is None
     slides = needed_by(rubs.with_(friction=0.2), [rubs.motion])  # before it lifts, on any plate
-    assert (slides["stands"], slides["upright"]) == (None, None) and slides["friction"] == found["friction"]
+    assert (slides["stands"], slides["upright"]) == (None, None) and slides["friction"] == needed["friction"]

@@ -39,8 +39,8 @@ def studies():
 
 @pytest.mark.slow
 def test_every_stored_result_can_be_shown_without_any_engine(studies):
-    assert [one.name for one in studies if one.wrong] == []
-    assert {one.name for one in studies} == {path.name for path in results_in(RESULTS)}
+    assert [study.name for study in studies if study.wrong] == []
+    assert {study.name for study in studies} == {path.name for path in results_in(RESULTS)}
 
 
 @pytest.mark.slow
@@ -67,6 +67,6 @@ def test_the_readme_of_the_results_says_where_each_of_them_comes_from():
         for origin in (content["provenance"] for content in contents):
             assert all(words in line for words in (origin["time"][:10], origin["machine"]["processor"]))
             assert origin["commit"][:12] + ", with uncommitted changes" * origin["dirty"] in line
-        if checks := [found for content in contents if (found := content["provenance"].get("check"))]:
+        if checks := [check for content in contents if (check := content["provenance"].get("check"))]:
             held, runs = (sum(check[name] for check in checks) for name in ("held", "runs"))
             assert f"| {held} of {runs}, {min(check['date'] for check in checks)} |" in line
