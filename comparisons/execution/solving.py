@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 ANALYTIC, KERNEL = "analytic", "kernel"  # and the variant that its runs are told as
 TIME_LIMIT = 300.0  # s, of one run
-TIME_LIMIT_HELP = "A run that takes longer is ended, and counts as failed."
+TIME_LIMIT_HELP = "End a run that takes longer; it counts as failed."
 
 
 def parse_settings(pairs: Iterable[str]) -> dict[str, Any]:
@@ -304,18 +304,25 @@ if TYPE_CHECKING:
 
 # What a user says of a record that the file itself does not.
 Units = Annotated[
-    str | None, typer.Option(help="Unit, if header and titles state none: m/s2, cm/s2, gal, mm/s2, g or %g.")
+    str | None,
+    typer.Option(help="Unit of the accelerations, if the file states none: m/s2, cm/s2, gal, mm/s2, g or %g."),
 ]
 Step = Annotated[
-    float | None, typer.Option(metavar="SECONDS", help="Sampling interval, if no line such as dt = 0.01 s states one.")
+    float | None,
+    typer.Option(metavar="SECONDS", help="Sampling interval, if the file states none (as in a line dt = 0.01 s)."),
 ]
 Column = Annotated[
-    str | None, typer.Option(help="Of several columns: the accelerations', its number from 1 on or its title.")
+    str | None,
+    typer.Option(help="Column of the accelerations, if there are several: its number (from 1) or its title."),
 ]
-Channel = Annotated[str | None, typer.Option(help="Of several channels: its number or direction, 3 or Up.")]
+Channel = Annotated[
+    str | None, typer.Option(help="Channel to read, if there are several: its number or direction, such as 3 or Up.")
+]
 # What `rocking new` and `rocking design` share; those of a record, wherever one is read.
-DEFINITION = "Of the damping. equivalent: W_D/(4 pi E_s), the usual one; paper: W_D/(2 pi E_s), twice as much."
-RATIO = "By design: ka/kb; Table 1(b) of the paper has 10."
+DEFINITION = (
+    "Definition of the damping ratio. equivalent, the usual one: W_D/(4 pi E_s). paper, twice as much: W_D/(2 pi E_s)."
+)
+RATIO = "Bearings by design: stiffness ratio ka/kb; the paper's Table 1(b) has 10."
 RECORD_OPTIONS = {f"motion.{name}": f"--{name}" for name in ("units", "dt", "column", "channel")}
 _SAME = ("height", "width", "depth", "density", "mass", "period", "damping", "definition", "count", "friction")
 OPTIONS = {
@@ -352,18 +359,16 @@ def _by_options(error: SceneError, options: Mapping[str, str]) -> SceneError:
 
 
 Records = Annotated[
-    str | None, typer.Option(metavar="FOLDER", help="Also under the records in this folder, as they are recorded.")
+    str | None, typer.Option(metavar="FOLDER", help="Repeat under every record in this folder, unscaled.")
 ]
 BothSigns = Annotated[
-    bool,
-    typer.Option(
-        "--both-signs", help="Also under every motion with its sign changed, unless block and start are symmetric."
-    ),
+    bool, typer.Option("--both-signs", help="Repeat with the motion reversed (skipped for symmetric cases).")
 ]
 Directions = Annotated[
     int | None,
     typer.Option(
-        metavar="NUMBER", help="Under so many directions of each record's two horizontal components, over half a turn."
+        metavar="NUMBER",
+        help="Rotate the two horizontal components of each record to this many directions over 180 degrees.",
     ),
 ]
 

@@ -277,7 +277,19 @@ def test_help_shows_every_command_in_one_group_with_a_line_and_an_example(rockin
     for name in group.list_commands(None):
         status, out, _ = rocking(name, "--help")
         assert status == 0 and f"Example: rocking {name}" in " ".join(out.split())
-        assert len(group.get_command(None, name).get_short_help_str(200).split()) >= 2
+
+
+@pytest.mark.parametrize("words", [(), ("study",), ("lessons",)], ids=" ".join)
+def test_no_line_of_a_list_of_commands_is_cut_at_80_columns(rocking, monkeypatch, words):
+    monkeypatch.setenv("COLUMNS", "80")
+    group, out = typer.main.get_command(app), rocking(*words, "--help")[1]
+    for word in words:
+        group = group.get_command(None, word)
+    for name in group.list_commands(None):
+        line = group.get_command(None, name).get_short_help_str(1000)
+        assert 8 < len(line) <= commands.SHORT and line.endswith("."), (name, line)
+        assert any(shown.split() == [name, *line.split()] for shown in out.splitlines()), (name, out)
+    assert "..." not in out.partition(":\n")[2]
 
 
 BUST = ("--height", 1.9, "--width", 0.55, "--material", "marble")
