@@ -1,9 +1,4 @@
-"""``rocking choose``: the cheapest variant and level that are accurate enough for a scene.
-
-``rocking margin``: the margins of a scene against other limit states and another outcome.
-
-``rocking design``: bearings from target period, damping and displacement, or bearings for a scene.
-"""
+"""The commands that advise on a scene: ``rocking choose``, ``margin`` and ``design``."""
 
 import dataclasses
 import math
@@ -15,14 +10,17 @@ import typer
 from analytic.errors import SceneError, SettingError
 
 from ..execution.files import check_writable
-from ..execution.progress import bar, compile_kernels, spinner
+from ..execution.progress import bar, compile_kernels, say, spinner, stdout_to_stderr
 from ..execution.solving import (
     DEFINITION,
     OPTIONS,
     RATIO,
     BothSigns,
     Directions,
+    EngineNames,
+    JsonFile,
     Records,
+    SceneFile,
     Units,
     check_time_limit,
     end_with,
@@ -38,7 +36,7 @@ from .output import write_output
 
 
 def choose(
-    scene: Annotated[str, typer.Argument(help="Scene file (TOML), or the name of a shipped scene.")],
+    scene: SceneFile,
     error: Annotated[
         float, typer.Option(help="Largest permissible error; for outcomes, the share of neighbours that differ.")
     ] = 1e-3,
@@ -50,16 +48,12 @@ def choose(
             "block that slides, tilt or slip; for a block without impacts, displacement of the base.",
         ),
     ] = None,
-    engine: Annotated[
-        list[str] | None, typer.Option(help="Engine to try; may be repeated. Default: all that are installed.")
-    ] = None,
+    engine: EngineNames = None,
     plot: Annotated[
         str | None, typer.Option(metavar="FILE", help="Draw error over CPU time (.png, .svg or .pdf).")
     ] = None,
     every_level: Annotated[bool, typer.Option("--all", help="Show all levels that were run.")] = False,
-    json_file: Annotated[
-        str | None, typer.Option("--json", metavar="FILE", help="Write the choice as JSON; - prints it.")
-    ] = None,
+    json_file: JsonFile = None,
     time_limit: Annotated[
         float, typer.Option(metavar="SECONDS", help="A level whose run takes longer does not pass.")
     ] = 60.0,
@@ -76,27 +70,19 @@ def choose(
 
     from ..advice.choose import choose
     from ..advice.criteria import fitting
-    from ..execution.files import check_writable
-    from ..execution.progress import compile_kernels, say, stdout_to_stderr
     from ..plotting.choices import draw_choice, print_choice
 
     check_time_limit(time_limit)
     check_writable([json_file], picture=plot, inputs=[scene])
-    what = load_scene(scene)
+    loaded = load_scene(scene)
     compile_kernels()
     with in_file(scene):
-        shown = fitting(what) if criterion is None and engine else "restitution"
-    if shown != "restitution":
-        given = what.block.restitution is not None and shown == "tilt"
-        why = (
-            "it slides"
-            if what.friction is not None and shown in ("tilt", "slip")
-            else ("its restitution is given" if given else "it never has an impact: there is no restitution")
-        )
-        say(f"the block of {what.name}: {why}; the criterion is {shown}")
+        fitted = fitting(loaded) if criterion is None and engine else "restitution"
+    if fitted != "restitution":
+        say(f"the block of {loaded.name}: {_not_restitution(loaded, fitted)}; the criterion is {fitted}")
     with stdout_to_stderr(), in_file(scene):  # engines print on import
         choice = choose(
-            what,
+            loaded,
             error=error,
             criterion=criterion,
             engines=engine or None,
@@ -109,12 +95,21 @@ def choose(
         raise typer.Exit(1)
 
 
+def _not_restitution(scene, criterion):
+    """Why the default criterion of a scene is not the restitution."""
+    if scene.friction is not None and criterion in ("tilt", "slip"):
+        return "it slides"
+    if scene.block.restitution is not None and criterion == "tilt":
+        return "its restitution is given"
+    return "it never has an impact: there is no restitution"
+
+
 LEAST_SPAN = 0.1  # per cent
 STEPS = 400  # of a scan, from no change to the largest
 
 
 def margin(
-    scene: Annotated[str, typer.Argument(help="Scene file (TOML), or the name of a shipped scene.")],
+    scene: SceneFile,
     span: Annotated[
         float,
         typer.Option(
@@ -131,9 +126,7 @@ def margin(
     both_signs: BothSigns = False,
     directions: Directions = None,
     units: Units = None,
-    json_file: Annotated[
-        str | None, typer.Option("--json", metavar="FILE", help="Write the margins as JSON; - prints them.")
-    ] = None,
+    json_file: JsonFile = None,
 ) -> None:
     """Find how far a scene is from uplift and overturning.
 
@@ -147,12 +140,10 @@ def margin(
 
     Example: rocking margin caryatid-isolated --plot margins.svg
     """
-    from analytic.errors import SettingError
     from analytic.margins import LARGEST_SPAN, Contact, margins
     from analytic.response import scene_warnings
     from analytic.scene_file import load_scene
 
-    from ..execution.files import check_writable
     from ..plotting.margins import draw_margins, named, print_margins, print_motions
 
     if not LEAST_SPAN <= span <= 100 * LARGEST_SPAN:
@@ -160,34 +151,34 @@ def margin(
     if not 0 < tilt <= 1:
         raise SettingError(f"--tilt {tilt:g}: give a share of the slenderness, above 0 and up to 1")
     check_writable([json_file], picture=plot, inputs=[scene])
-    what = load_scene(scene)
-    groups, left = other_motions(what, records, both_signs, directions, units)
+    loaded = load_scene(scene)
+    groups, left = other_motions(loaded, records, both_signs, directions, units)
     compile_kernels()
     scan: dict[str, Any] = {"tilt": tilt, "span": span / 100, "step": span / 100 / STEPS}
-    with spinner(f"{what.name}: margins") as tell, in_file(scene):
-        nearest = margins(what, **scan, progress=lambda name: tell(f"{what.name}: {name}"))
-        response = _decided(what)
-    contact, warnings = Contact.of(what, response), (*scene_warnings(what), *response.warnings)
-    rows = rows_of(what, groups, _decided, lambda scene: _changes(scene, scan))
+    with spinner(f"{loaded.name}: margins") as tell, in_file(scene):
+        nearest = margins(loaded, **scan, progress=lambda name: tell(f"{loaded.name}: {name}"))
+        response = _decided(loaded)
+    contact, warnings = Contact.of(loaded, response), (*scene_warnings(loaded), *response.warnings)
+    rows = rows_of(loaded, groups, _decided, lambda scene: _changes(scene, scan))
 
     def show():
-        print_margins(what, nearest, contact, span, tilt, warnings)
-        print_motions(what, [{**row, "changes": named(row, tilt)} for row in rows], left)
+        print_margins(loaded, nearest, contact, span, tilt, warnings)
+        print_motions(loaded, [{**row, "changes": named(row, tilt)} for row in rows], left)
 
-    form = _margin_form(what, nearest, contact, warnings, rows, left, span, tilt)
-    write_output({json_file: form}, show, plot, lambda: draw_margins(what, nearest, tilt))
+    form = _margin_form(loaded, nearest, contact, warnings, rows, left, span, tilt)
+    write_output({json_file: form}, show, plot, lambda: draw_margins(loaded, nearest, tilt))
     end_with(rows, response)
 
 
 def _decided(scene):
-    """The model's run until the outcome is decided."""
+    """The response of the analytic model, run until the outcome is decided."""
     from analytic import simulate
 
     return simulate(scene.with_(duration=None), history=False)
 
 
 def _margin_form(scene, nearest, contact, warnings, rows, left, span, tilt):
-    """Content of the JSON file."""
+    """The content of the JSON file of `margin`."""
     from analytic.margins import limit_states
 
     from ..plotting.margins import headline
@@ -202,7 +193,7 @@ def _margin_form(scene, nearest, contact, warnings, rows, left, span, tilt):
         reached=_reached(nearest[0]),
         margins=[Margin.of(margin, limit_states(scene)) for margin in nearest],
         contact=Contact(**dataclasses.asdict(contact)),
-        warnings=[Warned(**dataclasses.asdict(one)) for one in warnings],
+        warnings=[Warned(**dataclasses.asdict(warning)) for warning in warnings],
         motions=[MotionMargin(**row) for row in rows],
         left_out=left,
         headline=headline(rows, left),
@@ -217,12 +208,12 @@ def _reached(margin):
 
 
 def _changes(scene, scan):
-    """The limit states that a scene reaches, and the change of its motion that reaches each."""
+    """The limit states that a scene reaches, and the change of its motion at which each is reached."""
     from analytic.margins import limit_states, margins
 
-    (found,) = margins(scene, **scan, only=("motion",))
-    changes = {state: found.change(state) for state in limit_states(scene)}
-    return {"reached": _reached(found), "changes": changes, "interleaved": found.interleaved}
+    (margin,) = margins(scene, **scan, only=("motion",))
+    changes = {state: margin.change(state) for state in limit_states(scene)}
+    return {"reached": _reached(margin), "changes": changes, "interleaved": margin.interleaved}
 
 
 LEAST, SOFTEST = "least-stroke", "softest"
@@ -264,9 +255,7 @@ def design(
     count: Annotated[int, typer.Option(help="Number of bearings.")] = 4,
     ratio: Annotated[float, typer.Option(help=RATIO)] = 10.0,
     definition: Annotated[str, typer.Option(help=DEFINITION)] = "equivalent",
-    json_file: Annotated[
-        str | None, typer.Option("--json", metavar="FILE", help="Write the design as JSON; - prints it.")
-    ] = None,
+    json_file: JsonFile = None,
 ) -> None:
     """Find suitable bearings, or compute bearing constants.
 
@@ -282,27 +271,24 @@ def design(
     """
     targets = {"period": period, "damping": damping, "xmax": xmax, "mass": mass}
     given = [f"--{name}" for name, value in targets.items() if value is not None]
-    made: dict[str, Any] = {"count": count, "stiffness_ratio": ratio, "definition": definition}
+    bearings: dict[str, Any] = {"count": count, "stiffness_ratio": ratio, "definition": definition}
     if scene is None:
         of_scene = {"--stroke": stroke, "--write": write, "--plot": plot, "--records": records, "--tilt": tilt or None}
         of_scene["--base-mass"] = base_mass
-        wrong = [name for name, value in of_scene.items() if value is not None]
-        if wrong:
-            raise SettingError(f"{wrong[0]}: belongs to a scene; rocking design SCENE --stroke METRES")
-        if len(given) < len(targets):
-            missing = next(f"--{name}" for name, value in targets.items() if value is None)
-            raise SettingError(f"{missing} is missing; give all four targets, or a scene and --stroke")
-        return _by_targets(targets, made, json_file)
+        return _by_targets(targets, bearings, of_scene, json_file)
     if given:
         raise SettingError(f"{given[0]}: a target, which does not go with a scene; give --stroke only")
     if stroke is None:
         raise SettingError("--stroke is missing: give the largest displacement of the base [m]")
     many = {"records": records, "both_signs": both_signs, "directions": directions, "units": units}
-    _for_scene(scene, base_mass, stroke, tilt, made, many, write, plot, json_file)
+    _for_scene(scene, base_mass, stroke, tilt, bearings, many, write, plot, json_file)
 
 
-def _by_targets(targets, made, json_file):
-    """Constants for four targets."""
+def _by_targets(targets, options, of_scene, json_file):
+    """Compute the constants of bearings that meet the four targets; print and write them.
+
+    of_scene: {option: value} of the options that belong to a scene, None where they are not given.
+    """
     from rich.text import Text
 
     from analytic.rocking import design_bearings, properties
@@ -311,10 +297,16 @@ def _by_targets(targets, made, json_file):
     from ..schemas.advice import Constants, Design, Properties
     from ..schemas.columns import percent
 
+    wrong = [name for name, value in of_scene.items() if value is not None]
+    if wrong:
+        raise SettingError(f"{wrong[0]}: belongs to a scene; rocking design SCENE --stroke METRES")
+    missing = [name for name, value in targets.items() if value is None]
+    if missing:
+        raise SettingError(f"--{missing[0]} is missing; give all four targets, or a scene and --stroke")
     check_writable([json_file])
     mass, xmax = targets["mass"], targets["xmax"]
     with named_by_options(OPTIONS):
-        bearings = design_bearings(mass, targets["period"], targets["damping"], xmax, **made)
+        bearings = design_bearings(mass, targets["period"], targets["damping"], xmax, **options)
     back = properties(bearings, mass, xmax)
     constants, given = Constants(**bearings.model_dump()), Properties(**dataclasses.asdict(back))
     lines = (
@@ -330,8 +322,8 @@ def _by_targets(targets, made, json_file):
     write_output({json_file: Design(bearings=constants, properties=given)}, lambda: echo(*lines))
 
 
-def _for_scene(place, base_mass, stroke, tilt, made, many, write, plot, json_file):
-    """Find suitable bearings by a scan; show, draw and write them."""
+def _for_scene(place, base_mass, stroke, tilt, options, many, write, plot, json_file):
+    """Find suitable bearings of a scene by a scan; print, draw and write them."""
     from analytic.bearing_scan import scan_bearings
     from analytic.response import scene_warnings
     from analytic.scene_file import load_scene, shipped_scenes
@@ -346,7 +338,7 @@ def _for_scene(place, base_mass, stroke, tilt, made, many, write, plot, json_fil
     motions = [motion for group in groups.values() for motion in group]
     compile_kernels(any(motion.vertical for motion in motions))
     with bar(f"{scene.name}: bearings") as progress, named_by_options(OF_SCENE), in_file(place):
-        scan = scan_bearings(scene, motions, stroke, tilt=tilt, **made, progress=progress)
+        scan = scan_bearings(scene, motions, stroke, tilt=tilt, **options, progress=progress)
     points = {LEAST: scan.least_stroke, SOFTEST: scan.softest}  # (period, damping), None without any
     chosen = {name: _chosen(scene, scan, point, groups, left) for name, point in points.items() if point is not None}
     nothing = "" if chosen else nothing_holds(scene, scan, stroke, tilt, motions)
@@ -365,11 +357,11 @@ def _for_scene(place, base_mass, stroke, tilt, made, many, write, plot, json_fil
     )
     if write and json_file != "-":
         print(f"written into {place}: {write}")
-    end_with([row for one in chosen.values() for row in one["motions"]])
+    end_with([row for proposal in chosen.values() for row in proposal["motions"]])
 
 
 def _on_base(scene, mass, place):
-    """The scene with a base under its block; mass [kg]: of the base of a scene without one."""
+    """The scene, with a base of this mass [kg] under its block if it has none."""
     from analytic.scene import Base
 
     if mass is None and scene.base is None:
@@ -383,7 +375,7 @@ def _on_base(scene, mass, place):
 
 
 def _chosen(scene, scan, point, groups, left=()):
-    """The bearings at a point, rounded as in a file, and what each motion does on them, from new runs."""
+    """The bearings at a point of the scan, rounded as in a file, and the behaviour on them under each motion."""
     from analytic import simulate
     from analytic.scene import Bearings
 
@@ -392,7 +384,7 @@ def _chosen(scene, scan, point, groups, left=()):
     exact = scan.bearings(*point)
     bearings = Bearings(**{**exact.model_dump(), **{name: float(f"{exact.given(name):.6g}") for name in WRITTEN}})
     borne = scene.with_(bearings=bearings, duration=None)
-    rows = rows_of(borne, groups, lambda one: simulate(one, history=False), _demand)
+    rows = rows_of(borne, groups, lambda moved: simulate(moved, history=False), _demand)
     demand, worst = max(row.pop("demand", math.inf) for row in rows), max(rows, key=lambda row: row["stroke"])
     return {
         "period": point[0],
@@ -411,21 +403,26 @@ def _chosen(scene, scan, point, groups, left=()):
 
 
 def _demand(scene):
-    """The friction demand of a block that does not slide, as the search has it."""
+    """The friction demand of a block that does not slide, computed as in the search."""
     from analytic import simulate_many
 
     return {"demand": float(simulate_many([scene], contact=True).friction_demand[0])}
 
 
 def _written(place, bearings, base):
-    """The text of the scene file with these bearings, and a base if it has none; an error if the file has its bearings
-    in another form."""
+    """The text of the scene file with these bearings, and with this base if it has none.
+
+    Raises
+    ------
+    SettingError
+        The file holds its bearings in another form than a table.
+    """
     from analytic.scene_file import with_bearings
 
     text = with_bearings(Path(place).read_text(encoding="utf-8-sig"), bearings, base)
     try:
-        found = scene_of(text, place)
-        same = found.bearings == bearings and base in (None, found.base)
+        read_back = scene_of(text, place)
+        same = read_back.bearings == bearings and base in (None, read_back.base)
     except SceneError:
         same = False
     if not same:
@@ -434,7 +431,7 @@ def _written(place, bearings, base):
 
 
 def _design_form(scene, stroke, tilt, motions, left, scan, chosen, warnings):
-    """Content of the JSON file."""
+    """The content of the JSON file of `design` for a scene."""
     from ..schemas.advice import BearingProposal, BearingSearch, Constants
     from ..schemas.runs import Warned
 
@@ -445,12 +442,12 @@ def _design_form(scene, stroke, tilt, motions, left, scan, chosen, warnings):
         tilt=tilt,
         motions=motions,
         left_out=left,
-        warnings=[Warned(**dataclasses.asdict(one)) for one in warnings],
+        warnings=[Warned(**dataclasses.asdict(warning)) for warning in warnings],
         periods=scan.periods.tolist(),
         dampings=scan.dampings.tolist(),
         holds=(scan.demand <= 1).tolist(),
         chosen={
-            name: BearingProposal(**{**one, "bearings": Constants(**one["bearings"].model_dump())})
-            for name, one in chosen.items()
+            name: BearingProposal(**{**proposal, "bearings": Constants(**proposal["bearings"].model_dump())})
+            for name, proposal in chosen.items()
         },
     )

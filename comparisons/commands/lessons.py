@@ -1,13 +1,14 @@
-"""``rocking lessons``: teaching material.
-
-``rocking sheet``: problems for other codes.
-"""
+"""The commands ``rocking lessons`` (teaching material) and ``rocking sheet`` (problems for other codes)."""
 
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from ..execution.files import check_folder, check_writable
+from ..execution.progress import bar, compile_kernels, stdout_to_stderr
+from ..execution.solving import JsonFile
+from ..schemas.runs import Asked, Problem, Sheet
 from .output import write_output
 
 app = typer.Typer(
@@ -28,7 +29,9 @@ def _listed(context: typer.Context) -> None:
     from ..plotting.terminal import echo, grid
 
     heads = ["name", "lesson", "minutes", "needs"]
-    rows = [[one.name, f"{one.number}. {one.title}", str(one.minutes), one.needs] for one in lessons()]
+    rows = [
+        [lesson.name, f"{lesson.number}. {lesson.title}", str(lesson.minutes), lesson.needs] for lesson in lessons()
+    ]
     echo(grid(heads, rows, left=heads, wraps=heads))
     echo("rocking lessons open NAME: as a notebook;  rocking lessons export: pages to open by double click")
 
@@ -44,7 +47,6 @@ def open_(
 
     It is a copy whose code can be changed. Ctrl-C ends it.
     """
-    from ..execution.files import check_folder
     from ..lessons.notebook import open_notebook
 
     if to is not None:
@@ -59,8 +61,6 @@ def export(output: Annotated[str, typer.Option(metavar="DIR", help="Folder for t
     The pages are the playground, the lessons, the derivation and a teacher's page with figures. They open by double
     click.
     """
-    from ..execution.files import check_folder
-    from ..execution.progress import bar, stdout_to_stderr
     from ..lessons.export import export_pages
     from ..lessons.topics import NAMES
 
@@ -72,9 +72,7 @@ def export(output: Annotated[str, typer.Option(metavar="DIR", help="Folder for t
 
 def sheet(
     output: Annotated[str, typer.Option(metavar="DIR", help="Folder for the pages.")] = "sheet",
-    json_file: Annotated[
-        str | None, typer.Option("--json", metavar="FILE", help="Write the answers as JSON; - prints them.")
-    ] = None,
+    json_file: JsonFile = None,
 ) -> None:
     """Write eight test problems with reference answers.
 
@@ -83,9 +81,6 @@ def sheet(
 
     Example: rocking sheet --output problems
     """
-    from ..execution.files import check_folder, check_writable
-    from ..execution.progress import compile_kernels
-    from ..schemas.runs import Asked, Problem, Sheet
     from ..sheet.pages import PROBLEMS, UNITS, VERSION, write_sheet
 
     check_folder(output)
@@ -94,16 +89,16 @@ def sheet(
     paths = write_sheet(Path(output))
     problems = []
     for problem in PROBLEMS:
-        asked = [
+        quantities = [
             Asked(
-                quantity=one.name,
-                unit=UNITS[one.kind],
-                meaning=one.words,
-                answer=problem.answers[one.name],
-                tolerance=problem.tolerance(one),
+                quantity=quantity.name,
+                unit=UNITS[quantity.kind],
+                meaning=quantity.words,
+                answer=problem.answers[quantity.name],
+                tolerance=problem.tolerance(quantity),
             )
-            for one in problem.quantities
+            for quantity in problem.quantities
         ]
-        problems.append(Problem(scene=problem.name, title=problem.title, quantities=asked))
+        problems.append(Problem(scene=problem.name, title=problem.title, quantities=quantities))
     form = Sheet(sheet=VERSION, files=[str(path) for path in paths], problems=problems)
     write_output({json_file: form}, lambda: print(*paths, sep="\n"))

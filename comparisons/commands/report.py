@@ -1,4 +1,4 @@
-"""``rocking report``: the page on one's own scenes or on the Caryatid."""
+"""The command ``rocking report``: the page on the user's scenes, or on the Caryatid."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import typer
 
 from analytic.errors import SettingError
 
+from ..execution.files import check_folder, check_writable, write_text
 from ..execution.progress import bar, compile_kernels, say, stdout_to_stderr
 from ..execution.solving import (
     ANALYTIC,
@@ -18,6 +19,8 @@ from ..execution.solving import (
     Channel,
     Column,
     Directions,
+    EngineNames,
+    JsonFile,
     Records,
     Step,
     Units,
@@ -32,6 +35,7 @@ if TYPE_CHECKING:
     from ..schemas.runs import Report
 
 
+# Long because of its many options.
 def report(
     scene: Annotated[
         list[str] | None,
@@ -51,9 +55,7 @@ def report(
     dt: Step = None,
     column: Column = None,
     channel: Channel = None,
-    engine: Annotated[
-        list[str] | None, typer.Option(help="Engine to compare; may be repeated. Default: all that are installed.")
-    ] = None,
+    engine: EngineNames = None,
     variant: Annotated[
         str | None, typer.Option(help="Variant of the engine, if one is named. Default: its main one.")
     ] = None,
@@ -67,9 +69,7 @@ def report(
             metavar="DIR", help="Folder of study results, written by rocking study all. Default: the shipped results."
         ),
     ] = None,
-    json_file: Annotated[
-        str | None, typer.Option("--json", metavar="FILE", help="Write the rows of the page as JSON; - prints them.")
-    ] = None,
+    json_file: JsonFile = None,
 ) -> None:
     """Write a web page that compares all solvers on your scenes.
 
@@ -78,9 +78,7 @@ def report(
 
     Example: rocking report bust.toml --output bust
     """
-
     from ..execution.by_solver import results_in
-    from ..execution.files import check_folder, check_writable, write_text
     from ..report.write import write_page
 
     check_folder(output)
@@ -90,12 +88,12 @@ def report(
         check_solver(name)
     engines = [name for name in engine if name != ANALYTIC] if engine else None
     variants = _variants(variant, engines or [], scene)
-    of_folder = None if records is None else units
-    of_record = None if record is None and records is not None else units
-    motion = _motion(scene, record, {"units": of_record, "dt": dt, "column": column, "channel": channel})
+    units_of_record = None if record is None and records is not None else units
+    motion = _motion(scene, record, {"units": units_of_record, "dt": dt, "column": column, "channel": channel})
     if not scene and (records is not None or both_signs or directions is not None):
         raise SettingError("--records, --both-signs and --directions belong to scenes of your own; name one")
-    calls = _simulate(output, scene, motion, engines, variants, (records, both_signs, directions, of_folder))
+    many = (records, both_signs, directions, None if records is None else units)
+    calls = _simulate(output, scene, motion, engines, variants, many)
     with bar(f"studies and pages: {len(results_in(shown))} stored results") as progress:
         page = write_page(output, shown, progress, calls)
     if json_file:
@@ -104,10 +102,10 @@ def report(
         print(page)
 
 
-def _motion(scene, record, said):
-    """The motion of the record, or the shipped one; None if the scenes have their own."""
+def _motion(scene, record, stated):
+    """The motion of the record, or the shipped motion; None if the scenes keep their own motions."""
     with named_by_options(RECORD_OPTIONS):
-        motion = ground_motion(record, **said)  # also refuses options that belong to a record
+        motion = ground_motion(record, **stated)  # also refuses options that belong to a record
     if scene and record is None:
         return None
     say(f"ground motion: {motion.label}")
@@ -115,7 +113,7 @@ def _motion(scene, record, said):
 
 
 def _simulate(output, scene, motion, engines, variants, many):
-    """Write the result files of the page; {scene: its file and options, and the action needed before}."""
+    """Write the result files of the page. Return {scene: (its file and options, what to do before)}."""
     from analytic import simulate
 
     from ..report.runs import load_scenes, make_own_results, make_results
@@ -126,19 +124,19 @@ def _simulate(output, scene, motion, engines, variants, many):
             return {}
         scenes = load_scenes(scene, motion)
         compile_kernels()
-        for place, one in zip(scene, scenes.values(), strict=True):
+        for place, loaded in zip(scene, scenes.values(), strict=True):
             with in_file(place):  # before the engines' runs
-                simulate(one, history=False)
+                simulate(loaded, history=False)
         motions, left = {}, {}
-        for name, one in scenes.items():
-            motions[name], left[name] = other_motions(one, *many)
+        for name, loaded in scenes.items():
+            motions[name], left[name] = other_motions(loaded, *many)
         make_own_results(output, scenes, engines=engines, variants=variants, motions=motions, left=left)
     first = "" if motion is None else "First write this motion into the table [motion] of its file."
     return {name: (_call(place, *many), first) for name, place in zip(scenes, scene, strict=True)}
 
 
 def _call(place, records, both_signs, directions, units):
-    """A scene and the options for its motions, as other commands take them."""
+    """A scene file and the options for its motions, as the user types them."""
     options = {"--records": records, "--directions": directions, "--units": records and units}
     given = [word for name, value in options.items() if value is not None for word in (name, str(value))]
     return shlex.join([place, *given, *(["--both-signs"] if both_signs else [])])
@@ -146,7 +144,6 @@ def _call(place, records, both_signs, directions, units):
 
 def _studies(folder):
     """The folder of the studies' results, checked."""
-
     from ..execution.by_solver import results_in
     from ..execution.provenance import RESULTS
 
@@ -156,7 +153,7 @@ def _studies(folder):
 
 
 def form(page: Path) -> Report:
-    """Content of the JSON file for a page, from the result files beside it."""
+    """Return the content of the JSON file for a page, read from the result files beside it."""
     from analytic.response import UNCOMPARED
 
     from ..execution.provenance import read_result
@@ -168,24 +165,24 @@ def form(page: Path) -> Report:
     result = read_result(files[0])
     rows = []
     for row in result.rows:
-        found = {**(row.get("agreement") or {}), **row, "failure": row["failure"] and row["failure"]["reason"]}
-        found |= {name: row.get(name) or [] for name in ("warnings", "differences")}
-        found["comparable"] = row.get("comparable") or UNCOMPARED
-        rows.append(Reported.model_validate({name: found.get(name) for name in Reported.model_fields}))
+        reported = {**(row.get("agreement") or {}), **row, "failure": row["failure"] and row["failure"]["reason"]}
+        reported |= {name: row.get(name) or [] for name in ("warnings", "differences")}
+        reported["comparable"] = row.get("comparable") or UNCOMPARED
+        rows.append(Reported.model_validate({name: reported.get(name) for name in Reported.model_fields}))
     statues = result.settings.get("statues", {})
     return Report(
         page=str(page),
         results=[str(file) for file in files],
         missing=result.settings["missing"],
         rows=rows,
-        motions={name: [MotionRun(**row) for row in one["motions"]] for name, one in statues.items()},
-        left_out={name: one["left_out"] for name, one in statues.items()},
-        headlines={name: headline(one["motions"], one["left_out"]) for name, one in statues.items()},
+        motions={name: [MotionRun(**row) for row in statue["motions"]] for name, statue in statues.items()},
+        left_out={name: statue["left_out"] for name, statue in statues.items()},
+        headlines={name: headline(statue["motions"], statue["left_out"]) for name, statue in statues.items()},
     )
 
 
 def _variants(variant, engines, scene):
-    """{engine: variant} asked for, checked."""
+    """{engine: variant} of the option --variant, checked."""
     from engines import get_engine
 
     if variant is None:

@@ -18,7 +18,7 @@ ELSEWHERE = {
     ("comparisons/plotting/plots.py", "picture", "savefig"): "into memory",
     ("comparisons/lessons/lesson.py", "svg", "savefig"): "into memory",
     ("comparisons/lessons/lesson.py", "downloads", "savefig"): "into memory",
-    ("comparisons/commands/runs.py", "run", "to_csv"): "into memory",
+    ("comparisons/commands/runs.py", "_history_text", "to_csv"): "into memory",
     ("comparisons/cli/__init__.py", "open_streams", "open"): "a standard stream",
     ("comparisons/cli/__init__.py", "open_streams", "os.open"): "no file: os.devnull",
     ("comparisons/cli/__init__.py", "_silence", "os.open"): "no file: os.devnull",
