@@ -7,7 +7,14 @@ from typing import Annotated, Any, Literal
 
 import typer
 
+from analytic import simulate, simulate_many
+from analytic.bearing_scan import scan_bearings
 from analytic.errors import SceneError, SettingError
+from analytic.margins import LARGEST_SPAN, LIMIT_STATES, Contact, limit_states, margins
+from analytic.response import scene_warnings
+from analytic.rocking import design_bearings, properties
+from analytic.scene import Base, Bearings
+from analytic.scene_file import load_scene, shipped_scenes, with_bearings
 
 from ..execution.files import check_writable
 from ..execution.progress import bar, compile_kernels, say, spinner, stdout_to_stderr
@@ -32,6 +39,9 @@ from ..execution.solving import (
     rows_of,
     scene_of,
 )
+from ..schemas import advice as forms
+from ..schemas.columns import percent
+from ..schemas.runs import Warned
 from .output import write_output
 
 
@@ -66,8 +76,6 @@ def choose(
 
     Example: rocking choose caryatid-isolated --for displacement --error 1e-3
     """
-    from analytic.scene_file import load_scene
-
     from ..advice.choose import choose
     from ..advice.criteria import fitting
     from ..plotting.choices import draw_choice, print_choice
@@ -140,10 +148,6 @@ def margin(
 
     Example: rocking margin caryatid-isolated --plot margins.svg
     """
-    from analytic.margins import LARGEST_SPAN, Contact, margins
-    from analytic.response import scene_warnings
-    from analytic.scene_file import load_scene
-
     from ..plotting.margins import draw_margins, named, print_margins, print_motions
 
     if not LEAST_SPAN <= span <= 100 * LARGEST_SPAN:
@@ -172,29 +176,23 @@ def margin(
 
 def _decided(scene):
     """The response of the analytic model, run until the outcome is decided."""
-    from analytic import simulate
-
     return simulate(scene.with_(duration=None), history=False)
 
 
 def _margin_form(scene, nearest, contact, warnings, rows, left, span, tilt):
     """The content of the JSON file of `margin`."""
-    from analytic.margins import limit_states
-
     from ..plotting.margins import headline
-    from ..schemas.advice import Contact, Margin, Margins, MotionMargin
-    from ..schemas.runs import Warned
 
-    return Margins(
+    return forms.Margins(
         scene=scene.name,
         outcome=nearest[0].outcome,
         tilt=tilt,
         span=span / 100,
         reached=_reached(nearest[0]),
-        margins=[Margin.of(margin, limit_states(scene)) for margin in nearest],
-        contact=Contact(**dataclasses.asdict(contact)),
+        margins=[forms.Margin.of(margin, limit_states(scene)) for margin in nearest],
+        contact=forms.Contact(**dataclasses.asdict(contact)),
         warnings=[Warned(**dataclasses.asdict(warning)) for warning in warnings],
-        motions=[MotionMargin(**row) for row in rows],
+        motions=[forms.MotionMargin(**row) for row in rows],
         left_out=left,
         headline=headline(rows, left),
     )
@@ -202,15 +200,11 @@ def _margin_form(scene, nearest, contact, warnings, rows, left, span, tilt):
 
 def _reached(margin):
     """The limit states that the unchanged scene reaches."""
-    from analytic.margins import LIMIT_STATES
-
     return [state for state in LIMIT_STATES if margin.reached(state)]
 
 
 def _changes(scene, scan):
     """The limit states that a scene reaches, and the change of its motion at which each is reached."""
-    from analytic.margins import limit_states, margins
-
     (margin,) = margins(scene, **scan, only=("motion",))
     changes = {state: margin.change(state) for state in limit_states(scene)}
     return {"reached": _reached(margin), "changes": changes, "interleaved": margin.interleaved}
@@ -291,11 +285,7 @@ def _by_targets(targets, options, of_scene, json_file):
     """
     from rich.text import Text
 
-    from analytic.rocking import design_bearings, properties
-
     from ..plotting.terminal import echo
-    from ..schemas.advice import Constants, Design, Properties
-    from ..schemas.columns import percent
 
     wrong = [name for name, value in of_scene.items() if value is not None]
     if wrong:
@@ -308,7 +298,7 @@ def _by_targets(targets, options, of_scene, json_file):
     with named_by_options(OPTIONS):
         bearings = design_bearings(mass, targets["period"], targets["damping"], xmax, **options)
     back = properties(bearings, mass, xmax)
-    constants, given = Constants(**bearings.model_dump()), Properties(**dataclasses.asdict(back))
+    constants, given = forms.Constants(**bearings.model_dump()), forms.Properties(**dataclasses.asdict(back))
     lines = (
         Text.from_markup(
             f"[bold]ka[/bold] = {bearings.ka:.5g} N/m   [bold]kb[/bold] = {bearings.kb:.5g} N/m   "
@@ -319,15 +309,11 @@ def _by_targets(targets, options, of_scene, json_file):
         f"{percent(back.damping_equivalent, 4)} as W_D/(4 pi E_s); "
         f"loss {back.cycle_loss:.5g} J a cycle and bearing",
     )
-    write_output({json_file: Design(bearings=constants, properties=given)}, lambda: echo(*lines))
+    write_output({json_file: forms.Design(bearings=constants, properties=given)}, lambda: echo(*lines))
 
 
 def _for_scene(place, base_mass, stroke, tilt, options, many, write, plot, json_file):
     """Find suitable bearings of a scene by a scan; print, draw and write them."""
-    from analytic.bearing_scan import scan_bearings
-    from analytic.response import scene_warnings
-    from analytic.scene_file import load_scene, shipped_scenes
-
     from ..plotting.margins import draw_bearings, nothing_holds, print_bearings
 
     check_writable([json_file], picture=plot, inputs=[place])
@@ -362,8 +348,6 @@ def _for_scene(place, base_mass, stroke, tilt, options, many, write, plot, json_
 
 def _on_base(scene, mass, place):
     """The scene, with a base of this mass [kg] under its block if it has none."""
-    from analytic.scene import Base
-
     if mass is None and scene.base is None:
         raise SettingError(
             f"--base-mass is missing: in {place} the block stands on the ground; give its base's mass [kg]"
@@ -376,9 +360,6 @@ def _on_base(scene, mass, place):
 
 def _chosen(scene, scan, point, groups, left=()):
     """The bearings at a point of the scan, rounded as in a file, and the behaviour on them under each motion."""
-    from analytic import simulate
-    from analytic.scene import Bearings
-
     from ..plotting.margins import LIFTED, headline
 
     exact = scan.bearings(*point)
@@ -404,8 +385,6 @@ def _chosen(scene, scan, point, groups, left=()):
 
 def _demand(scene):
     """The friction demand of a block that does not slide, computed as in the search."""
-    from analytic import simulate_many
-
     return {"demand": float(simulate_many([scene], contact=True).friction_demand[0])}
 
 
@@ -417,8 +396,6 @@ def _written(place, bearings, base):
     SettingError
         The file holds its bearings in another form than a table.
     """
-    from analytic.scene_file import with_bearings
-
     text = with_bearings(Path(place).read_text(encoding="utf-8-sig"), bearings, base)
     try:
         read_back = scene_of(text, place)
@@ -432,10 +409,7 @@ def _written(place, bearings, base):
 
 def _design_form(scene, stroke, tilt, motions, left, scan, chosen, warnings):
     """The content of the JSON file of `design` for a scene."""
-    from ..schemas.advice import BearingProposal, BearingSearch, Constants
-    from ..schemas.runs import Warned
-
-    return BearingSearch(
+    return forms.BearingSearch(
         scene=scene.name,
         base_mass=scene.base.mass,
         stroke=stroke,
@@ -447,7 +421,7 @@ def _design_form(scene, stroke, tilt, motions, left, scan, chosen, warnings):
         dampings=scan.dampings.tolist(),
         holds=(scan.demand <= 1).tolist(),
         chosen={
-            name: BearingProposal(**{**proposal, "bearings": Constants(**proposal["bearings"].model_dump())})
+            name: forms.BearingProposal(**proposal | {"bearings": forms.Constants(**proposal["bearings"].model_dump())})
             for name, proposal in chosen.items()
         },
     )

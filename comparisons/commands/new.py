@@ -9,6 +9,11 @@ from typing import Annotated, Any
 import typer
 
 from analytic.errors import SettingError
+from analytic.records import G, read_channels, two_columns
+from analytic.records import content as fema
+from analytic.rocking import DEFINITIONS, design_bearings
+from analytic.scene import Base, Bearings
+from analytic.scene_file import DAMPING, MATERIALS, PERIOD, block_from, derived, scene_text
 
 from ..execution.files import check_writable, write_text
 from ..execution.solving import (
@@ -27,6 +32,7 @@ from ..execution.solving import (
     named_by_options,
     scene_of,
 )
+from ..schemas.runs import Derived, New, Record
 from .output import write_output
 
 
@@ -88,8 +94,6 @@ def new(
 
     Example: rocking new bust.toml --height 1.9 --width 0.55 --material marble --base-mass 400 --period 2.5 --xmax 0.2
     """
-    from analytic.scene_file import block_from, scene_text
-
     check_writable([file, json_file])
     if Path(file).exists():
         raise SettingError(f"{file}: exists; give another name, or remove it")
@@ -125,8 +129,6 @@ def _given_or_answered(value: float | None, option: str, question: str) -> float
 
 def _weight() -> tuple[str | None, float | None]:
     """(material, mass [kg]) as the user answers in a terminal; one of them is None."""
-    from analytic.scene_file import MATERIALS
-
     if not sys.stdin.isatty():
         raise SettingError("the block's mass is missing: give --mass [kg], --density [kg/m3] or --material")
     answer = typer.prompt(f"Mass [kg], or material ({', '.join(MATERIALS)})").strip()
@@ -137,8 +139,6 @@ def _weight() -> tuple[str | None, float | None]:
 
 
 def _density(density: float | None, material: str | None) -> float | None:
-    from analytic.scene_file import MATERIALS
-
     if material is None:
         return density
     if density is not None:
@@ -159,8 +159,6 @@ def _support(
     constants: Mapping[str, Any],
 ) -> dict[str, Any]:
     """The `Base` under the block and its `Bearings`, each None where there is none."""
-    from analytic.scene import Base
-
     base = None if base_mass is None else Base(mass=base_mass)
     for option in ("damping", "definition", "ratio"):
         if targets["period"] is None and str(ctx.get_parameter_source(option)).endswith("COMMANDLINE"):
@@ -191,9 +189,6 @@ def _bearings(
     carried: float, count: int, xmax: float | None, targets: Mapping[str, Any], constants: Mapping[str, Any]
 ) -> Any:
     """The `Bearings` under the mass `carried` [kg], by design or by constants."""
-    from analytic.rocking import design_bearings
-    from analytic.scene import Bearings
-
     by_design, by_constants = targets["period"] is not None, any(value is not None for value in constants.values())
     needed = (targets["period"], xmax) if by_design else constants.values()
     if by_design == by_constants or None in needed:
@@ -205,9 +200,6 @@ def _bearings(
 
 def _targets(period: float, damping: float, definition: str) -> dict[str, tuple[float, str]]:
     """{row of `derived`: (target as that row defines it, target in words)}."""
-    from analytic.rocking import DEFINITIONS
-    from analytic.scene_file import DAMPING, PERIOD
-
     equivalent = damping * DEFINITIONS[definition] / DEFINITIONS["equivalent"]
     of = "" if definition == "equivalent" else " (paper: twice as much)"
     return {PERIOD: (period, f"asked {period:g} s"), DAMPING: (equivalent, f"asked {damping:g}{of}")}
@@ -215,8 +207,6 @@ def _targets(period: float, damping: float, definition: str) -> dict[str, tuple[
 
 def _motion(file: str, record: str | None, tilt: float | None, stated: Mapping[str, Any]) -> dict[str, Any] | None:
     """The table [motion]. The path of a record is relative to the scene file. stated: units and step that it lacks."""
-    from analytic.records import content as fema
-
     if record is not None and tilt is not None:
         raise SettingError("give --record or --tilt, not both")
     ground_motion(record, **stated)  # an unreadable record is an error that names it
@@ -228,10 +218,7 @@ def _motion(file: str, record: str | None, tilt: float | None, stated: Mapping[s
 
 def _show_derived(file: str, scene: Any, json_file: str | None, targets: Mapping[str, tuple[float, str]]) -> None:
     """Print or write the derived quantities of a scene, beside the targets of the design."""
-    from analytic.scene_file import derived
-
     from ..plotting.terminal import echo, named_values
-    from ..schemas.runs import Derived, New
 
     quantities, shown = [], {}
     for name, value, unit in derived(scene):
@@ -268,12 +255,8 @@ def record(
 
     Example: rocking record station.v2 --channel Up --plot up.png --to up.txt
     """
-    from analytic.records import G, read_channels, two_columns
-    from analytic.records import content as fema
-
     from ..plotting.plots import channel_words, described, draw_channels, print_channels
     from ..plotting.terminal import echo
-    from ..schemas.runs import Record
 
     check_writable([json_file, to], picture=plot, inputs=[file])
     name = file if fema.is_one(file) else Path(file).name

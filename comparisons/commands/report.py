@@ -4,14 +4,19 @@ from __future__ import annotations
 
 import shlex
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
+from analytic import simulate
 from analytic.errors import SettingError
+from analytic.response import UNCOMPARED
+from engines import get_engine
 
+from ..execution.by_solver import results_in
 from ..execution.files import check_folder, check_writable, write_text
 from ..execution.progress import bar, compile_kernels, say, stdout_to_stderr
+from ..execution.provenance import RESULTS, read_result
 from ..execution.solving import (
     ANALYTIC,
     RECORD_OPTIONS,
@@ -30,9 +35,7 @@ from ..execution.solving import (
     named_by_options,
     other_motions,
 )
-
-if TYPE_CHECKING:
-    from ..schemas.runs import Report
+from ..schemas.runs import MotionRun, Report, Reported
 
 
 # Long because of its many options.
@@ -78,7 +81,6 @@ def report(
 
     Example: rocking report bust.toml --output bust
     """
-    from ..execution.by_solver import results_in
     from ..report.write import write_page
 
     check_folder(output)
@@ -114,8 +116,6 @@ def _motion(scene, record, stated):
 
 def _simulate(output, scene, motion, engines, variants, many):
     """Write the result files of the page. Return {scene: (its file and options, what to do before)}."""
-    from analytic import simulate
-
     from ..report.runs import load_scenes, make_own_results, make_results
 
     with stdout_to_stderr():  # engines print on import
@@ -144,9 +144,6 @@ def _call(place, records, both_signs, directions, units):
 
 def _studies(folder):
     """The folder of the studies' results, checked."""
-    from ..execution.by_solver import results_in
-    from ..execution.provenance import RESULTS
-
     if folder is not None and not results_in(folder):
         raise SettingError(f"--studies {folder}: holds no result; rocking study all --output {folder} writes them")
     return RESULTS if folder is None else Path(folder)
@@ -154,12 +151,8 @@ def _studies(folder):
 
 def form(page: Path) -> Report:
     """Return the content of the JSON file for a page, read from the result files beside it."""
-    from analytic.response import UNCOMPARED
-
-    from ..execution.provenance import read_result
     from ..plotting.margins import headline
     from ..report.runs import RESTITUTION, SCENES
-    from ..schemas.runs import MotionRun, Report, Reported
 
     files = [page.with_name(name) for name in (SCENES, RESTITUTION) if page.with_name(name).exists()]
     result = read_result(files[0])
@@ -183,8 +176,6 @@ def form(page: Path) -> Report:
 
 def _variants(variant, engines, scene):
     """{engine: variant} of the option --variant, checked."""
-    from engines import get_engine
-
     if variant is None:
         return {}
     if not scene or len(engines) != 1:

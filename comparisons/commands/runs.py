@@ -7,6 +7,12 @@ from typing import Annotated
 
 import typer
 
+from analytic.errors import EngineNotInstalled, SceneError, SettingError
+from analytic.response import scene_warnings
+from analytic.scene_file import load_scene
+from engines import BROKEN, ENGINES, available_engines, get_engine, guard, missing_words
+from engines.loads import unkept_friction
+
 from ..execution.files import check_writable, readable, write_text
 from ..execution.progress import compile_kernels, say, spinner, stdout_to_stderr
 from ..execution.solving import (
@@ -34,6 +40,7 @@ from ..execution.solving import (
     simulate,
     with_near,
 )
+from ..schemas.runs import Comparison, MotionRun, Run, Sensitivity
 from .output import write_output
 
 
@@ -62,9 +69,6 @@ def run(
 
     Example: rocking run caryatid-isolated --engine exudyn --plot isolated.svg
     """
-    from analytic.response import scene_warnings
-    from analytic.scene_file import load_scene
-
     from ..plotting.margins import print_motions
     from ..plotting.terminal import show, summary
 
@@ -99,7 +103,6 @@ def run(
 def _run_form(response, about, rows, left):
     """The content of the JSON file of `run`."""
     from ..plotting.margins import headline
-    from ..schemas.runs import MotionRun, Run
 
     values = replace(response, warnings=(*about, *response.warnings)).to_json()
     return Run(**values, motions=[MotionRun(**row) for row in rows], left_out=left, headline=headline(rows, left))
@@ -135,9 +138,6 @@ def compare(
 
     Example: rocking compare free-rocking-rigid --plot compared.svg
     """
-    from analytic.response import scene_warnings
-    from analytic.scene_file import load_scene
-
     from ..plotting.terminal import comparison, show
 
     check_time_limit(time_limit)
@@ -169,9 +169,6 @@ def compare(
 
 def _responses(scene, wanted, time_limit):
     """The responses of the analytic model and of the engines named in `wanted`; of all installed engines without it."""
-    from analytic.errors import EngineNotInstalled, SceneError
-    from engines import ENGINES, get_engine
-
     names = [ANALYTIC, *(name for name in dict.fromkeys(wanted or ENGINES) if name != ANALYTIC)]
     responses = []
     for number, name in enumerate(names, 1):
@@ -190,10 +187,8 @@ def _responses(scene, wanted, time_limit):
 
 def _sensitivity(scene, responses, time_limit):
     """`_horizons` in a process of its own. If that fails, a message says so and the result is empty."""
-    from engines.guard import run_apart
-
     words = spinner(f"{scene.name}: sensitivity horizons")
-    horizons, failure = run_apart(_horizons, scene, responses, time_limit=time_limit, meanwhile=words)
+    horizons, failure = guard.run_apart(_horizons, scene, responses, time_limit=time_limit, meanwhile=words)
     if not failure:
         return horizons
     say(f"no sensitivity horizons: {failure.reason}. {readable(failure.message.partition(chr(10))[0])}")
@@ -202,8 +197,6 @@ def _sensitivity(scene, responses, time_limit):
 
 def _comparison_form(scene, responses, horizons, horizon):
     """The content of the JSON file of `compare`."""
-    from ..schemas.runs import Comparison, Run, Sensitivity
-
     return Comparison(
         scene=scene.name,
         sensitivity_horizon=horizon,
@@ -236,8 +229,6 @@ def engines(
 
     Example: rocking engines exudyn
     """
-    from engines import BROKEN, available_engines, get_engine, missing_words
-
     from ..plotting.terminal import echo, engine_text, engines_table
 
     with stdout_to_stderr():  # engines print on import
@@ -268,10 +259,6 @@ def script(
 
     Example: rocking script pybullet caryatid-isolated --output caryatid.py
     """
-    from analytic.errors import SettingError
-    from analytic.scene_file import load_scene
-    from engines import BROKEN, ENGINES
-    from engines.loads import unkept_friction
     from engines.scripting import write_script
 
     from ..plotting.terminal import echo

@@ -14,11 +14,16 @@ import typer
 from typer.core import TyperGroup
 
 from analytic.errors import SettingError
+from engines import ENGINES, get_engine, guard, installed_engines
 
+from ..execution.by_solver import MODEL, save_parts
+from ..execution.cases import name_of
 from ..execution.files import check_folder, check_writable
 from ..execution.progress import compile_kernels, log, say, spinner, stdout_to_stderr
+from ..execution.provenance import RESULTS, made_here
 from ..execution.solving import TIME_LIMIT, EngineNames, JsonFile, check_time_limit, named_engines
-from ..studies import BUILT_IN, StudyBroken, get_study, study_names
+from ..schemas.runs import Tolerance, Verification
+from ..studies import BUILT_IN, TOLERANCES, StudyBroken, get_study, study_names
 from .output import write_output
 
 if TYPE_CHECKING:
@@ -151,7 +156,6 @@ def _given(context, options):
 
 def _check(name, output, number, seed, write, workers):
     """Run stored runs of a study again and print whether they agree; status 1 if one differs."""
-    from ..execution.provenance import RESULTS
     from ..execution.study import check_all
 
     with stdout_to_stderr():  # engines print on import
@@ -253,10 +257,7 @@ def verify(
 
     Example: rocking verify --engine exudyn
     """
-    from engines import get_engine, installed_engines
-
     from ..metrics.agreement import rows
-    from ..schemas.runs import Tolerance, Verification
 
     check_time_limit(time_limit)
     check_writable([json_file])
@@ -279,12 +280,10 @@ def verify(
 
 def _verified(name, table, time_limit):
     """The rows of an engine, measured in a separate process. If that fails, each row gives the reason."""
-    from engines.guard import run_apart
-
     from ..metrics.agreement import measure_all
 
     compile_kernels(vertical=True)
-    measured, failure = run_apart(
+    measured, failure = guard.run_apart(
         measure_all, table, time_limit=time_limit, meanwhile=spinner(f"{name}: {len(table)} tolerances")
     )
     if failure is None:
@@ -298,13 +297,7 @@ def _write(folder, results, alone):
 
     alone: write only the files of these engines, and keep the files of other engines.
     """
-    from engines import ENGINES
-
-    from ..execution.by_solver import MODEL, save_parts
-    from ..execution.cases import name_of
-    from ..execution.provenance import made_here
     from ..metrics.agreement import measure_all
-    from ..studies import TOLERANCES
 
     engines = list(dict.fromkeys(row["engine"] for row in results))
     bounds = [f"{ENGINES[name].tolerances}:TOLERANCES" for name in engines if ENGINES[name].tolerances]

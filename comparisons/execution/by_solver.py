@@ -340,9 +340,6 @@ def short(value: object) -> str:
     return text if len(text) <= 80 else f"{text[:80]}..."
 
 
-if TYPE_CHECKING:
-    from .provenance import Result
-
 OLDER = "older than the code"
 NAMED = 3  # changed definitions that a sentence names
 

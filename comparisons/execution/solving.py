@@ -19,20 +19,27 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
+import analytic
+from analytic import Response, SampledMotion, synthetic_motion
 from analytic.errors import SceneError, SettingError
+from analytic.margins import SHARE, cliffs, nearby
+from analytic.motion import Motion
+from analytic.records import read_record
+from analytic.records.folder import folder_motions, reversed_sign, same_reversed
+from analytic.response import Caution, Failure, about_record
 from analytic.scene import Scene
-from analytic.scene_file import MATERIALS, UPLIFT, YIELD, derived
-from engines.simulating import RANGE
+from analytic.scene_file import MATERIALS, UPLIFT, YIELD, derived, load_scene
+from engines import BROKEN, ENGINES, get_engine, guard
+from engines.observe import failed_response
+from engines.simulating import RANGE, choose
 
+from .cases import versions
 from .files import readable
 from .progress import bar, compile_kernels, say, spinner
-
-if TYPE_CHECKING:
-    from analytic import Caution, Response, SampledMotion, Scene
 
 ANALYTIC, KERNEL = "analytic", "kernel"  # the model, and the name of its variant
 TIME_LIMIT = 300.0  # s, of one run
@@ -74,9 +81,6 @@ def ground_motion(record: str | PathLike[str] | None = None, **stated: Any) -> S
     SceneError
         The record cannot be read.
     """
-    from analytic import synthetic_motion
-    from analytic.records import read_record
-
     if record is not None:
         return read_record(record, **stated)
     for name, value in stated.items():
@@ -93,8 +97,6 @@ def scene_of(text: str, file: str) -> Scene:
     SceneError
         The text is no scene; the message names `file`.
     """
-    from analytic.scene_file import load_scene
-
     with tempfile.NamedTemporaryFile("w", suffix=".toml", dir=Path(file).resolve().parent, encoding="utf-8") as part:
         part.write(text)
         part.flush()
@@ -138,13 +140,10 @@ def simulate(
     EngineNotInstalled
         The engine cannot be imported here; the message says how to install it.
     """
-    from analytic.response import about_record
-    from engines.guard import OUT_OF_TIME, RAISED, run_apart
-
     settings = settings or {}
     check_solver(solver)
     compile_kernels(scene.motion is not None and scene.motion.vertical is not None)
-    response, failure = run_apart(
+    response, failure = guard.run_apart(
         _simulate,
         scene,
         solver,
@@ -155,14 +154,10 @@ def simulate(
         time_limit=time_limit,
         meanwhile=spinner(words) if words else None,
     )
-    if failure and failure.reason == RAISED and solver == ANALYTIC:
+    if failure and failure.reason == guard.RAISED and solver == ANALYTIC:
         raise RuntimeError(f"the analytic model raised {failure.message}")  # a mistake of this project, not a result
     if failure:
-        from engines.observe import failed_response
-
-        from .cases import versions
-
-        if failure.reason == OUT_OF_TIME:
+        if failure.reason == guard.OUT_OF_TIME:
             first, end, rest = failure.message.partition("\n")
             failure = dataclasses.replace(failure, message=f"{first}; --time-limit allows more{end}{rest}")
         response = failed_response(
@@ -174,8 +169,6 @@ def simulate(
 
 def near_motion(scene: Scene) -> tuple[Caution, ...]:
     """Return the warnings of `near` and show a line meanwhile; none without a motion."""
-    from analytic.margins import SHARE
-
     if scene.motion is None:
         return ()
     with spinner(f"{scene.name}: within {SHARE:.0%} of the motion"):
@@ -184,9 +177,6 @@ def near_motion(scene: Scene) -> tuple[Caution, ...]:
 
 def near(scene: Scene) -> tuple[Caution, ...]:
     """Return the warnings of `analytic.margins.cliffs` for a scene with a motion, or that these were not determined."""
-    from analytic.margins import SHARE, cliffs, nearby
-    from analytic.response import Caution
-
     try:
         return cliffs(scene, *nearby(scene))
     except SceneError as error:
@@ -201,8 +191,6 @@ def with_near(scene: Scene, response: Response) -> Response:
 
 def check_solver(name: str) -> None:
     """Raise `SettingError` if no solver is called `name`."""
-    from engines import BROKEN, ENGINES
-
     if name in BROKEN:
         raise BROKEN[name]
     if name != ANALYTIC and name not in ENGINES:
@@ -219,8 +207,6 @@ def named_engines(names: Iterable[str]) -> tuple[str, ...]:
     EngineNotInstalled
         As for `engines.get_engine`.
     """
-    from engines import get_engine
-
     names = tuple(dict.fromkeys(names))
     for name in names:
         try:
@@ -232,19 +218,14 @@ def named_engines(names: Iterable[str]) -> tuple[str, ...]:
 
 def check_time_limit(seconds: float) -> None:
     """Raise `SettingError` if `seconds` is no valid time limit of a run."""
-    from engines.guard import check_time_limit
-
     try:
-        check_time_limit(seconds)
+        guard.check_time_limit(seconds)
     except ValueError as error:
         raise SettingError(f"--{error}".replace("time_limit", "time-limit", 1)) from None
 
 
 def _simulate(scene, solver, variant, settings, history, compare):
     if solver != ANALYTIC:
-        from engines import get_engine
-        from engines.simulating import choose
-
         engine = get_engine(solver)
         if settings:  # a setting could have the name of an argument of `simulate`
             choose(engine, variant, settings)
@@ -262,8 +243,6 @@ def _simulate(scene, solver, variant, settings, history, compare):
 
 
 def _analytic(scene, variant, settings, history):
-    import analytic
-
     if variant not in (None, KERNEL):
         raise SettingError(f"the analytic model has no variant {variant!r}: leave --variant out, or give {KERNEL}")
     parameters = inspect.signature(analytic.simulate).parameters
@@ -293,11 +272,6 @@ def print_failures(responses: Iterable[Response]) -> None:
             evidence = readable(response.failure.message.partition("\n")[0])
             say(f"{response.engine} failed: {response.failure.reason}. {evidence}".rstrip(". ") + ".")
 
-
-if TYPE_CHECKING:
-    from analytic import Response, Scene
-    from analytic.motion import Motion
-    from analytic.response import Caution
 
 SceneFile = Annotated[str, typer.Argument(help="Scene file (TOML), or the name of a shipped scene.")]
 EngineNames = Annotated[
@@ -390,8 +364,6 @@ def motions_of(
     SettingError
         There is no such folder, or no motion in it; or directions or units are given without a folder.
     """
-    from analytic.records.folder import folder_motions, reversed_sign, same_reversed
-
     for name, value in (("directions", directions), ("units", units)):
         if value is not None and records is None:
             raise SettingError(f"--{name} {value}: give the folder of the records with --records")
@@ -435,8 +407,6 @@ def read_row(record: str, motion: Motion, warnings: Sequence[Caution] = ()) -> d
 
     warnings: further ones, added to those on the record.
     """
-    from analytic.response import about_record
-
     cautions = dict.fromkeys((*about_record(motion), *warnings))
     return {"record": record, "motion": motion.label, "peak": motion.peak, "warnings": list(map(asdict, cautions))}
 
@@ -487,11 +457,6 @@ def end_with(rows: Sequence[Mapping[str, Any]], *responses: Response) -> None:
 
 def refused(scene: Scene, error: SceneError, **known: Any) -> Response:
     """Return the failed response of a scene that a solver refuses. known: engine, variant, ...; else the model's."""
-    from analytic.response import Failure
-    from engines.observe import failed_response
-
-    from .cases import versions
-
     name = known.get("engine", ANALYTIC)
     solver = {"engine": name, "variant": "", "settings": {}, "versions": versions(name)}
     return failed_response(scene, Failure("it cannot run this scene", str(error)), **{**solver, **known})
