@@ -479,6 +479,7 @@ def _measures(scene: Scene, response: Response) -> dict[str, Any]:
 HOLLOW = 1 / 6
 
 
+# Long because each doubt names options, values, range and remedy.
 def doubts(
     scene: Scene, height: float, width: float, depth: float | None = None, *, weighed: bool, designed: bool
 ) -> list[str]:
