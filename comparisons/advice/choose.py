@@ -1,8 +1,8 @@
 """Search for the cheapest variant and level that meet an error on a scene and on its neighbours.
 
-Each variant is run at its levels, from coarse to fine, on the scene. The levels that pass there with all finer ones are
-run on the neighbours, the cheapest first, until one passes. A level passes if it and all finer ones do in all scenes,
-with a margin of `criteria.safety`, so that none passes by chance.
+Each variant is run on the scene at all its levels. Levels that pass there, with all finer ones, are run on the
+neighbours, the cheapest first, until one passes. A level passes if it and all finer ones pass in all scenes, with a
+margin of `criteria.safety`, so that none passes by chance.
 """
 
 import math
@@ -47,24 +47,25 @@ LevelKey = tuple[str, str, float]  # engine, variant, value of its accuracy para
 
 
 def problem(rows: Mapping[float, Row], limit: float, criterion: str) -> tuple[float | None, str | None]:
-    """(error over these runs, why they do not pass or None)."""
+    """Return (the error over these runs, the reason why they do not pass or None)."""
     for factor, row in rows.items():
         if row.failed:
             return None, f"failed at {factor:g} of the scene: {row.failure['reason']}"  # type: ignore[index]  # a failed run has one
         if row.values["error"] is None or not math.isfinite(row.values["error"]):
             return None, f"shows no {criterion} at {factor:g} of the scene"
     errors = [row.values["error"] for row in rows.values()]
-    found = float(np.mean(errors) if criterion == "outcome" else np.max(errors))
-    if found * safety(criterion) > limit:
-        return found, f"error {found:.1e}" + ("" if found > limit else f", less than {SAFETY:g} times below")
-    return found, None
+    worst = float(np.mean(errors) if criterion == "outcome" else np.max(errors))
+    if worst * safety(criterion) > limit:
+        return worst, f"error {worst:.1e}" + ("" if worst > limit else f", less than {SAFETY:g} times below")
+    return worst, None
 
 
 class Search:
     """Runs levels on a scene and its neighbours, stores the rows, and finds the cheapest level that passes.
 
-    family: {factor: scene or neighbour}, with the duration that is compared. error: the one asked for, in the sense of
-    `criterion`. options: for the sweeps, whose stores are in `folder`. rows: {level: {factor: `Row`}} of all runs.
+    family: {factor: scene or neighbour}, with the duration that is compared. error: the largest permissible error, as
+    `criterion` defines it. options: for the sweeps, whose stores are in `folder`. rows: {level: {factor: `Row`}} of all
+    runs.
     """
 
     def __init__(
@@ -75,14 +76,14 @@ class Search:
         self.rows: dict[LevelKey, dict[float, Row]] = {}
 
     def run(self, levels: Sequence[LevelKey], factors: Sequence[float], label: str) -> None:
-        """Run levels on the scene or neighbours of these factors."""
-        wanted = [(level, factor) for factor in factors for level in levels]
-        found = self._sweep([(level, self.family[factor]) for level, factor in wanted], self.criterion, label)
-        for (level, factor), row in zip(wanted, found, strict=True):
+        """Run levels on the scenes of these factors."""
+        runs = [(level, factor) for factor in factors for level in levels]
+        rows = self._sweep([(level, self.family[factor]) for level, factor in runs], self.criterion, label)
+        for (level, factor), row in zip(runs, rows, strict=True):
             self.rows.setdefault(level, {})[factor] = row
 
     def whole(self, level: LevelKey) -> float | None:
-        """CPU seconds of the whole scene, None if the run fails."""
+        """Run a level on the whole scene and return its CPU seconds; None if the run fails."""
         (row,) = self._sweep([(level, self.scene)], "outcome", "the whole scene")
         return None if row.failed else row.cost["cpu_seconds"]
 
@@ -96,14 +97,14 @@ class Search:
         return run_sweep(cases, store=store, measure=Measure(criterion), label=label, **self.options)
 
     def cheapest(self, levels: Sequence[LevelKey]) -> tuple[LevelKey | None, float | None]:
-        """(the cheapest level that passes, its CPU seconds for the whole scene), None if none passes.
+        """Return (the cheapest level that passes, its CPU seconds for the whole scene); None, None if none passes.
 
         Neighbours are run only at levels that can still pass, the cheapest first.
         """
         for level in sorted(filter(self._hopeful, levels), key=self._cost):
             suffix = self._suffix(level)
-            missing = [factor for factor in self.family if any(factor not in self.rows[one] for one in suffix)]
-            if self._hopeful(level):  # may have changed by runs made meanwhile
+            missing = [factor for factor in self.family if any(factor not in self.rows[finer] for finer in suffix)]
+            if self._hopeful(level):  # runs made meanwhile may have changed this
                 self.run(suffix, missing, f"{level[0]}, {level[1]}: neighbours")
             if self._pass(suffix):
                 spent = self.whole(level)
@@ -118,13 +119,13 @@ class Search:
         return [(*level[:2], value) for value in levels[levels.index(level[2]) :]]
 
     def _pass(self, levels):
-        return all(problem(self.rows[one], self.error, self.criterion)[1] is None for one in levels)
+        return all(problem(self.rows[level], self.error, self.criterion)[1] is None for level in levels)
 
     def _hopeful(self, level):
         """Whether a level and all finer ones of its variant pass in all scenes run so far."""
         suffix = self._suffix(level)
         if self.criterion == "outcome":  # one run with another outcome does not determine a share
-            return not any(row.failed for one in suffix for row in self.rows[one].values())
+            return not any(row.failed for finer in suffix for row in self.rows[finer].values())
         return self._pass(suffix)
 
     def _cost(self, level):
@@ -135,6 +136,7 @@ class Search:
 TIME_LIMIT = 60.0  # s, of one run
 
 
+# Long because a `Choice` has many fields.
 def choose(
     scene: Scene,
     *,
@@ -145,26 +147,15 @@ def choose(
     progress: bool = False,
     source: str = "scene.toml",
 ) -> Choice:
-    """The `Choice` for a scene.
+    """Return the `Choice` for a scene.
 
-    The runs are made in processes of their own, so that a script must call it under ``if __name__ == "__main__":``.
+    The runs are made in separate processes, so a script must call this under ``if __name__ == "__main__":``.
 
-    Parameters
-    ----------
-    scene : Scene
-    error : float
-        Largest error: of restitution (rms) [-]; of the tilt over the slenderness, or of the displacement over its peak,
-        at any time up to the sensitivity horizon; or the share of neighbours whose outcomes differ.
-    criterion : str or None
-        One of `criteria.CRITERIA`; None: one that suits the scene, see `criteria.fitting`.
-    engines : iterable of str or None
-        Engines to try; None: all that are installed. Without a criterion, none is run if the block never lifts; the
-        analytic model is then the answer.
-    time_limit : float
-        Limit of one run [s].
-    progress : bool
-    source : str
-        Name of the scene file, for the command and the snippet.
+    error: largest permissible error: of the restitution (rms) [-]; of the tilt over the slenderness, or of the
+    displacement over its peak, at any time up to the sensitivity horizon; or the share of neighbours whose outcomes
+    differ. criterion: one of `criteria.CRITERIA`; None: `criteria.fitting`. engines: engines to try; None: all that are
+    installed. If neither is given and the block never lifts, no engine is run, and the analytic model is the answer.
+    time_limit: of one run [s]. source: name of the scene file, for the command and the snippet.
 
     Raises
     ------
@@ -175,8 +166,8 @@ def choose(
     Examples
     --------
     >>> from analytic import load_scene
-    >>> found = choose(load_scene("free-rocking-rigid"), error=0.02, engines=["exudyn"])
-    >>> found.chosen.passes, found.chosen.error < 0.01
+    >>> choice = choose(load_scene("free-rocking-rigid"), error=0.02, engines=["exudyn"])
+    >>> choice.chosen.passes, choice.chosen.error < 0.01
     (True, True)
     """
     if criterion not in (None, *CRITERIA):
@@ -184,26 +175,19 @@ def choose(
     if not 0 < error < 1:
         raise SettingError(f"--error {error!r}: give a number above 0 and below 1")
     names, missing = available_engines() if engines is None else (named_engines(engines), {})
-    nothing_asked = criterion is None and engines is None
+    is_default = criterion is None and engines is None
     with _shown(progress, f"{scene.name}: the analytic model"):
         criterion = criterion or fitting(scene)
         family, left, span = _family(scene, criterion)
-        own = cpu_seconds(scene)
-    variants: list[VariantLevels] = []
-    if nothing_asked and all(_stands(one) for one in family.values()):
-        chosen: Level | None = _analytic(family)
-        best, whole = None, cpu_seconds(family[1.0])
+        model_cpu = cpu_seconds(scene)
+    if is_default and all(map(_stands, family.values())):
+        chosen, best, whole, variants = _analytic(family), None, cpu_seconds(family[1.0]), []
     else:
-        key, whole, variants = _searched(
-            scene, family, names, error, criterion, time_limit=time_limit, progress=progress
-        )
-        levels = [one for variant in variants for one in variant.levels]
-        chosen = next((one for one in levels if (one.engine, one.variant, one.value) == key), None)
-        known = [one for one in levels if one.error is not None and not chosen]
-        best = min(known, key=lambda one: one.error or 0.0, default=None)
-    found = (chosen if variants else None) or best
+        limits = {"time_limit": time_limit, "progress": progress}
+        chosen, best, whole, variants = _searched(scene, family, names, error, criterion, **limits)
+    engine_level = (chosen if variants else None) or best
     with _shown(progress, f"{scene.name}: what need not be modelled"):
-        parts = model_parts(scene, family, error, found, names, own)
+        parts = model_parts(scene, family, error, engine_level, names, model_cpu)
     return Choice(
         scene=scene.name,
         criterion=criterion,
@@ -215,21 +199,21 @@ def choose(
         chosen=chosen,
         best=best,
         cpu_seconds=whole,
-        analytic_cpu_seconds=own,
+        analytic_cpu_seconds=model_cpu,
         command=_command(chosen, source) if chosen else None,
         snippet=_snippet(chosen, source) if chosen else None,
         variants=variants,
         parts=parts,
         missing=missing,
-        warnings=[Warned(**asdict(one)) for one in _warnings(scene)],
+        warnings=[Warned(**asdict(caution)) for caution in _warnings(scene)],
     )
 
 
 def _warnings(scene):
-    """What is in doubt of the scene itself, or lies outside the range in which engines are tested."""
+    """The warnings on a scene, on its run in the model, and on what lies outside the range of tests of engines."""
     response = simulate(scene, history=False)
-    kept = [Caution("engine", words)] if (words := unkept_friction(scene)) else []
-    return (*scene_warnings(scene), *response.warnings, *outside(scene, response), *kept)
+    friction = [Caution("engine", words)] if (words := unkept_friction(scene)) else []
+    return (*scene_warnings(scene), *response.warnings, *outside(scene, response), *friction)
 
 
 def _shown(progress, words):
@@ -237,19 +221,21 @@ def _shown(progress, words):
 
 
 def _family(scene, criterion):
-    """({factor: scene or neighbour, with the duration that is compared}; {factor: why it is left out}; that duration of
-    the scene itself [s])."""
+    """`neighbours` of a scene, cut to the duration that is compared, and that duration of the scene itself [s].
+
+    Returns ({factor: scene or neighbour}, {factor: why it is left out}, duration).
+    """
     family, left = neighbours(scene, criterion)
     span = until(family[1.0], criterion)
 
-    def cut(factor, one):
+    def cut(factor, member):
         try:
-            return one.with_(duration=span if factor == 1.0 else until(one, criterion))
+            return member.with_(duration=span if factor == 1.0 else until(member, criterion))
         except SettingError:  # a neighbour without uplift gets the duration of the scene
-            return one.with_(duration=span)
+            return member.with_(duration=span)
 
     if criterion != "outcome":
-        family = {factor: cut(factor, one) for factor, one in family.items()}
+        family = {factor: cut(factor, member) for factor, member in family.items()}
     return family, left, span
 
 
@@ -276,20 +262,28 @@ def _analytic(family: Mapping[float, Scene]) -> Level:
 
 
 def _searched(scene, family, names, error, criterion, **options):
-    """(key of the level chosen or None, CPU seconds of the whole scene, all variants); options: for the sweeps."""
+    """Search for the cheapest level that passes. options: for the sweeps.
+
+    Returns (the level chosen or None, otherwise the level with the least error or None, CPU seconds of the whole scene
+    or None, the `VariantLevels` of all variants).
+    """
     kinds = _kinds(names, scene)
     levels = [(name, variant, value) for name, variant, kind in kinds for value in kind.levels]
     with TemporaryFolder("choose-") as folder, Processes(None, ("analytic", *names)) as executor:
         search = Search(scene, family, error, criterion, Path(folder), executor=executor, **options)
         search.run(levels, [1.0], "the scene")
-        chosen, whole = search.cheapest(levels)
-        if chosen and criterion == "restitution" and get_engine(chosen[0]).variants[chosen[1]].applies_impact:
+        key, whole = search.cheapest(levels)
+        if key and criterion == "restitution" and get_engine(key[0]).variants[key[1]].applies_impact:
             search.cheapest([key for key in levels if not get_engine(key[0]).variants[key[1]].applies_impact])
-        return chosen, whole, [_variant(*kind, search) for kind in kinds]
+        variants = [_variant(*kind, search) for kind in kinds]
+    run = [level for variant in variants for level in variant.levels]
+    chosen = next((level for level in run if (level.engine, level.variant, level.value) == key), None)
+    with_error = [level for level in run if level.error is not None and not chosen]
+    return chosen, min(with_error, key=lambda level: level.error, default=None), whole, variants
 
 
 def _kinds(names: Iterable[str], scene: Scene) -> list[tuple[str, str, Variant]]:
-    """(engine, name, `Variant`) of those that may be chosen: not of the kind "defaults", able to run the scene."""
+    """(engine, name, `Variant`) of the variants that can run the scene and are not of the kind "defaults"."""
     return [
         (name, variant, spec)
         for name in names
@@ -299,12 +293,12 @@ def _kinds(names: Iterable[str], scene: Scene) -> list[tuple[str, str, Variant]]
 
 
 def _variant(name, variant, spec, search):
-    """The `VariantLevels` of a variant from its runs."""
+    """The `VariantLevels` of a variant, from its runs."""
     levels: list[Level] = []
     finer = True
     for value in reversed(spec.levels):
         rows = search.rows[name, variant, value]
-        found, why = problem(rows, search.error, search.criterion)
+        worst, why = problem(rows, search.error, search.criterion)
         if why is None and not finer:
             why = "a finer level does not pass"
         finer, untried = why is None, why is None and len(rows) < len(search.family)
@@ -320,7 +314,7 @@ def _variant(name, variant, spec, search):
                 value=value,
                 default=value == spec.default,
                 runs=len(rows),
-                error=found,
+                error=worst,
                 cpu_per_second=spent / simulated if sound else None,
                 passes=why is None and not untried,
                 untried=untried,
@@ -338,25 +332,25 @@ def _variant(name, variant, spec, search):
 
 
 def _order(levels):
-    """Slope of log error over log parameter; None for fewer than three levels with an error."""
-    shown = [(one.value, one.error) for one in levels if one.error]
-    if len(shown) < 3:
+    """The slope of log error over log parameter; None with fewer than three levels that have an error."""
+    points = [(level.value, level.error) for level in levels if level.error]
+    if len(points) < 3:
         return None
-    parameter, errors = np.log(np.array(shown)).T
+    parameter, errors = np.log(np.array(points)).T
     return float(np.polyfit(parameter, errors, 1)[0])
 
 
-def _command(one, source):
-    value = "" if one.default else f" --set {one.parameter}={one.value:g}"
-    engine = f" --engine {one.engine} --variant {one.variant}{value}"
-    return f"rocking run {source}" + (engine if one.engine != ANALYTIC else "")
+def _command(level, source):
+    value = "" if level.default else f" --set {level.parameter}={level.value:g}"
+    engine = f" --engine {level.engine} --variant {level.variant}{value}"
+    return f"rocking run {source}" + (engine if level.engine != ANALYTIC else "")
 
 
-def _snippet(one, source):
-    value = "" if one.default else f", {one.parameter}={one.value:g}"
+def _snippet(level, source):
+    value = "" if level.default else f", {level.parameter}={level.value:g}"
     head = "from analytic import load_scene\nfrom engines import get_engine\n\n"
-    call = f'get_engine("{one.engine}").simulate(load_scene("{source}"), variant="{one.variant}"{value})'
-    if one.engine == ANALYTIC:
+    call = f'get_engine("{level.engine}").simulate(load_scene("{source}"), variant="{level.variant}"{value})'
+    if level.engine == ANALYTIC:
         head, call = "from analytic import load_scene, simulate\n\n", f'simulate(load_scene("{source}"))'
     shown = "response.outcome_text, response.peak_tilt_ratio, response.peak_base_displacement"
     return f"{head}response = {call}\nprint({shown})\n"

@@ -1,5 +1,7 @@
-"""What a setting is chosen for: until when a scene is run, and how far off a run is; what need not be modelled, and
-what modelling it would cost; and what `choose` answers, as typed values that become JSON.
+"""Criteria of a choice: the error of a run and the time up to which it counts, parts of a model, and the answer.
+
+`model_parts` tells what need not be modelled, and what it would cost. `Choice` is the answer of `choose`, as typed
+values that become JSON.
 """
 
 import dataclasses
@@ -31,9 +33,11 @@ from ..schemas.runs import Warned
 
 
 class Level(Part):
-    """One value of a variant's accuracy parameter. error: the worst over the scene and its neighbours, for outcomes the
-    share that differs; None if unknown. untried: it passes the scene, but was not run on the neighbours, as a cheaper
-    one passes there. why: the reason why it does not pass. cpu_per_second: CPU seconds per simulated second."""
+    """A value of a variant's accuracy parameter.
+
+    error: the worst over the scene and its neighbours, for outcomes the share that differs; None if unknown. untried:
+    the level passes on the scene and was not run on the neighbours, because a cheaper one passes there. why: the reason
+    why it does not pass. cpu_per_second: CPU seconds per simulated second."""
 
     engine: str
     variant: str
@@ -49,9 +53,10 @@ class Level(Part):
 
 
 class VariantLevels(Part):
-    """A variant's levels from coarse to fine. `tier`: the kind of the variant. order: the error is proportional to the
-    parameter to this power, if it can be determined. applies_impact: the adapter, not the engine, applies eqs (7) and
-    (8)."""
+    """The levels of a variant from coarse to fine.
+
+    `tier`: the kind of the variant. order: the error is proportional to the parameter to this power, if it can be
+    determined. applies_impact: the adapter, not the engine, applies eqs (7) and (8)."""
 
     engine: str
     variant: str
@@ -61,16 +66,18 @@ class VariantLevels(Part):
     levels: list[Level]
 
     def cheapest(self) -> Level:
-        """The cheapest level that passes; else the cheapest untried one; else the finest."""
+        """Return the cheapest level that passes; without one the cheapest untried level; without one the finest."""
         for kind in ("passes", "untried"):
-            if own := [one for one in self.levels if getattr(one, kind)]:
-                return min(own, key=lambda one: one.cpu_per_second or 0.0)
+            if candidates := [level for level in self.levels if getattr(level, kind)]:
+                return min(candidates, key=lambda level: level.cpu_per_second or 0.0)
         return self.levels[-1]
 
 
 class ModelPart(Part):
-    """A part of a model. needed: whether this scene needs it. cost: factor on the CPU time if it is modelled
-    nevertheless, measured on this scene; None if not measured."""
+    """A part of a model.
+
+    needed: whether this scene needs it. cost: factor on the CPU time if it is modelled nevertheless, measured on this
+    scene; None if not measured."""
 
     part: str
     needed: bool
@@ -79,11 +86,13 @@ class ModelPart(Part):
 
 
 class Choice(Form):
-    """The answer. chosen: the cheapest level that passes with all finer ones; None if there is none, and `best` is then
-    the level with the least error. safety_factor: the error asked for over the largest one that passes. neighbours:
-    factors of start and motion. left_out: {factor: why}, of those that the model refuses. until: time [s] up to which
-    histories were compared, or were run for their impacts. cpu_seconds: of the chosen level on the whole scene; of the
-    analytic model. warnings: on the scene in the model."""
+    """The answer of `choose`.
+
+    chosen: the cheapest level that passes with all finer ones; None if there is none, and `best` is then the level with
+    the least error. safety_factor: the permissible error over the largest one that passes. neighbours: factors of start
+    and motion. left_out: {factor: why} of neighbours that the model refuses. until: time [s] up to which histories were
+    compared, or were run for their impacts. cpu_seconds, analytic_cpu_seconds: of the chosen level and of the analytic
+    model on the whole scene. warnings: on the scene in the model."""
 
     schema_: str = Field(default="rocking choose 4", serialization_alias="schema")
     scene: str
@@ -107,29 +116,29 @@ class Choice(Form):
 
 CRITERIA = ("restitution", "tilt", "displacement", "slip", "outcome")
 COLUMNS = {"tilt": "tilt", "displacement": "base_displacement", "slip": "slip"}  # of a history
-IMPACTS = 8  # strong impacts of the model up to which a scene is run for its restitution
-AFTER = 0.25  # of a rocking period, by which a run is longer
-PERIODS = 1.0  # rocking periods after its peak up to which tilt or displacement is compared
+IMPACTS = 8  # a scene is run for its restitution up to this number of strong impacts of the model
+AFTER = 0.25  # part of a rocking period by which that run is longer
+PERIODS = 1.0  # tilt or displacement is compared up to this number of rocking periods after its peak
 FACTORS = (0.95, 0.975, 1.025, 1.05)  # of start and motion together: the neighbours
-MORE_FACTORS = (0.9625, 0.9875, 1.0125, 1.0375)  # further ones where outcomes are counted
-SAFETY = 2.0  # error asked for over the worst one of a level, so that other neighbours pass, too
+MORE_FACTORS = (0.9625, 0.9875, 1.0125, 1.0375)  # further ones if outcomes are counted
+SAFETY = 2.0  # permissible error over the worst error of a level, so that other neighbours pass, too
 
 
 def safety(criterion: str) -> float:
-    """Error asked for over the largest that passes."""
+    """Return the permissible error over the largest one that passes."""
     return 1.0 if criterion == "outcome" else SAFETY
 
 
 def neighbours(scene: Scene, criterion: str) -> tuple[dict[float, Scene], dict[float, str]]:
-    """({factor: the scene with its start and its motion times that}, the scene itself with 1 first; {factor: why it is
-    left out}, of those that the model refuses).
+    """Return ({factor: the scene with start and motion times the factor}, {factor: why the model refuses it}).
 
-    For outcomes they have no duration, as a run that ends before its outcome is decided has none.
+    The scene itself, with factor 1, is the first. For outcomes the scenes have no duration, so that every outcome is
+    decided.
 
     Raises
     ------
     SettingError
-        Neither a start nor a motion is given.
+        The scene has neither a start nor a motion.
     SceneError
         The model refuses the scene itself.
     """
@@ -152,7 +161,7 @@ def neighbours(scene: Scene, criterion: str) -> tuple[dict[float, Scene], dict[f
 
 
 def refusals(scene: Scene, reference: Response) -> dict[str, str]:
-    """{criterion: why it does not apply to a scene}, of which `reference` is the model's run."""
+    """Return {criterion: why it does not apply to a scene}. reference: the model's run of the scene."""
     without = [
         (scene.block.restitution is not None, "the scene gives it"),
         (slides(reference), "the block slides, and then eq. (7) does not hold"),
@@ -168,8 +177,12 @@ def refusals(scene: Scene, reference: Response) -> dict[str, str]:
 
 
 def fitting(scene: Scene) -> str:
-    """The default: restitution if there are impacts, tilt if it is given or the block slides; else slip if it slides,
-    displacement if there is a base, else outcome."""
+    """Return the default criterion of a scene.
+
+    With impacts it is the restitution; if the restitution is given or the block slides, the tilt. Without impacts it is
+    slip (tilt if the block lifts) for a block that slides; otherwise the displacement of the base, if any, or the
+    outcome.
+    """
     reference = simulate(scene, history=False)
     if strong_impacts(reference):
         return "restitution" if scene.block.restitution is None and not slides(reference) else "tilt"
@@ -179,12 +192,12 @@ def fitting(scene: Scene) -> str:
 
 
 def slides(response: Response) -> bool:
-    """Whether the block slides."""
+    """Return whether the block slides."""
     return response.sliding is not None and response.sliding.peak > 0
 
 
 def until(scene: Scene, criterion: str) -> float:
-    """Time [s] up to which a scene is run and compared.
+    """Return the time [s] up to which a scene is run and compared.
 
     Raises
     ------
@@ -194,7 +207,7 @@ def until(scene: Scene, criterion: str) -> float:
     reference = simulate(scene, history=False)
     why = refusals(scene, reference)
     if criterion in why:
-        others = [one for one in CRITERIA if one not in why]
+        others = [name for name in CRITERIA if name not in why]
         raise SettingError(f"--for {criterion}: {scene.name}: {why[criterion]}; choose one of {', '.join(others)}")
     if criterion == "restitution":
         strong = strong_impacts(reference)[:IMPACTS]
@@ -211,7 +224,7 @@ def until(scene: Scene, criterion: str) -> float:
 
 @dataclass(frozen=True)
 class Measure:
-    """Measure of a run: its error in the sense of `criterion`."""
+    """Measure of a run: its error as `criterion` defines it."""
 
     criterion: str
 
@@ -225,7 +238,7 @@ class Measure:
 
 
 def error(criterion: str, scene: Scene, response: Response, reference: Response) -> float | None:
-    """The error of a run; None if the criterion does not apply to it."""
+    """Return the error of a run; None if the criterion does not apply to it."""
     if criterion == "outcome":
         return float(response.outcome != reference.outcome)
     if criterion == "restitution":
@@ -262,26 +275,34 @@ def _restitution(scene, response, reference):
     return max(errors)
 
 
-REPEATS = 7  # of a timing; the least counts
+REPEATS = 7  # of a timing, of which the least counts
 
 
 def cpu_seconds(scene: Scene) -> float:
-    """CPU time of the analytic model on a scene, the least of several [s]."""
+    """Return the least of several CPU times of the analytic model on a scene [s]."""
     return min(simulate(scene, history=False).cpu_seconds for _ in range(REPEATS))
 
 
 def model_parts(
-    scene: Scene, family: Mapping[float, Scene], error: float, found: Level | None, engines: Iterable[str], own: float
+    scene: Scene,
+    family: Mapping[float, Scene],
+    error: float,
+    level: Level | None,
+    engines: Iterable[str],
+    model_cpu: float,
 ) -> list[ModelPart]:
-    """The parts of a model, and whether the scene needs them. family: its neighbours; found: the level chosen, or the
-    best; own: `cpu_seconds` of the scene."""
-    runs = [simulate(one, history=False) for one in family.values()]
-    engine = None if found is None or found.cpu_per_second is None else found.cpu_per_second * runs[0].end.time / own
+    """Return the parts of a model, and whether the scene needs them.
+
+    family: `neighbours` of the scene. level: the engine's level that was chosen, or the best one. model_cpu:
+    `cpu_seconds` of the scene.
+    """
+    runs = [simulate(member, history=False) for member in family.values()]
+    rate = None if level is None else level.cpu_per_second
     parts = {
-        "rocking": _rocking(scene, runs, engine),
+        "rocking": _rocking(scene, runs, None if rate is None else rate * runs[0].end.time / model_cpu),
         **({} if scene.friction is None else {"sliding": _sliding(scene, runs)}),
-        "base": _base(scene, own),
-        "vertical motion": _vertical(scene, runs[0], own, error),
+        "base": _base(scene, model_cpu),
+        "vertical motion": _vertical(scene, runs[0], model_cpu, error),
         "third dimension": _space(scene, engines),
     }
     return [ModelPart(part=part, needed=need, why=why, cost=cost) for part, (need, why, cost) in parts.items()]
@@ -290,7 +311,7 @@ def model_parts(
 # Each returns (needed, why, cost) of its `ModelPart`.
 
 
-def _rocking(scene, runs, engine):
+def _rocking(scene, runs, cost):
     lifted = sum(run.outcome not in LEVEL for run in runs)
     if lifted:
         return True, f"the block lifts in {lifted} of {len(runs)} scenes", None
@@ -298,7 +319,7 @@ def _rocking(scene, runs, engine):
         return False, "the block slides and does not lift: a contact with this friction is enough", None
     moves = "block and base are one mass" if scene.base else "the block moves with the ground"
     why = f"the block lifts neither here nor in any neighbour: {moves}"
-    return False, f"{why}; an engine's contact model is not needed", engine
+    return False, f"{why}; an engine's contact model is not needed", cost
 
 
 def _sliding(scene, runs):
@@ -309,17 +330,17 @@ def _sliding(scene, runs):
     return False, f"the friction demand is at most {demand:.3g}, the friction {scene.friction:g}", None
 
 
-def _base(scene, own):
+def _base(scene, model_cpu):
     if scene.base is not None:
         return True, "the block stands on a base that moves", None
     if scene.motion is None:
         more, words = on_heavy_base(scene), "a heavy base"
     else:
         more, words = on_stiff_springs(scene), "a support of 50 Hz"
-    return False, f"the ground is rigid (tried: {words})", cpu_seconds(more) / own
+    return False, f"the ground is rigid (tried: {words})", cpu_seconds(more) / model_cpu
 
 
-def _vertical(scene, reference, own, error):
+def _vertical(scene, reference, model_cpu, error):
     if scene.motion is None or scene.motion.vertical is None:
         return False, "the scene has none", None
     level = scene.with_(motion=dataclasses.replace(scene.motion, vertical=None))
@@ -329,16 +350,16 @@ def _vertical(scene, reference, own, error):
         apart = max(apart, abs(without.peak_base_displacement / reference.peak_base_displacement - 1))
     same = without.outcome == reference.outcome and apart <= error
     why = f"without it the outcome is {without.outcome} and the peaks differ by {apart:.1e}"
-    return not same, why, own / cpu_seconds(level)
+    return not same, why, model_cpu / cpu_seconds(level)
 
 
 def _space(scene, engines):
-    """A free block of six degrees of freedom compared with the planar one, at one step."""
+    """The third dimension: a free block of six degrees of freedom, compared with the planar one at one step."""
     why = "nothing acts out of the plane"
     able = [] if scene.bearings is not None else [get_engine(name) for name in engines]
     # a free block takes no restitution
     scene = scene.with_(duration=simulate(scene, history=False).end.time, block={"restitution": None})
-    for engine, variant, kind in [(one, *each) for one in able for each in one.variants.items()]:
+    for engine, variant, kind in [(each, *item) for each in able for item in each.variants.items()]:
         if kind.free_block and kind.step:
             step = kind.default if kind.accuracy_parameter == kind.step else min(kind.levels)
             free, planar = (

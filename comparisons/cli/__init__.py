@@ -67,9 +67,9 @@ def _stop(number, _frame):
 
 
 def _watch(read):
-    if told := os.read(read, 1):
+    if received := os.read(read, 1):
         threading.Event().wait(GRACE_SECONDS)
-        _end(told[0])
+        _end(received[0])
 
 
 def _end(number):

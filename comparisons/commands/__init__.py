@@ -1,8 +1,7 @@
-"""The commands of ``rocking`` as a Typer application; each is imported only when it is asked for.
+"""The commands of ``rocking`` as a Typer application.
 
-Heavy modules (engines, scipy, matplotlib) are imported inside the functions, so that ``rocking --help`` is quick.
-
-The commands of ``rocking`` as a Typer application; each is imported only when it is asked for.
+The module of a command is imported only when the command is used. Heavy modules (engines, scipy, matplotlib) are
+imported inside the functions, so that ``rocking --help`` is quick.
 """
 
 import importlib
@@ -21,7 +20,7 @@ GROUPS = {
 }
 MODULES = {name: module for group in GROUPS.values() for name, module in group.items()}
 
-SHORT = 66  # characters of a command's line
+SHORT = 60  # characters of a command's line: none is cut in a terminal of 80 columns
 
 
 class _LazyGroup(TyperGroup):
@@ -31,11 +30,11 @@ class _LazyGroup(TyperGroup):
         return sorted(MODULES)
 
     def format_commands(self, ctx, formatter):
-        """The commands in their groups."""
+        """Write the commands in their groups."""
         for title, names in GROUPS.items():
             with formatter.section(title):
-                found = [(name, self.get_command(ctx, name)) for name in names]
-                formatter.write_dl([(name, one.get_short_help_str(SHORT)) for name, one in found])
+                listed = [(name, self.get_command(ctx, name)) for name in names]
+                formatter.write_dl([(name, command.get_short_help_str(SHORT)) for name, command in listed])
 
     def get_command(self, ctx, name):
         if name not in MODULES:

@@ -1,9 +1,4 @@
-"""``rocking choose``: the cheapest variant and level that are accurate enough for a scene.
-
-``rocking margin``: the margins of a scene against other limit states and another outcome.
-
-``rocking design``: bearings from target period, damping and displacement, or bearings for a scene.
-"""
+"""The commands that advise on a scene: ``rocking choose``, ``margin`` and ``design``."""
 
 import dataclasses
 import math
@@ -12,17 +7,27 @@ from typing import Annotated, Any, Literal
 
 import typer
 
+from analytic import simulate, simulate_many
+from analytic.bearing_scan import scan_bearings
 from analytic.errors import SceneError, SettingError
+from analytic.margins import LARGEST_SPAN, LIMIT_STATES, Contact, limit_states, margins
+from analytic.response import scene_warnings
+from analytic.rocking import design_bearings, properties
+from analytic.scene import Base, Bearings
+from analytic.scene_file import load_scene, shipped_scenes, with_bearings
 
 from ..execution.files import check_writable
-from ..execution.progress import bar, compile_kernels, spinner
+from ..execution.progress import bar, compile_kernels, say, spinner, stdout_to_stderr
 from ..execution.solving import (
     DEFINITION,
     OPTIONS,
     RATIO,
     BothSigns,
     Directions,
+    EngineNames,
+    JsonFile,
     Records,
+    SceneFile,
     Units,
     check_time_limit,
     end_with,
@@ -34,68 +39,58 @@ from ..execution.solving import (
     rows_of,
     scene_of,
 )
+from ..schemas import advice as forms
+from ..schemas.columns import percent
+from ..schemas.runs import Warned
 from .output import write_output
 
 
 def choose(
-    scene: Annotated[str, typer.Argument(help="Scene file (TOML), or the name of a shipped scene.")],
+    scene: SceneFile,
     error: Annotated[
-        float, typer.Option(help="Largest error; for outcomes the share of neighbours that differ.")
+        float, typer.Option(help="Largest permissible error; for outcomes, the share of neighbours that differ.")
     ] = 1e-3,
     criterion: Annotated[
         str | None,
         typer.Option(
             "--for",
-            help="restitution, tilt, displacement, slip or outcome. Default: restitution; tilt or slip of a block that "
-            "slides; where the block never hits, displacement of its base.",
+            help="What must be accurate: restitution, tilt, displacement, slip or outcome. Default: restitution; for a "
+            "block that slides, tilt or slip; for a block without impacts, displacement of the base.",
         ),
     ] = None,
-    engine: Annotated[
-        list[str] | None, typer.Option(help="An engine to try; may be repeated. Default: all that are installed.")
-    ] = None,
+    engine: EngineNames = None,
     plot: Annotated[
         str | None, typer.Option(metavar="FILE", help="Draw error over CPU time (.png, .svg or .pdf).")
     ] = None,
-    every_level: Annotated[bool, typer.Option("--all", help="Show every level that was run.")] = False,
-    json_file: Annotated[
-        str | None, typer.Option("--json", metavar="FILE", help="Write the choice; - prints it.")
-    ] = None,
+    every_level: Annotated[bool, typer.Option("--all", help="Show all levels that were run.")] = False,
+    json_file: JsonFile = None,
     time_limit: Annotated[
         float, typer.Option(metavar="SECONDS", help="A level whose run takes longer does not pass.")
     ] = 60.0,
 ) -> None:
-    """Find the cheapest variant and level that are accurate enough for a scene, and what need not be modelled.
+    """Find the cheapest engine variant that is accurate enough.
 
-    The variants are run at their levels on the scene and on neighbours of it, with start and motion scaled by up to
-    5 %, and compared with the analytic model; tilt and displacement only up to the sensitivity horizon. Status 1: none
-    passes.
+    Each variant is run at its levels on the scene and on neighbours of it, whose start and motion are scaled by up to
+    5 %. The runs are compared with the analytic model; tilt and displacement only up to the sensitivity horizon. The
+    command also lists what need not be modelled. Status 1: no level passes.
+
     Example: rocking choose caryatid-isolated --for displacement --error 1e-3
     """
-    from analytic.scene_file import load_scene
-
     from ..advice.choose import choose
     from ..advice.criteria import fitting
-    from ..execution.files import check_writable
-    from ..execution.progress import compile_kernels, say, stdout_to_stderr
     from ..plotting.choices import draw_choice, print_choice
 
     check_time_limit(time_limit)
     check_writable([json_file], picture=plot, inputs=[scene])
-    what = load_scene(scene)
+    loaded = load_scene(scene)
     compile_kernels()
     with in_file(scene):
-        shown = fitting(what) if criterion is None and engine else "restitution"
-    if shown != "restitution":
-        given = what.block.restitution is not None and shown == "tilt"
-        why = (
-            "it slides"
-            if what.friction is not None and shown in ("tilt", "slip")
-            else ("its restitution is given" if given else "it never has an impact: there is no restitution")
-        )
-        say(f"the block of {what.name}: {why}; the criterion is {shown}")
+        fitted = fitting(loaded) if criterion is None and engine else "restitution"
+    if fitted != "restitution":
+        say(f"the block of {loaded.name}: {_not_restitution(loaded, fitted)}; the criterion is {fitted}")
     with stdout_to_stderr(), in_file(scene):  # engines print on import
         choice = choose(
-            what,
+            loaded,
             error=error,
             criterion=criterion,
             engines=engine or None,
@@ -108,17 +103,29 @@ def choose(
         raise typer.Exit(1)
 
 
+def _not_restitution(scene, criterion):
+    """Why the default criterion of a scene is not the restitution."""
+    if scene.friction is not None and criterion in ("tilt", "slip"):
+        return "it slides"
+    if scene.block.restitution is not None and criterion == "tilt":
+        return "its restitution is given"
+    return "it never has an impact: there is no restitution"
+
+
 LEAST_SPAN = 0.1  # per cent
 STEPS = 400  # of a scan, from no change to the largest
 
 
 def margin(
-    scene: Annotated[str, typer.Argument(help="Scene file (TOML), or the name of a shipped scene.")],
+    scene: SceneFile,
     span: Annotated[
-        float, typer.Option(metavar="PERCENT", help="Largest change of a quantity; up to 900, ten times its value.")
+        float,
+        typer.Option(
+            metavar="PERCENT", help="Largest change of a quantity; at most 900, which is ten times its value."
+        ),
     ] = 20.0,
     tilt: Annotated[
-        float, typer.Option(metavar="SHARE", help="Limit of the peak tilt, as a share of the slenderness.")
+        float, typer.Option(metavar="SHARE", help="Limit state of the peak tilt, as a share of the slenderness.")
     ] = 0.5,
     plot: Annotated[
         str | None, typer.Option(metavar="FILE", help="Draw the outcomes over the changes (.png, .svg or .pdf).")
@@ -127,25 +134,20 @@ def margin(
     both_signs: BothSigns = False,
     directions: Directions = None,
     units: Units = None,
-    json_file: Annotated[
-        str | None, typer.Option("--json", metavar="FILE", help="Write the margins; - prints them.")
-    ] = None,
+    json_file: JsonFile = None,
 ) -> None:
-    """Find the changes of slenderness, restitution, motion, bearings ... at which the block lifts or overturns.
+    """Find how far a scene is from uplift and overturning.
 
-    Two further limit states are a peak tilt above --tilt, and a base displacement beyond the x_max of the bearings.
-    One quantity is changed at a time, in steps of a four-hundredth of the span, in the analytic model. Changes that
-    give no valid scene (a restitution above 1, ka below kb) or leave the model's validity end the range. The vertical
-    stiffness of bearings is taken as infinite. Status 1: the model failed on the scene, or under one of its motions.
+    The command changes one quantity at a time (slenderness, restitution, motion, bearings ...) in the analytic model,
+    and finds the changes at which the block lifts or overturns. Two further limit states are a peak tilt above --tilt
+    and a base displacement beyond the x_max of the bearings.
+
+    The steps are 1/400 of the span. A range ends where a change gives no valid scene (a restitution above 1, ka below
+    kb) or the model is no longer valid. Bearings are taken as rigid in the vertical direction. Status 1: the model
+    failed on the scene or under one of its motions.
 
     Example: rocking margin caryatid-isolated --plot margins.svg
     """
-    from analytic.errors import SettingError
-    from analytic.margins import LARGEST_SPAN, Contact, margins
-    from analytic.response import scene_warnings
-    from analytic.scene_file import load_scene
-
-    from ..execution.files import check_writable
     from ..plotting.margins import draw_margins, named, print_margins, print_motions
 
     if not LEAST_SPAN <= span <= 100 * LARGEST_SPAN:
@@ -153,50 +155,44 @@ def margin(
     if not 0 < tilt <= 1:
         raise SettingError(f"--tilt {tilt:g}: give a share of the slenderness, above 0 and up to 1")
     check_writable([json_file], picture=plot, inputs=[scene])
-    what = load_scene(scene)
-    groups, left = other_motions(what, records, both_signs, directions, units)
+    loaded = load_scene(scene)
+    groups, left = other_motions(loaded, records, both_signs, directions, units)
     compile_kernels()
     scan: dict[str, Any] = {"tilt": tilt, "span": span / 100, "step": span / 100 / STEPS}
-    with spinner(f"{what.name}: margins") as tell, in_file(scene):
-        nearest = margins(what, **scan, progress=lambda name: tell(f"{what.name}: {name}"))
-        response = _decided(what)
-    contact, warnings = Contact.of(what, response), (*scene_warnings(what), *response.warnings)
-    rows = rows_of(what, groups, _decided, lambda scene: _changes(scene, scan))
+    with spinner(f"{loaded.name}: margins") as tell, in_file(scene):
+        nearest = margins(loaded, **scan, progress=lambda name: tell(f"{loaded.name}: {name}"))
+        response = _decided(loaded)
+    contact, warnings = Contact.of(loaded, response), (*scene_warnings(loaded), *response.warnings)
+    rows = rows_of(loaded, groups, _decided, lambda scene: _changes(scene, scan))
 
     def show():
-        print_margins(what, nearest, contact, span, tilt, warnings)
-        print_motions(what, [{**row, "changes": named(row, tilt)} for row in rows], left)
+        print_margins(loaded, nearest, contact, span, tilt, warnings)
+        print_motions(loaded, [{**row, "changes": named(row, tilt)} for row in rows], left)
 
-    form = _margin_form(what, nearest, contact, warnings, rows, left, span, tilt)
-    write_output({json_file: form}, show, plot, lambda: draw_margins(what, nearest, tilt))
+    form = _margin_form(loaded, nearest, contact, warnings, rows, left, span, tilt)
+    write_output({json_file: form}, show, plot, lambda: draw_margins(loaded, nearest, tilt))
     end_with(rows, response)
 
 
 def _decided(scene):
-    """The model's run until the outcome is decided."""
-    from analytic import simulate
-
+    """The response of the analytic model, run until the outcome is decided."""
     return simulate(scene.with_(duration=None), history=False)
 
 
 def _margin_form(scene, nearest, contact, warnings, rows, left, span, tilt):
-    """Content of the JSON file."""
-    from analytic.margins import limit_states
-
+    """The content of the JSON file of `margin`."""
     from ..plotting.margins import headline
-    from ..schemas.advice import Contact, Margin, Margins, MotionMargin
-    from ..schemas.runs import Warned
 
-    return Margins(
+    return forms.Margins(
         scene=scene.name,
         outcome=nearest[0].outcome,
         tilt=tilt,
         span=span / 100,
         reached=_reached(nearest[0]),
-        margins=[Margin.of(margin, limit_states(scene)) for margin in nearest],
-        contact=Contact(**dataclasses.asdict(contact)),
-        warnings=[Warned(**dataclasses.asdict(one)) for one in warnings],
-        motions=[MotionMargin(**row) for row in rows],
+        margins=[forms.Margin.of(margin, limit_states(scene)) for margin in nearest],
+        contact=forms.Contact(**dataclasses.asdict(contact)),
+        warnings=[Warned(**dataclasses.asdict(warning)) for warning in warnings],
+        motions=[forms.MotionMargin(**row) for row in rows],
         left_out=left,
         headline=headline(rows, left),
     )
@@ -204,18 +200,14 @@ def _margin_form(scene, nearest, contact, warnings, rows, left, span, tilt):
 
 def _reached(margin):
     """The limit states that the unchanged scene reaches."""
-    from analytic.margins import LIMIT_STATES
-
     return [state for state in LIMIT_STATES if margin.reached(state)]
 
 
 def _changes(scene, scan):
-    """The limit states that a scene reaches, and the change of its motion that reaches each."""
-    from analytic.margins import limit_states, margins
-
-    (found,) = margins(scene, **scan, only=("motion",))
-    changes = {state: found.change(state) for state in limit_states(scene)}
-    return {"reached": _reached(found), "changes": changes, "interleaved": found.interleaved}
+    """The limit states that a scene reaches, and the change of its motion at which each is reached."""
+    (margin,) = margins(scene, **scan, only=("motion",))
+    changes = {state: margin.change(state) for state in limit_states(scene)}
+    return {"reached": _reached(margin), "changes": changes, "interleaved": margin.interleaved}
 
 
 LEAST, SOFTEST = "least-stroke", "softest"
@@ -228,17 +220,20 @@ OF_SCENE = {  # names in errors of the search, and their options
 
 def design(
     scene: Annotated[
-        str | None, typer.Argument(help="Scene file for which bearings are found. Without one, give four targets.")
+        str | None, typer.Argument(help="Scene file (TOML) to find bearings for. Without it, give the four targets.")
     ] = None,
-    stroke: Annotated[float | None, typer.Option(help="Scene: largest displacement of the base [m].")] = None,
-    base_mass: Annotated[
-        float | None, typer.Option(help="Scene of a block on the ground: mass of the base to add [kg].")
+    stroke: Annotated[
+        float | None, typer.Option(help="Scene: largest permissible displacement of the base [m].")
     ] = None,
+    base_mass: Annotated[float | None, typer.Option(help="Scene without a base: mass of the base to add [kg].")] = None,
     tilt: Annotated[
-        float, typer.Option(help="Scene: largest peak tilt over the slenderness; 0: the block must not lift.")
+        float,
+        typer.Option(
+            help="Scene: largest permissible peak tilt, as a share of the slenderness; 0: the block must not lift."
+        ),
     ] = 0.0,
     write: Annotated[
-        Literal["least-stroke", "softest"] | None, typer.Option(help="Write these bearings into the scene file.")
+        Literal["least-stroke", "softest"] | None, typer.Option(help="Scene: write these bearings into the scene file.")
     ] = None,
     plot: Annotated[
         str | None, typer.Option(metavar="FILE", help="Scene: draw the suitable bearings (.png, .svg or .pdf).")
@@ -250,60 +245,60 @@ def design(
     period: Annotated[float | None, typer.Option(help="Target: secant period at --xmax [s].")] = None,
     damping: Annotated[float | None, typer.Option(help="Target: damping ratio at --xmax, e.g. 0.30.")] = None,
     xmax: Annotated[float | None, typer.Option(help="Target: design displacement [m].")] = None,
-    mass: Annotated[float | None, typer.Option(help="Target: mass of block and base together [kg].")] = None,
+    mass: Annotated[float | None, typer.Option(help="Target: total mass of block and base [kg].")] = None,
     count: Annotated[int, typer.Option(help="Number of bearings.")] = 4,
     ratio: Annotated[float, typer.Option(help=RATIO)] = 10.0,
     definition: Annotated[str, typer.Option(help=DEFINITION)] = "equivalent",
-    json_file: Annotated[
-        str | None, typer.Option("--json", metavar="FILE", help="Write the design; - prints it.")
-    ] = None,
+    json_file: JsonFile = None,
 ) -> None:
-    """Design bearings: those with which a scene's block does not lift within a stroke, or constants from targets.
+    """Find suitable bearings, or compute bearing constants.
 
-    Where the scene gives a friction, the block must not slide on its base, either.
+    With a scene: find bearings on which the block does not lift and the base stays within the stroke. If the scene
+    gives a friction, the block must not slide on its base either. For a block on the ground, also give the mass of a
+    base; --write adds it to the file. Status 1: on the bearings found, the model failed under a motion.
 
-    For a block on the ground, give the mass of a base, which --write adds to the file, too. Status 1: on the bearings
-    found, the model failed under a motion.
+    Without a scene: compute the constants of the bearings from a target period, damping, displacement and mass.
+
     Example: rocking design bust.toml --stroke 0.25 --plot bearings.svg --write least-stroke
+
     Example: rocking design --period 2 --damping 0.30 --definition paper --xmax 0.30 --mass 3384.05
     """
     targets = {"period": period, "damping": damping, "xmax": xmax, "mass": mass}
     given = [f"--{name}" for name, value in targets.items() if value is not None]
-    made: dict[str, Any] = {"count": count, "stiffness_ratio": ratio, "definition": definition}
+    bearings: dict[str, Any] = {"count": count, "stiffness_ratio": ratio, "definition": definition}
     if scene is None:
         of_scene = {"--stroke": stroke, "--write": write, "--plot": plot, "--records": records, "--tilt": tilt or None}
         of_scene["--base-mass"] = base_mass
-        wrong = [name for name, value in of_scene.items() if value is not None]
-        if wrong:
-            raise SettingError(f"{wrong[0]}: belongs to a scene; rocking design SCENE --stroke METRES")
-        if len(given) < len(targets):
-            missing = next(f"--{name}" for name, value in targets.items() if value is None)
-            raise SettingError(f"{missing} is missing; give all four targets, or a scene and --stroke")
-        return _by_targets(targets, made, json_file)
+        return _by_targets(targets, bearings, of_scene, json_file)
     if given:
         raise SettingError(f"{given[0]}: a target, which does not go with a scene; give --stroke only")
     if stroke is None:
         raise SettingError("--stroke is missing: give the largest displacement of the base [m]")
     many = {"records": records, "both_signs": both_signs, "directions": directions, "units": units}
-    _for_scene(scene, base_mass, stroke, tilt, made, many, write, plot, json_file)
+    _for_scene(scene, base_mass, stroke, tilt, bearings, many, write, plot, json_file)
 
 
-def _by_targets(targets, made, json_file):
-    """Constants for four targets."""
+def _by_targets(targets, options, of_scene, json_file):
+    """Compute the constants of bearings that meet the four targets; print and write them.
+
+    of_scene: {option: value} of the options that belong to a scene, None where they are not given.
+    """
     from rich.text import Text
 
-    from analytic.rocking import design_bearings, properties
-
     from ..plotting.terminal import echo
-    from ..schemas.advice import Constants, Design, Properties
-    from ..schemas.columns import percent
 
+    wrong = [name for name, value in of_scene.items() if value is not None]
+    if wrong:
+        raise SettingError(f"{wrong[0]}: belongs to a scene; rocking design SCENE --stroke METRES")
+    missing = [name for name, value in targets.items() if value is None]
+    if missing:
+        raise SettingError(f"--{missing[0]} is missing; give all four targets, or a scene and --stroke")
     check_writable([json_file])
     mass, xmax = targets["mass"], targets["xmax"]
     with named_by_options(OPTIONS):
-        bearings = design_bearings(mass, targets["period"], targets["damping"], xmax, **made)
+        bearings = design_bearings(mass, targets["period"], targets["damping"], xmax, **options)
     back = properties(bearings, mass, xmax)
-    constants, given = Constants(**bearings.model_dump()), Properties(**dataclasses.asdict(back))
+    constants, given = forms.Constants(**bearings.model_dump()), forms.Properties(**dataclasses.asdict(back))
     lines = (
         Text.from_markup(
             f"[bold]ka[/bold] = {bearings.ka:.5g} N/m   [bold]kb[/bold] = {bearings.kb:.5g} N/m   "
@@ -314,15 +309,11 @@ def _by_targets(targets, made, json_file):
         f"{percent(back.damping_equivalent, 4)} as W_D/(4 pi E_s); "
         f"loss {back.cycle_loss:.5g} J a cycle and bearing",
     )
-    write_output({json_file: Design(bearings=constants, properties=given)}, lambda: echo(*lines))
+    write_output({json_file: forms.Design(bearings=constants, properties=given)}, lambda: echo(*lines))
 
 
-def _for_scene(place, base_mass, stroke, tilt, made, many, write, plot, json_file):
-    """Find suitable bearings by a scan; show, draw and write them."""
-    from analytic.bearing_scan import scan_bearings
-    from analytic.response import scene_warnings
-    from analytic.scene_file import load_scene, shipped_scenes
-
+def _for_scene(place, base_mass, stroke, tilt, options, many, write, plot, json_file):
+    """Find suitable bearings of a scene by a scan; print, draw and write them."""
     from ..plotting.margins import draw_bearings, nothing_holds, print_bearings
 
     check_writable([json_file], picture=plot, inputs=[place])
@@ -333,7 +324,7 @@ def _for_scene(place, base_mass, stroke, tilt, made, many, write, plot, json_fil
     motions = [motion for group in groups.values() for motion in group]
     compile_kernels(any(motion.vertical for motion in motions))
     with bar(f"{scene.name}: bearings") as progress, named_by_options(OF_SCENE), in_file(place):
-        scan = scan_bearings(scene, motions, stroke, tilt=tilt, **made, progress=progress)
+        scan = scan_bearings(scene, motions, stroke, tilt=tilt, **options, progress=progress)
     points = {LEAST: scan.least_stroke, SOFTEST: scan.softest}  # (period, damping), None without any
     chosen = {name: _chosen(scene, scan, point, groups, left) for name, point in points.items() if point is not None}
     nothing = "" if chosen else nothing_holds(scene, scan, stroke, tilt, motions)
@@ -352,13 +343,11 @@ def _for_scene(place, base_mass, stroke, tilt, made, many, write, plot, json_fil
     )
     if write and json_file != "-":
         print(f"written into {place}: {write}")
-    end_with([row for one in chosen.values() for row in one["motions"]])
+    end_with([row for proposal in chosen.values() for row in proposal["motions"]])
 
 
 def _on_base(scene, mass, place):
-    """The scene with a base under its block; mass [kg]: of the base of a scene without one."""
-    from analytic.scene import Base
-
+    """The scene, with a base of this mass [kg] under its block if it has none."""
     if mass is None and scene.base is None:
         raise SettingError(
             f"--base-mass is missing: in {place} the block stands on the ground; give its base's mass [kg]"
@@ -370,16 +359,13 @@ def _on_base(scene, mass, place):
 
 
 def _chosen(scene, scan, point, groups, left=()):
-    """The bearings at a point, rounded as in a file, and what each motion does on them, from new runs."""
-    from analytic import simulate
-    from analytic.scene import Bearings
-
+    """The bearings at a point of the scan, rounded as in a file, and the behaviour on them under each motion."""
     from ..plotting.margins import LIFTED, headline
 
     exact = scan.bearings(*point)
     bearings = Bearings(**{**exact.model_dump(), **{name: float(f"{exact.given(name):.6g}") for name in WRITTEN}})
     borne = scene.with_(bearings=bearings, duration=None)
-    rows = rows_of(borne, groups, lambda one: simulate(one, history=False), _demand)
+    rows = rows_of(borne, groups, lambda moved: simulate(moved, history=False), _demand)
     demand, worst = max(row.pop("demand", math.inf) for row in rows), max(rows, key=lambda row: row["stroke"])
     return {
         "period": point[0],
@@ -398,21 +384,22 @@ def _chosen(scene, scan, point, groups, left=()):
 
 
 def _demand(scene):
-    """The friction demand of a block that does not slide, as the search has it."""
-    from analytic import simulate_many
-
+    """The friction demand of a block that does not slide, computed as in the search."""
     return {"demand": float(simulate_many([scene], contact=True).friction_demand[0])}
 
 
 def _written(place, bearings, base):
-    """The text of the scene file with these bearings, and a base if it has none; an error if the file has its bearings
-    in another form."""
-    from analytic.scene_file import with_bearings
+    """The text of the scene file with these bearings, and with this base if it has none.
 
+    Raises
+    ------
+    SettingError
+        The file holds its bearings in another form than a table.
+    """
     text = with_bearings(Path(place).read_text(encoding="utf-8-sig"), bearings, base)
     try:
-        found = scene_of(text, place)
-        same = found.bearings == bearings and base in (None, found.base)
+        read_back = scene_of(text, place)
+        same = read_back.bearings == bearings and base in (None, read_back.base)
     except SceneError:
         same = False
     if not same:
@@ -421,23 +408,20 @@ def _written(place, bearings, base):
 
 
 def _design_form(scene, stroke, tilt, motions, left, scan, chosen, warnings):
-    """Content of the JSON file."""
-    from ..schemas.advice import BearingProposal, BearingSearch, Constants
-    from ..schemas.runs import Warned
-
-    return BearingSearch(
+    """The content of the JSON file of `design` for a scene."""
+    return forms.BearingSearch(
         scene=scene.name,
         base_mass=scene.base.mass,
         stroke=stroke,
         tilt=tilt,
         motions=motions,
         left_out=left,
-        warnings=[Warned(**dataclasses.asdict(one)) for one in warnings],
+        warnings=[Warned(**dataclasses.asdict(warning)) for warning in warnings],
         periods=scan.periods.tolist(),
         dampings=scan.dampings.tolist(),
         holds=(scan.demand <= 1).tolist(),
         chosen={
-            name: BearingProposal(**{**one, "bearings": Constants(**one["bearings"].model_dump())})
-            for name, one in chosen.items()
+            name: forms.BearingProposal(**proposal | {"bearings": forms.Constants(**proposal["bearings"].model_dump())})
+            for name, proposal in chosen.items()
         },
     )

@@ -1,46 +1,52 @@
-"""``rocking lessons``: teaching material.
-
-``rocking sheet``: problems for other codes.
-"""
+"""The commands ``rocking lessons`` (teaching material) and ``rocking sheet`` (problems for other codes)."""
 
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from ..execution.files import check_folder, check_writable
+from ..execution.progress import bar, compile_kernels, stdout_to_stderr
+from ..execution.solving import JsonFile
+from ..schemas.runs import Asked, Problem, Sheet
 from .output import write_output
 
 app = typer.Typer(
     add_completion=False,
     rich_markup_mode=None,
-    help="Teaching material: eight lessons as notebooks, and as pages that need no network.\n\n"
+    help="List, open or export the eight lessons.\n\n"
+    "A lesson opens as a notebook, or as a page that needs no network. Without a command the lessons are listed.\n\n"
     "Example: rocking lessons open corner",
 )
 
 
 @app.callback(invoke_without_command=True)
 def _listed(context: typer.Context) -> None:
-    """Eight lessons on the rocking block; without a command they are listed."""
+    """List the lessons if no command is given."""
     if context.invoked_subcommand is not None:
         return
     from ..lessons.topics import lessons
     from ..plotting.terminal import echo, grid
 
     heads = ["name", "lesson", "minutes", "needs"]
-    rows = [[one.name, f"{one.number}. {one.title}", str(one.minutes), one.needs] for one in lessons()]
+    rows = [
+        [lesson.name, f"{lesson.number}. {lesson.title}", str(lesson.minutes), lesson.needs] for lesson in lessons()
+    ]
     echo(grid(heads, rows, left=heads, wraps=heads))
     echo("rocking lessons open NAME: as a notebook;  rocking lessons export: pages to open by double click")
 
 
 @app.command(name="open")
 def open_(
-    name: Annotated[str, typer.Argument(help="Lesson: see rocking lessons.")],
+    name: Annotated[str, typer.Argument(help="Name of the lesson (`rocking lessons` lists them).")],
     to: Annotated[
-        str | None, typer.Option(metavar="FOLDER", help="Folder in which the notebook, with your work, is kept.")
+        str | None, typer.Option(metavar="FOLDER", help="Folder in which the notebook and your work are kept.")
     ] = None,
 ) -> None:
-    """Open a lesson as a notebook in the browser, a copy whose code can be changed. Ctrl-C ends it."""
-    from ..execution.files import check_folder
+    """Open a lesson as a notebook in the browser.
+
+    It is a copy whose code can be changed. Ctrl-C ends it.
+    """
     from ..lessons.notebook import open_notebook
 
     if to is not None:
@@ -50,9 +56,11 @@ def open_(
 
 @app.command()
 def export(output: Annotated[str, typer.Option(metavar="DIR", help="Folder for the pages.")] = "lessons") -> None:
-    """Write the pages: playground, lessons, derivation, teacher's page with figures. They open by double click."""
-    from ..execution.files import check_folder
-    from ..execution.progress import bar, stdout_to_stderr
+    """Write the lessons as web pages.
+
+    The pages are the playground, the lessons, the derivation and a teacher's page with figures. They open by double
+    click.
+    """
     from ..lessons.export import export_pages
     from ..lessons.topics import NAMES
 
@@ -64,18 +72,15 @@ def export(output: Annotated[str, typer.Option(metavar="DIR", help="Folder for t
 
 def sheet(
     output: Annotated[str, typer.Option(metavar="DIR", help="Folder for the pages.")] = "sheet",
-    json_file: Annotated[
-        str | None, typer.Option("--json", metavar="FILE", help="Write the answers; - prints them.")
-    ] = None,
+    json_file: JsonFile = None,
 ) -> None:
-    """Write the problem sheet: eight scenes as equations and numbers, with reference answers and tolerances.
+    """Write eight test problems with reference answers.
 
-    A scene is a page in HTML and Markdown. The folder also holds the input record, and all answers in reference.csv.
+    Each problem is a scene in equations and numbers, with tolerances, as a page in HTML and Markdown. The folder also
+    holds the input record, and all answers in reference.csv.
+
     Example: rocking sheet --output problems
     """
-    from ..execution.files import check_folder, check_writable
-    from ..execution.progress import compile_kernels
-    from ..schemas.runs import Asked, Problem, Sheet
     from ..sheet.pages import PROBLEMS, UNITS, VERSION, write_sheet
 
     check_folder(output)
@@ -84,16 +89,16 @@ def sheet(
     paths = write_sheet(Path(output))
     problems = []
     for problem in PROBLEMS:
-        asked = [
+        quantities = [
             Asked(
-                quantity=one.name,
-                unit=UNITS[one.kind],
-                meaning=one.words,
-                answer=problem.answers[one.name],
-                tolerance=problem.tolerance(one),
+                quantity=quantity.name,
+                unit=UNITS[quantity.kind],
+                meaning=quantity.words,
+                answer=problem.answers[quantity.name],
+                tolerance=problem.tolerance(quantity),
             )
-            for one in problem.quantities
+            for quantity in problem.quantities
         ]
-        problems.append(Problem(scene=problem.name, title=problem.title, quantities=asked))
+        problems.append(Problem(scene=problem.name, title=problem.title, quantities=quantities))
     form = Sheet(sheet=VERSION, files=[str(path) for path in paths], problems=problems)
     write_output({json_file: form}, lambda: print(*paths, sep="\n"))

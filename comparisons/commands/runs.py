@@ -1,11 +1,4 @@
-"""``rocking run``: one scene, one solver.
-
-``rocking compare``: all solvers on one scene.
-
-``rocking engines``: the engines that can be used here, and their variants.
-
-``rocking script``: a scene as a stand-alone script in plain calls of an engine.
-"""
+"""The commands that run one scene: ``rocking run``, ``compare`` and ``script``; and ``rocking engines``."""
 
 import io
 from dataclasses import replace
@@ -14,20 +7,30 @@ from typing import Annotated
 
 import typer
 
-from ..execution.files import readable
-from ..execution.progress import say, spinner
+from analytic.errors import EngineNotInstalled, SceneError, SettingError
+from analytic.response import scene_warnings
+from analytic.scene_file import load_scene
+from engines import BROKEN, ENGINES, available_engines, get_engine, guard, missing_words
+from engines.loads import unkept_friction
+
+from ..execution.files import check_writable, readable, write_text
+from ..execution.progress import compile_kernels, say, spinner, stdout_to_stderr
 from ..execution.solving import (
     ANALYTIC,
     TIME_LIMIT,
     TIME_LIMIT_HELP,
     BothSigns,
     Directions,
+    EngineNames,
+    JsonFile,
     Records,
+    SceneFile,
     Units,
     check_solver,
     check_time_limit,
     end_with,
     in_file,
+    named_engines,
     near_motion,
     other_motions,
     parse_settings,
@@ -37,153 +40,145 @@ from ..execution.solving import (
     simulate,
     with_near,
 )
+from ..schemas.runs import Comparison, MotionRun, Run, Sensitivity
 from .output import write_output
 
 
 def run(
-    scene: Annotated[str, typer.Argument(help="Scene file (TOML), or the name of a shipped scene.")],
-    engine: Annotated[str, typer.Option(help="analytic, or an engine; see `rocking engines`.")] = "analytic",
-    variant: Annotated[str | None, typer.Option(help="Variant of the engine; see `rocking engines`.")] = None,
+    scene: SceneFile,
+    engine: Annotated[
+        str, typer.Option(help="Solver: analytic, or an engine (`rocking engines` lists them).")
+    ] = "analytic",
+    variant: Annotated[str | None, typer.Option(help="Variant of the engine. Default: its main one.")] = None,
     settings: Annotated[
-        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="A setting of the solver; may be repeated.")
+        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Setting of the solver; may be repeated.")
     ] = None,
     records: Records = None,
     both_signs: BothSigns = False,
     directions: Directions = None,
     units: Units = None,
-    json_file: Annotated[
-        str | None, typer.Option("--json", metavar="FILE", help="Write the result; - prints it.")
-    ] = None,
-    csv: Annotated[str | None, typer.Option(metavar="FILE", help="Write the history; - prints it.")] = None,
+    json_file: JsonFile = None,
+    csv: Annotated[str | None, typer.Option(metavar="FILE", help="Write the history as CSV; - prints it.")] = None,
     plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw the history (.png, .svg or .pdf).")] = None,
     time_limit: Annotated[float, typer.Option(metavar="SECONDS", help=TIME_LIMIT_HELP)] = TIME_LIMIT,
 ) -> None:
-    """Simulate one scene. Status 1: the solver failed on it, or under one of its motions; 2: the scene, a setting or a
-    file is wrong.
+    """Simulate one scene.
+
+    The result is compared with the analytic model. Status 1: the solver failed on the scene or under one of its
+    motions. Status 2: the scene, a setting or a file is wrong.
 
     Example: rocking run caryatid-isolated --engine exudyn --plot isolated.svg
     """
-    from analytic.response import scene_warnings
-    from analytic.scene_file import load_scene
-
-    from ..execution.files import check_writable
-    from ..plotting.margins import headline, print_motions
+    from ..plotting.margins import print_motions
     from ..plotting.terminal import show, summary
-    from ..schemas.runs import MotionRun, Run
 
     check_time_limit(time_limit)
     check_writable([json_file, csv], picture=plot, inputs=[scene])
     check_solver(engine)
-    what, chosen = load_scene(scene), parse_settings(settings or [])
-    about, (groups, left) = scene_warnings(what), other_motions(what, records, both_signs, directions, units)
+    loaded, solver = load_scene(scene), (engine, variant, parse_settings(settings or []))
+    about, (groups, left) = scene_warnings(loaded), other_motions(loaded, records, both_signs, directions, units)
     with in_file(scene):
-        response = simulate(
-            what,
-            engine,
-            variant,
-            chosen,
-            history=bool(csv or plot),
-            time_limit=time_limit,
-            words=f"{what.name}: {engine}",
-            compare=True,
-        )
+        words = f"{loaded.name}: {engine}"
+        response = simulate(loaded, *solver, bool(csv or plot), time_limit, words, compare=True)
     rows = rows_of(
-        what.with_(duration=None),  # it is of the scene's own motion
+        loaded.with_(duration=None),  # it is of the scene's own motion
         groups,
-        lambda one: with_near(one, simulate(one, engine, variant, chosen, False, time_limit)),
+        lambda moved: with_near(moved, simulate(moved, *solver, False, time_limit)),
     )
-    response = replace(response, warnings=(*response.warnings, *near_motion(what)))
+    response = replace(response, warnings=(*response.warnings, *near_motion(loaded)))
     if response.history is None and (csv or plot):
         say("there is no history to write")
         csv = plot = None
-    history = io.StringIO()
-    if csv and response.history is not None:
-        response.history.to_csv(history)
 
     def tell():
-        show(summary(what, response), [response], about)
-        print_motions(what, rows, left)
+        show(summary(loaded, response), [response], about)
+        print_motions(loaded, rows, left)
 
-    def draw():
-        from ..plotting.plots import draw_histories
-
-        return draw_histories(what, [response])
-
-    told = replace(response, warnings=(*about, *response.warnings))
-    form = Run(
-        **told.to_json(), motions=[MotionRun(**row) for row in rows], left_out=left, headline=headline(rows, left)
-    )
     print_failures([response])
-    write_output({json_file: form, csv: history.getvalue()}, tell, plot, draw)
+    results = {json_file: _run_form(response, about, rows, left), csv: _history_text(response) if csv else ""}
+    write_output(results, tell, plot, lambda: _drawn(loaded, [response]))
     end_with(rows, response)
 
 
+def _run_form(response, about, rows, left):
+    """The content of the JSON file of `run`."""
+    from ..plotting.margins import headline
+
+    values = replace(response, warnings=(*about, *response.warnings)).to_json()
+    return Run(**values, motions=[MotionRun(**row) for row in rows], left_out=left, headline=headline(rows, left))
+
+
+def _history_text(response):
+    """The history as CSV."""
+    text = io.StringIO()
+    response.history.to_csv(text)
+    return text.getvalue()
+
+
+def _drawn(scene, responses, horizon=None):
+    """The figure of the histories. matplotlib is imported only here."""
+    from ..plotting.plots import draw_histories
+
+    return draw_histories(scene, responses, horizon)
+
+
 def compare(
-    scene: Annotated[str, typer.Argument(help="Scene file (TOML), or the name of a shipped scene.")],
-    engine: Annotated[
-        list[str] | None, typer.Option(help="An engine to compare; may be repeated. Default: all that are installed.")
+    scene: SceneFile,
+    engine: EngineNames = None,
+    plot: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Overlay the histories (.png, .svg or .pdf).")
     ] = None,
-    plot: Annotated[str | None, typer.Option(metavar="FILE", help="Overlay the histories (.png, .svg, .pdf).")] = None,
-    json_file: Annotated[
-        str | None, typer.Option("--json", metavar="FILE", help="Write the results; - prints them.")
-    ] = None,
+    json_file: JsonFile = None,
     time_limit: Annotated[float, typer.Option(metavar="SECONDS", help=TIME_LIMIT_HELP)] = TIME_LIMIT,
 ) -> None:
-    """Simulate one scene with the analytic model and the engines: outcomes, errors and CPU times.
+    """Compare the engines with the analytic model on one scene.
 
-    If an engine fails, only its row is lost. Status 1: the analytic model failed.
+    The table shows outcomes, errors and CPU times. If an engine fails, only its row is lost. Status 1: the analytic
+    model failed.
+
     Example: rocking compare free-rocking-rigid --plot compared.svg
     """
-    from analytic.response import scene_warnings
-    from analytic.scene_file import load_scene
-
-    from ..execution.files import check_writable
     from ..plotting.terminal import comparison, show
 
     check_time_limit(time_limit)
     check_writable([json_file], picture=plot, inputs=[scene])
     for name in engine or ():
         check_solver(name)
-    what = load_scene(scene)
+    loaded = load_scene(scene)
     with in_file(scene):
-        first, *others = _responses(what, engine, time_limit)
-    responses = [replace(first, warnings=(*first.warnings, *near_motion(what))), *others]
-    horizons = {} if responses[0].failure else _sensitivity(what, responses, time_limit)
+        first, *others = _responses(loaded, engine, time_limit)
+    responses = [replace(first, warnings=(*first.warnings, *near_motion(loaded))), *others]
+    horizons = {} if responses[0].failure else _sensitivity(loaded, responses, time_limit)
     horizon = min((each.horizon for each in horizons.values() if each.parts), default=None)
-    drawn = [response for response in responses if response.history]
-    if plot and not drawn:
+    with_history = [response for response in responses if response.history]
+    if plot and not with_history:
         say("there is no history to draw")
         plot = None
-
-    def draw():
-        from ..plotting.plots import draw_histories
-
-        return draw_histories(what, drawn, horizon)
-
     print_failures(responses)
-    about = scene_warnings(what)
-    told = [replace(responses[0], warnings=(*about, *responses[0].warnings)), *responses[1:]]
-    form = _form(what, told, horizons, horizon)
-    write_output({json_file: form}, lambda: show(comparison(what, responses, horizons), responses, about), plot, draw)
+    about = scene_warnings(loaded)
+    warned = [replace(responses[0], warnings=(*about, *responses[0].warnings)), *responses[1:]]
+    write_output(
+        {json_file: _comparison_form(loaded, warned, horizons, horizon)},
+        lambda: show(comparison(loaded, responses, horizons), responses, about),
+        plot,
+        lambda: _drawn(loaded, with_history, horizon),
+    )
     if responses[0].failure:
         raise typer.Exit(1)
 
 
-def _responses(scene, asked, time_limit):
-    """Responses of the analytic model and the engines asked for; by default of all that are installed."""
-    from analytic.errors import EngineNotInstalled, SceneError
-    from engines import ENGINES, get_engine
-
-    names = [ANALYTIC, *(name for name in dict.fromkeys(asked or ENGINES) if name != ANALYTIC)]
+def _responses(scene, wanted, time_limit):
+    """The responses of the analytic model and of the engines named in `wanted`; of all installed engines without it."""
+    names = [ANALYTIC, *(name for name in dict.fromkeys(wanted or ENGINES) if name != ANALYTIC)]
     responses = []
     for number, name in enumerate(names, 1):
         words = f"{scene.name}: {name} ({number} of {len(names)})"
         try:
             responses.append(simulate(scene, name, time_limit=time_limit, words=words, compare=True))
         except EngineNotInstalled:
-            if asked:
+            if wanted:
                 raise
-        except SceneError as error:  # not possible in this engine, such as a given restitution: only its row is lost
+        except SceneError as error:  # the engine cannot run it (such as a given restitution): only its row is lost
             if name == ANALYTIC:
                 raise
             responses.append(refused(scene, error, engine=name, variant=get_engine(name).default_variant))
@@ -191,21 +186,17 @@ def _responses(scene, asked, time_limit):
 
 
 def _sensitivity(scene, responses, time_limit):
-    """`_horizons` in a process of its own; none, with a message, if that does not end."""
-    from engines.guard import run_apart
-
+    """`_horizons` in a process of its own. If that fails, a message says so and the result is empty."""
     words = spinner(f"{scene.name}: sensitivity horizons")
-    horizons, failure = run_apart(_horizons, scene, responses, time_limit=time_limit, meanwhile=words)
+    horizons, failure = guard.run_apart(_horizons, scene, responses, time_limit=time_limit, meanwhile=words)
     if not failure:
         return horizons
     say(f"no sensitivity horizons: {failure.reason}. {readable(failure.message.partition(chr(10))[0])}")
     return {}
 
 
-def _form(scene, responses, horizons, horizon):
-    """Content of the JSON file."""
-    from ..schemas.runs import Comparison, Run, Sensitivity
-
+def _comparison_form(scene, responses, horizons, horizon):
+    """The content of the JSON file of `compare`."""
     return Comparison(
         scene=scene.name,
         sensitivity_horizon=horizon,
@@ -218,7 +209,7 @@ def _form(scene, responses, horizons, horizon):
 
 
 def _horizons(scene, responses):
-    """{solver: its `Horizon`} of all runs that did not fail; the first is the reference."""
+    """{solver: its `Horizon`} of all runs that did not fail, compared with the first response."""
     from ..metrics.errors import solver_horizon
 
     return {
@@ -228,22 +219,21 @@ def _horizons(scene, responses):
     }
 
 
-def engines(name: Annotated[str | None, typer.Argument(help="Engine to describe in full.")] = None) -> None:
-    """List the engines and their variants: kind, what the engine computes, and what our adapter imposes on it.
+def engines(
+    name: Annotated[str | None, typer.Argument(help="Engine to describe in full. Default: list all.")] = None,
+) -> None:
+    """List the engines and their variants.
 
-    With a name: its versions, and the settings, the levels and the engine's own calls of each variant, too.
+    The table shows the kind of each variant, what the engine computes, and what our adapter imposes on it. With a
+    name, the command also shows the engine's versions, and the settings, levels and engine calls of each variant.
 
     Example: rocking engines exudyn
     """
-    from engines import BROKEN, available_engines, get_engine, missing_words
-
-    from ..execution.progress import stdout_to_stderr
-    from ..execution.solving import named_engines
     from ..plotting.terminal import echo, engine_text, engines_table
 
     with stdout_to_stderr():  # engines print on import
         names, missing = ((), {}) if name else available_engines()
-        shown = [get_engine(one) for one in (named_engines([name]) if name else names)]
+        shown = [get_engine(each) for each in (named_engines([name]) if name else names)]
         for engine in shown:
             engine.load()
     if name:
@@ -256,42 +246,38 @@ SUFFIX = ".py"
 
 
 def script(
-    engine: Annotated[str, typer.Argument(help="An engine that has a script.")],
-    scene: Annotated[str, typer.Argument(help="Scene file (TOML), or the name of a shipped scene.")],
-    output: Annotated[str | None, typer.Option(metavar="FILE", help="The script; by default SCENE-ENGINE.py.")] = None,
+    engine: Annotated[str, typer.Argument(help="Engine that the script uses.")],
+    scene: SceneFile,
+    output: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Script to write. Default: SCENE-ENGINE.py.")
+    ] = None,
 ) -> None:
-    """Write a Python script that builds this scene in the plain engine and runs it, without this project.
+    """Write a stand-alone Python script that runs a scene.
 
-    It is the engine's tuned variant, for readers who want to build on it. A record is written beside it.
+    The script uses only the engine's own calls, in its tuned variant, and needs nothing of this project. A record is
+    written beside the script.
 
     Example: rocking script pybullet caryatid-isolated --output caryatid.py
     """
-    from analytic.errors import SettingError
-    from analytic.scene_file import load_scene
-    from engines import BROKEN, ENGINES
-    from engines.loads import unkept_friction
     from engines.scripting import write_script
 
-    from ..execution.files import check_writable, write_text
-    from ..execution.progress import compile_kernels
-    from ..execution.solving import in_file
     from ..plotting.terminal import echo
 
     if engine in BROKEN:
         raise BROKEN[engine]
-    able = [name for name, one in ENGINES.items() if one.script]
-    if engine not in able:
-        raise SettingError(f"{engine}: no engine with a script; choose one of {', '.join(able)}")
+    with_script = [name for name, record in ENGINES.items() if record.script]
+    if engine not in with_script:
+        raise SettingError(f"{engine}: no engine with a script; choose one of {', '.join(with_script)}")
     if output is not None and Path(output).suffix != SUFFIX:
         raise SettingError(f"--output {output}: end the name in {SUFFIX}")
-    what = load_scene(scene)
-    if what.duration is None or what.friction is not None:  # the model is run
+    loaded = load_scene(scene)
+    if loaded.duration is None or loaded.friction is not None:  # the model is run
         compile_kernels()
     with in_file(scene):
-        files = write_script(ENGINES[engine], what, Path(output).stem if output else None)
+        files = write_script(ENGINES[engine], loaded, Path(output).stem if output else None)
     folder = Path(output).parent if output else Path()
-    places = {str(folder / file): text for file, text in files.items()}
-    check_writable(places, inputs=[scene])
-    for place, text in places.items():
-        write_text(place, text)
-    echo(*(f"{place} written" for place in places), *filter(None, [unkept_friction(what)]))
+    texts = {str(folder / file): text for file, text in files.items()}
+    check_writable(texts, inputs=[scene])
+    for path, text in texts.items():
+        write_text(path, text)
+    echo(*(f"{path} written" for path in texts), *filter(None, [unkept_friction(loaded)]))

@@ -1,13 +1,11 @@
-"""``rocking study NAME``: a command for each study, made from its `Study`.
-
-``rocking verify``: whether the engines installed here meet the tolerances.
-"""
+"""The commands ``rocking study NAME``, each made from its `Study`, and ``rocking verify``."""
 
 from __future__ import annotations
 
 import inspect
 import secrets
 import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -16,21 +14,27 @@ import typer
 from typer.core import TyperGroup
 
 from analytic.errors import SettingError
+from engines import ENGINES, get_engine, guard, installed_engines
 
-from ..execution.progress import compile_kernels, say, spinner
-from ..execution.solving import TIME_LIMIT, check_time_limit, named_engines
-from ..studies import BUILT_IN, StudyBroken, get_study, study_names
+from ..execution.by_solver import MODEL, save_parts
+from ..execution.cases import name_of
+from ..execution.files import check_folder, check_writable
+from ..execution.progress import compile_kernels, log, say, spinner, stdout_to_stderr
+from ..execution.provenance import RESULTS, made_here
+from ..execution.solving import TIME_LIMIT, EngineNames, JsonFile, check_time_limit, named_engines
+from ..schemas.runs import Tolerance, Verification
+from ..studies import BUILT_IN, TOLERANCES, StudyBroken, get_study, study_names
 from .output import write_output
 
 if TYPE_CHECKING:
     from ..execution.plan import Study
 
-Quick = Annotated[bool, typer.Option("--quick", help="A small version of the study, in minutes.")]
+Quick = Annotated[bool, typer.Option("--quick", help="Run a small version, which takes minutes.")]
 Output = Annotated[
     str | None,
     typer.Option(
         metavar="DIR",
-        help="Folder for the result, DIR/NAME, its page, DIR/NAME.html, and the runs from which an interrupted study "
+        help="Folder for the result (DIR/NAME), its page (DIR/NAME.html) and the runs from which an interrupted study "
         "resumes. Default: NAME-study.",
     ),
 ]
@@ -38,21 +42,21 @@ Engines = Annotated[
     list[str] | None,
     typer.Option(
         "--engine",
-        help="Engine to compare; may be repeated. Where DIR/NAME holds a result, this engine's file alone is written; "
-        "studies that compare CPU times are computed anew as a whole. Default: all that the study needs.",
+        help="Engine to run; may be repeated. If DIR/NAME holds a result, only this engine's file is written anew, "
+        "except in studies that compare CPU times. Default: all that the study needs.",
     ),
 ]
-Workers = Annotated[int | None, typer.Option(min=1, help="Worker processes. Default: one per core.")]
+Workers = Annotated[int | None, typer.Option(min=1, help="Number of worker processes. Default: one per core.")]
 Scheduler = Annotated[
     str | None,
     typer.Option(
         metavar="ADDRESS",
-        help="Dask scheduler whose workers make the runs, HOST:PORT, or local:N. Timed runs are made here.",
+        help="Dask scheduler that distributes the runs: HOST:PORT, or local:N. Timed runs stay on this machine.",
     ),
 ]
 EVERY = "all"
 Replot = Annotated[
-    str | None, typer.Option(metavar="DIR", help="Run nothing, show the result in this folder, DIR/NAME, again.")
+    str | None, typer.Option(metavar="RESULT", help="Run nothing; write the page of the result in this folder again.")
 ]
 
 Check = Annotated[
@@ -60,21 +64,22 @@ Check = Annotated[
     typer.Option(
         metavar="N",
         min=1,
-        help="Compute nothing new: repeat N of the runs stored with the result, drawn at random, and say how many "
-        "hold; of this project's results, or with --output of those in DIR. Status 1: not all hold.",
+        help="Rerun N randomly chosen stored runs and report how many agree. They are of the shipped result, or with "
+        "--output of the one in DIR. Status 1: not all agree.",
     ),
 ]
 Write = Annotated[
-    bool, typer.Option("--write", help="With --check: write date, commit and outcome of the check into the result.")
+    bool, typer.Option("--write", help="With --check: write the date, commit and outcome of the check into the result.")
 ]
 Seed = Annotated[
-    int | None, typer.Option(min=0, max=2**63, help="Seed of the random draw of --check. Default: a new one each time.")
+    int | None,
+    typer.Option(min=0, max=2**63, help="Seed of the random choice of --check. Default: a new one each time."),
 ]
 
 
 def command_of(study: Study) -> Callable[..., None]:
-    """The function from which Typer makes the study's command."""
-    asked = study.options()
+    """Return the function from which Typer makes the study's command."""
+    plan_options = study.options()
 
     def command(
         context: typer.Context,
@@ -89,12 +94,6 @@ def command_of(study: Study) -> Callable[..., None]:
         seed: Seed = None,
         **options: Any,
     ) -> None:
-        from ..execution.files import check_folder
-        from ..execution.progress import spinner
-        from ..execution.study import compute
-        from ..report.detail import write_study
-        from ..studies.rows import read_study
-
         if check is not None:
             if quick or engine or scheduler or replot:
                 raise SettingError(
@@ -103,48 +102,60 @@ def command_of(study: Study) -> Callable[..., None]:
             return _check(study.name, output, check, seed, write, workers)
         if write:
             raise SettingError("--write: belongs to --check")
-        if "seed" in asked:
+        if "seed" in plan_options:
             options["seed"] = seed
         elif seed is not None:
             raise SettingError(f"--seed {seed}: belongs to --check; this study draws nothing by a seed")
         folder = f"{study.name}-study" if output is None else output
         check_folder(folder)
         if replot is not None:
-            print(write_study(study, replot, output)[0])
-            return
-        problems = []
+            return _replot(study, replot, output)
         if scheduler is not None and workers is not None:
             raise SettingError("--workers: a scheduler has its own workers; give --workers or --scheduler")
-        place: dict[str, Any] = {"workers": workers, "scheduler": scheduler, **_given(context, options)}
-        for path in compute(study, folder, engines=engine or None, quick=quick, **place):
-            with spinner(f"{path.name}: page"):
-                file, page = write_study(study, path)
-            print(path, file, sep="\n")
-            print(page.title, *page.text, sep="\n", file=sys.stderr)
-            problems += study.problems(read_study(path))
-        if problems:
-            print(*problems, sep="\n")
-            raise typer.Exit(1)
+        _compute(study, folder, engine or None, quick, workers, scheduler, _given(context, options))
 
-    own = dict(inspect.signature(command, eval_str=True).parameters)
-    for name in ("options", *({"seed"} & asked.keys())):  # one option for the seed of the plan and of --check
-        del own[name]
-    parameters = [*own.values(), *asked.values()]
+    shared = dict(inspect.signature(command, eval_str=True).parameters)
+    for name in ("options", *({"seed"} & plan_options.keys())):  # one option for the seed of the plan and of --check
+        del shared[name]
+    parameters = [*shared.values(), *plan_options.values()]
     command.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]  # Typer reads it there
     command.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
     command.__doc__ = f"{study.question}\n\nExample: rocking study {study.name} --quick"
     return command
 
 
+def _replot(study, result, output):
+    """Write the page of a stored result again."""
+    from ..report.detail import write_study
+
+    print(write_study(study, result, output)[0])
+
+
+def _compute(study, folder, engines, quick, workers, scheduler, options):
+    """Compute the results of a study and write their pages; status 1 if the study finds problems."""
+    from ..execution.study import compute
+    from ..report.detail import write_study
+    from ..studies.rows import read_study
+
+    problems = []
+    for path in compute(study, folder, engines=engines, quick=quick, workers=workers, scheduler=scheduler, **options):
+        with spinner(f"{path.name}: page"):
+            file, page = write_study(study, path)
+        print(path, file, sep="\n")
+        print(page.title, *page.text, sep="\n", file=sys.stderr)
+        problems += study.problems(read_study(path))
+    if problems:
+        print(*problems, sep="\n")
+        raise typer.Exit(1)
+
+
 def _given(context, options):
-    """Of the plan's options those that the user gives: a default is not meant to contradict a stored result."""
+    """The plan's options that the user gives. Defaults are left out: they must not contradict a stored result."""
     return {name: value for name, value in options.items() if context.get_parameter_source(name).name != "DEFAULT"}
 
 
 def _check(name, output, number, seed, write, workers):
-    """Check the stored results of a study; status 1 if a run differs."""
-    from ..execution.progress import stdout_to_stderr
-    from ..execution.provenance import RESULTS
+    """Run stored runs of a study again and print whether they agree; status 1 if one differs."""
     from ..execution.study import check_all
 
     with stdout_to_stderr():  # engines print on import
@@ -158,22 +169,22 @@ def _check(name, output, number, seed, write, workers):
 
 def every(
     output: Annotated[
-        str, typer.Option(metavar="DIR", help="Folder for the results, and the runs from which it resumes.")
+        str,
+        typer.Option(
+            metavar="DIR", help="Folder for the results and the runs from which an interrupted study resumes."
+        ),
     ] = "studies",
     quick: Quick = False,
     engine: Engines = None,
     workers: Workers = None,
 ) -> None:
-    """Compute all studies of this project, one after the other; after an interruption the same command resumes.
+    """Compute all studies of this project one after the other.
 
-    Runs are stored, so that a second call computes only new ones. rocking report --studies DIR shows the results.
+    Runs are stored: after an interruption the same command resumes, and a second call computes only new runs. rocking
+    report --studies DIR shows the results.
 
     Example: rocking study all --output studies
     """
-    import time
-
-    from ..execution.files import check_folder
-    from ..execution.progress import log
     from ..execution.study import compute
 
     check_folder(output)
@@ -213,45 +224,40 @@ app = typer.Typer(cls=_Studies, add_completion=False, rich_markup_mode=None, no_
 
 @app.callback()
 def _about():
-    """Compute one study's result and its page; after an interruption the same command resumes.
+    """Compute a study's result and write its page.
+
+    After an interruption the same command resumes.
 
     Example: rocking study restitution --quick
     """
 
 
 def verify(
-    engine: Annotated[
-        list[str] | None, typer.Option(help="An engine to verify; may be repeated. Default: all that are installed.")
-    ] = None,
+    engine: EngineNames = None,
     variant: Annotated[
-        str | None, typer.Option(help="Variant of the one engine. Default: all that state tolerances.")
+        str | None, typer.Option(help="Variant of the engine, if one is named. Default: all that state tolerances.")
     ] = None,
     output: Annotated[
         str | None,
         typer.Option(
-            metavar="DIR", help="Write the rows into DIR/tolerances, too, which rocking report --studies DIR shows."
+            metavar="DIR", help="Also write the rows into DIR/tolerances; rocking report --studies DIR shows them."
         ),
     ] = None,
-    json_file: Annotated[
-        str | None, typer.Option("--json", metavar="FILE", help="Write the rows; - prints them.")
-    ] = None,
+    json_file: JsonFile = None,
     time_limit: Annotated[
-        float, typer.Option(metavar="SECONDS", help="An engine that takes longer has failed.")
+        float, typer.Option(metavar="SECONDS", help="End an engine that takes longer; it counts as failed.")
     ] = TIME_LIMIT,
 ) -> None:
-    """Check the engines installed on this machine against the table of tolerances.
+    """Check the installed engines against their tolerances.
 
-    For an engine of another package without tolerances, the rows give the measured values. Status 1: a tolerance is
-    exceeded, or could not be measured.
-    From the tests of another project: comparisons.metrics.agreement.rows("exudyn"), each with `check()`.
+    An engine of another package may state no tolerances; its rows then give the measured values only. Status 1: a
+    tolerance is exceeded or could not be measured.
+
+    Tests of another project can use comparisons.metrics.agreement.rows("exudyn") and call `check()` of each row.
 
     Example: rocking verify --engine exudyn
     """
-    from engines import get_engine, installed_engines
-
-    from ..execution.files import check_folder, check_writable
     from ..metrics.agreement import rows
-    from ..schemas.runs import Tolerance, Verification
 
     check_time_limit(time_limit)
     check_writable([json_file])
@@ -261,8 +267,8 @@ def verify(
         raise SettingError(f"--variant {variant}: belongs to one engine; name it with --engine")
     results: list[dict[str, Any]] = []
     for name in named_engines(engine or installed_engines()):
-        for one in [variant] if variant else get_engine(name).tolerance_rows() or [None]:
-            results += _verified(name, rows(name, one), time_limit)
+        for each in [variant] if variant else get_engine(name).tolerance_rows() or [None]:
+            results += _verified(name, rows(name, each), time_limit)
     if output is not None:
         _write(Path(output), results, alone=bool(engine))
     versions = {name: get_engine(name).versions() for name in dict.fromkeys(row["engine"] for row in results)}
@@ -273,30 +279,25 @@ def verify(
 
 
 def _verified(name, table, time_limit):
-    """The rows of an engine, measured in a process of their own; if it fails, each row says so."""
-    from engines.guard import run_apart
-
+    """The rows of an engine, measured in a separate process. If that fails, each row gives the reason."""
     from ..metrics.agreement import measure_all
 
     compile_kernels(vertical=True)
-    found, failure = run_apart(
+    measured, failure = guard.run_apart(
         measure_all, table, time_limit=time_limit, meanwhile=spinner(f"{name}: {len(table)} tolerances")
     )
     if failure is None:
-        return found
+        return measured
     say(f"{name}: {failure.reason}. {failure.message.partition(chr(10))[0]}")
     return [row.result(None, failure.reason) for row in table]
 
 
 def _write(folder, results, alone):
-    """The rows as a result beside those of the studies; alone: the engines' files, beside those of others."""
-    from engines import ENGINES
+    """Write the rows as a result beside those of the studies.
 
-    from ..execution.by_solver import MODEL, save_parts
-    from ..execution.cases import name_of
-    from ..execution.provenance import made_here
+    alone: write only the files of these engines, and keep the files of other engines.
+    """
     from ..metrics.agreement import measure_all
-    from ..studies import TOLERANCES
 
     engines = list(dict.fromkeys(row["engine"] for row in results))
     bounds = [f"{ENGINES[name].tolerances}:TOLERANCES" for name in engines if ENGINES[name].tolerances]
@@ -318,10 +319,11 @@ def _show(results):
 
 
 def _unbounded(results):
-    """A sentence on each engine without tolerances."""
+    """Yield a sentence on each engine without tolerances."""
     for name in dict.fromkeys(row["engine"] for row in results if row["bound"] is None):
-        found = [row["found"] is not None for row in results if row["engine"] == name]
-        yield f"{name}: no bound stated, so nothing holds or fails; {sum(found)} of {len(found)} quantities measured."
+        measured = [row["found"] is not None for row in results if row["engine"] == name]
+        count = f"{sum(measured)} of {len(measured)} quantities measured"
+        yield f"{name}: no bound stated, so nothing holds or fails; {count}."
 
 
 def _table(solver, rows):

@@ -1,4 +1,4 @@
-"""One run of a study: scene, solver, variant and settings; and all that its result depends on."""
+"""One run of a study: scene, solver, variant and settings, and everything that its result depends on."""
 
 import functools
 import hashlib
@@ -15,7 +15,7 @@ from engines import ENGINES, get_engine
 from .progress import compile_kernels
 from .sources import source_digests, today, version_of
 
-# every other name is an engine's, or such a "module:function" itself
+# any other name is that of an engine, or itself a "module:function"
 SOLVERS = {
     "analytic": "analytic:simulate",
     "twin": "analytic.checks.twin:simulate_twin",
@@ -29,8 +29,8 @@ class Case:
 
     scene: what is simulated. solver: "analytic", "twin", "time-stepping", the name of an engine, or
     "module:function". variant: None takes the solver's default. settings: keyword arguments, JSON values
-    only; {"history": False} saves time if the measure uses no history. tag: whatever the measure and the
-    study want to know of it (JSON values).
+    only; {"history": False} saves time if the measure uses no history. tag: further JSON values for the
+    measure and the study.
     """
 
     scene: Scene
@@ -44,7 +44,7 @@ class Case:
         object.__setattr__(self, "tag", dict(self.tag))
 
     def key(self, measure: Callable[..., Any]) -> str:
-        """Hash of all that the row depends on: scene, solver, variant, settings, tag, measure, versions, sources."""
+        """Return a hash of all that the row depends on: the case, the measure, versions and source code."""
         content = (
             self.scene.digest(),
             self.solver,
@@ -57,15 +57,15 @@ class Case:
         return hashlib.sha256(json.dumps(content, sort_keys=True, allow_nan=False).encode()).hexdigest()[:32]
 
     def run(self) -> Response:
-        """Simulate it here and now; returns the `Response`."""
+        """Simulate the case in this process and return the `Response`."""
         options: dict[str, Any] = {} if self.variant is None else {"variant": self.variant}
         if self.solver in ENGINES:
-            options["compare"] = False  # a study measures by itself; one that wants it sets it
+            options["compare"] = False  # a study measures by itself, unless its settings say otherwise
         return solver(self.solver)(self.scene, **{**options, **self.settings})
 
 
 def solver(name: str) -> Callable:
-    """The function called `name`: takes a scene, returns a `Response`.
+    """Return the function of the solver `name`, which takes a scene and returns a `Response`.
 
     Raises
     ------
@@ -80,8 +80,10 @@ def solver(name: str) -> Callable:
 
 
 def compile_for(names: Iterable[str]) -> None:
-    """Fill the cache on disk of what the solvers `names` have compiled: else every worker process would compile it by
-    itself, within its time limit."""
+    """Compile what the solvers `names` need into the cache on disk.
+
+    Otherwise every worker process would compile it again, within its time limit.
+    """
     compile_kernels()
     if "time-stepping" in names:
         scene = Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.3), start=Start(tilt=0.1), duration=0.1)
@@ -89,27 +91,27 @@ def compile_for(names: Iterable[str]) -> None:
 
 
 def root_of(name: str) -> str:
-    """Where the code of the solver `name` begins: the module of an engine's adapter, or "module:function"."""
+    """Return where the code of the solver `name` begins: the module of the adapter, or "module:function"."""
     return ENGINES[name].adapter if name in ENGINES else _place(name)
 
 
 def versions(name: str) -> dict[str, str | None]:
-    """Versions of Python and of the packages that the solver `name` rests on."""
+    """Return the versions of Python and of the packages that the solver `name` uses."""
     packages = ["numpy", "scipy", "numba"] + ([ENGINES[name].package] if name in ENGINES else [])
     return {"python": platform.python_version(), **{package: version_of(package) for package in packages}}
 
 
 def name_of(function: Callable[..., Any]) -> str:
-    """``module:function`` of a module-level function, ``module:class`` of an object that is called."""
+    """Return ``module:function`` of a module-level function, or ``module:class`` of a callable object."""
     name = f"{function.__module__}:{getattr(function, '__qualname__', type(function).__qualname__)}"
     if "<" in name:
         raise ValueError(f"measure {name} cannot travel to a worker process; make it a module-level function")
     return name
 
 
-@functools.cache  # of the code this process has loaded: it cannot change under it
+@functools.cache  # the code that this process has loaded does not change
 def fingerprint(name: str, measuring: str) -> str:
-    """Digest of the versions and of the project's code behind a solver and a measure."""
+    """Return a digest of the versions and of the project's code behind a solver and a measure."""
     sources = source_digests([root_of(name), measuring])
     return hashlib.sha256(json.dumps([versions(name), sorted(sources.values())]).encode()).hexdigest()
 
@@ -122,7 +124,7 @@ def _place(name):
 
 
 def variant_settings(engine: str, variant: str, levels: Iterable[float] | None = None) -> dict[str, Any]:
-    """A variant as listed in the settings of a result; levels: those that are run, in place of all.
+    """Return a variant as the settings of a result list it. levels: the levels that are run; None: all.
 
     Stored results and JSON call the kind of a variant "tier".
     """

@@ -1,10 +1,10 @@
-"""Runs of a sweep on a cluster, by Dask: the tasks of `executors`, done by its workers, which guard them likewise.
+"""Runs of a sweep on a cluster, by Dask.
 
     with Cluster("tcp://scheduler:8786", solvers) as executor:
         rows = run_sweep(cases, store="results/map.jsonl", measure=outcome, executor=executor)
 
-Each thread of a Dask worker has a process that guards its runs by `Processes`, as ever: of a crash or a hang
-only that row is lost, and no worker.
+Each thread of a Dask worker has a child process that guards its runs by `Processes`. If a run crashes or hangs, only
+its row is lost, and the worker goes on.
 """
 
 import asyncio
@@ -35,7 +35,7 @@ INSTALL = 'pip install -e ".[cluster]" in a checkout of this project'
 
 
 class ClusterError(Mendable):
-    """A cluster that cannot make the runs, or no longer can; the message names the part and the remedy."""
+    """The cluster cannot make the runs, or no longer can; the message names the part and the remedy."""
 
 
 class Cluster(Executor):
@@ -44,16 +44,16 @@ class Cluster(Executor):
     Parameters
     ----------
     address : str
-        Of the scheduler, "host:port" or as Dask writes it; or "local:N".
+        Address of the scheduler, "host:port" or as Dask writes it; or "local:N".
     solvers : iterable of str
-        Those that the runs will need.
+        Solvers that the runs need.
 
     Raises
     ------
     SettingError
         Dask is not installed, no scheduler answers there, or it has no workers.
     ClusterError
-        A worker has other versions or other code than this process: names both.
+        A worker has other versions or other code than this process; the message names both.
     """
 
     def __init__(self, address: str, solvers: Iterable[str] = ()) -> None:
@@ -99,7 +99,7 @@ class Cluster(Executor):
         self._exits.close()
 
     def _check_workers(self):
-        """Raise `ClusterError` where a worker is not of this version; one lost meanwhile is named, and left out."""
+        """Raise `ClusterError` if a worker is not of this version. A worker lost meanwhile is named and left out."""
         mine, end = _state(self._solvers), time.monotonic() + PATIENCE
         same: set[str] = set()
         lost: set[str] = set()
@@ -140,7 +140,7 @@ class Cluster(Executor):
 
 
 def _connect(address, stack):
-    """A Dask client of the scheduler at an address, or of one started here; closed by `stack`."""
+    """A Dask client of the scheduler at an address, or of a scheduler started here. `stack` closes both."""
     try:
         import dask
         from distributed import Client, LocalCluster
@@ -148,7 +148,7 @@ def _connect(address, stack):
         raise SettingError(f"--scheduler {address}: Dask is not installed; {INSTALL}") from None
     stack.enter_context(dask.config.set({"distributed.comm.timeouts.connect": f"{PATIENCE:g}s"}))
     for name in [name for name in logging.root.manager.loggerDict if name.startswith("distributed")]:
-        logging.getLogger(name).setLevel(logging.CRITICAL)  # what is lost is said here, once
+        logging.getLogger(name).setLevel(logging.CRITICAL)  # this module reports what is lost, once
     if address.startswith(LOCAL):
         number = address.removeprefix(LOCAL)
         if not number.isdecimal():
@@ -184,13 +184,13 @@ async def _reach(address):
 
 
 def _state(solvers):
-    """{what: its version or digest} of all that rows depend on, in the process that asks."""
+    """{name: version or digest} of all that rows depend on, in the process that calls."""
     known = {package: str(number) for name in solvers for package, number in versions(name).items()}
     return known | source_digests([*map(root_of, solvers), *PROJECT, __name__])
 
 
 def _check_same(worker, state, mine):
-    """Raise `ClusterError` where the `_state` of a worker differs from mine, or is an error."""
+    """Raise `ClusterError` if the `_state` of a worker differs from mine, or is an error."""
     if isinstance(state, Exception):
         raise ClusterError(
             f"worker {worker} cannot load this project ({type(state).__name__}: {state}): install the same version of "
@@ -208,12 +208,12 @@ def _check_same(worker, state, mine):
     raise ClusterError(f"worker {worker} differs: {what}; install the same there, and start its worker again")
 
 
-# In a Dask worker: the process that guards the runs of each of its threads, and the end of the pipe to it.
+# In a Dask worker: for each thread the process that guards its runs, and this end of the pipe to it.
 _guards: dict[tuple[int, tuple[str, ...]], tuple[Any, Any]] = {}
 
 
 def _serve_here(data: bytes, solvers: tuple[str, ...]) -> Done:
-    """In a Dask worker: the `Done` of a pickled `Task`, by this thread's guard."""
+    """In a Dask worker: let this thread's guard do a pickled `Task`, and return its `Done`."""
     place = threading.get_ident(), solvers
     if place not in _guards:
         _guards[place] = _start_guard(solvers)
@@ -236,7 +236,7 @@ def _start_guard(solvers):
 
 
 def _dismiss_guards() -> None:
-    """In a Dask worker: end its guards; the result of a run under way there is not needed."""
+    """In a Dask worker: end its guards. The results of runs under way are dropped."""
     while _guards:
         guard, ours = _guards.popitem()[1]
         ours.close()
@@ -245,7 +245,7 @@ def _dismiss_guards() -> None:
 
 
 def guard_runs(connection: Any, solvers: tuple[str, ...]) -> None:
-    """In a child process of a Dask worker: receive tasks and send their results, until the worker disconnects."""
+    """In a child process of a Dask worker: receive tasks and send their results until the worker disconnects."""
     threading.Thread(target=end_with, args=(multiprocessing.parent_process(),), daemon=True).start()
     compile_for(solvers)
     with Processes(1, solvers) as executor, contextlib.suppress(EOFError):

@@ -1,9 +1,8 @@
-"""Writing of files and folders: checked before the work, then complete or not at all.
+"""Writing of files: checked before the work, then complete or not at all; and text made printable.
 
-All that this project writes goes through `write`, but for the store of runs, which is appended to, and what is
-temporary (tests/comparisons/execution/test_one_way.py holds the code to that).
-
-External text (names, paths, values, messages) made printable, on one line and of readable length.
+This project writes every file through `write`, except temporary files and the store of runs, which is appended to
+(tests/comparisons/execution/test_one_way.py checks this). `readable` makes external text (names, paths, values,
+messages) printable, on one line and of limited length.
 """
 
 import contextlib
@@ -26,13 +25,13 @@ MOST_CHARACTERS = 600
 
 
 class Mendable(RuntimeError):
-    """An error that a user can correct with its message; shown without a traceback."""
+    """An error that the user can correct; its message is shown without a traceback."""
 
 
 def readable(text: object, most: int = MOST_CHARACTERS) -> str:
-    """`text` with its middle left out beyond `most` characters; what is not printable is shown as its code."""
+    """Return `text` in at most about `most` characters, the middle left out; unprintable characters become codes."""
     text = str(text)
-    if len(text) > most:  # both ends matter: what it is about, and what to do
+    if len(text) > most:  # both ends matter: the subject, and the remedy
         tail = most // 3
         text = text[: most - tail] + " [...] " + text[-tail:]
     return "".join(char if char.isprintable() else char.encode("unicode_escape").decode() for char in text)
@@ -40,15 +39,15 @@ def readable(text: object, most: int = MOST_CHARACTERS) -> str:
 
 PICTURES = (".png", ".svg", ".pdf")
 STANDARD_OUTPUT = "-"
-PROBE_BYTES = 4096  # a place without room for this is full
-PART = ".rocking-{}.part"  # name of a file that is being written; never that of a result
-DIGITS = 16  # of a digest, in the name of a file that waits for its place
-STALE = 3600.0  # s without a byte more: whoever wrote the part was killed
+PROBE_BYTES = 4096  # a place without room for them is full
+PART = ".rocking-{}.part"  # name of a file that is being written; no result has such a name
+DIGITS = 16  # of a digest in the name of a waiting file
+STALE = 3600.0  # s since the last byte, after which the process that wrote a part must have been killed
 _TEMPORARY: set[str] = set()  # folders of this process
 
 
 class PlaceError(Mendable):
-    """A file could not be written; the message names it, and where its content is kept instead, if anywhere."""
+    """A file could not be written; the message names it and the place, if any, where its content is kept."""
 
 
 def check_writable(paths: Iterable[str | None], picture: str | None = None, inputs: Iterable[str] = ()) -> None:
@@ -59,9 +58,9 @@ def check_writable(paths: Iterable[str | None], picture: str | None = None, inpu
     paths : iterable of str or None
         Files to be written; None and "-" are skipped.
     picture : str or None
-        One more, whose name must end in a picture format.
+        A further file, whose name must end in a picture format.
     inputs : iterable of str
-        Files that are read, and must not be written over.
+        Files that are read and must not be overwritten.
     """
     if picture and Path(picture).suffix.lower() not in PICTURES:
         raise SettingError(f"{picture}: not a known picture format; end the name in {', '.join(PICTURES)}")
@@ -92,14 +91,14 @@ def check_folder(output: str | PathLike[str], option: str = "--output") -> None:
 
 
 def write(path: str | PathLike[str], content: str | bytes | memoryview, keep: bool = False) -> None:
-    """Write a file, whole or not at all: as long as that is not done, what was there before is there still.
+    """Write a file completely or not at all. Until it is complete the old file stays in place.
 
-    keep: where it cannot be written, the content is kept in another place.
+    keep: if the file cannot be written, keep the content in another place.
 
     Raises
     ------
     PlaceError
-        It could not be written; the message names it, and where the content is kept instead.
+        The file could not be written; the message names it and the place where the content is kept.
     """
     data = content.encode() if isinstance(content, str) else content
     try:
@@ -109,8 +108,10 @@ def write(path: str | PathLike[str], content: str | bytes | memoryview, keep: bo
 
 
 def write_text(path: str | PathLike[str], text: str) -> None:
-    """Write a command's result, in UTF-8, to the file `path`, or to standard output where that is "-"; where that
-    fails it is kept elsewhere, see `write`."""
+    """Write a command's result as UTF-8 to the file `path`, or to standard output if that is "-".
+
+    If that fails, the result is kept elsewhere, see `write`.
+    """
     if path != STANDARD_OUTPUT:
         return write(path, text, keep=True)
     try:
@@ -123,7 +124,7 @@ def write_text(path: str | PathLike[str], text: str) -> None:
 
 
 def write_all(folder: str | PathLike[str], files: Mapping[str, str | bytes]) -> list[Path]:
-    """Write files, {name below the folder: content}, each by `write`; folders are made. Returns their paths."""
+    """Write files {name below the folder: content} by `write`, make their folders, and return their paths."""
     paths = [Path(folder) / name for name in files]
     for path, content in zip(paths, files.values(), strict=True):
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -132,9 +133,9 @@ def write_all(folder: str | PathLike[str], files: Mapping[str, str | bytes]) -> 
 
 
 def write_pair(path: Path, content: str, beside: Path, data: bytes) -> None:
-    """Write a file and another, `beside`, whose digest it holds: at any moment the pair of before or this one is there.
+    """Write a file and the file `beside`, whose digest it holds, so that a matching pair exists at any moment.
 
-    `beside` waits under a name of its own until `path` is written (`waiting`), so that a kill leaves either pair whole.
+    `beside` waits under another name (`waiting`) until `path` is written: a kill leaves the old or the new pair.
 
     Raises
     ------
@@ -159,7 +160,7 @@ def write_pair(path: Path, content: str, beside: Path, data: bytes) -> None:
 
 
 def _put(place, data):
-    """Put bytes in their place by way of a part, which is gone afterwards, as are those of processes that are."""
+    """Write bytes to a part and move it to its place. Remove stale parts of killed processes."""
     part = _part(place.parent)
     try:
         with open(part, "xb") as file:
@@ -178,12 +179,12 @@ def _put(place, data):
 
 
 def waiting(beside: Path, digest: str) -> Path:
-    """Where a file of this digest waits until the one that holds its digest is written."""
+    """Return the path at which a file waits until the file that holds its digest is written."""
     return beside.with_name(f".{beside.stem}.{digest[:DIGITS]}{beside.suffix}")
 
 
 def _mode(path, named):
-    """Mode of what is at `path`, None where there is nothing."""
+    """The mode of the file or folder at `path`; None if there is nothing."""
     if not os.fspath(path):
         raise SettingError(f"{named!r}: no name for a file (empty); give one")
     try:
@@ -208,7 +209,7 @@ def _check_file(path):
 
 
 def _probe(place, named):
-    """Raise `SettingError` where no file of a few bytes can be made at `place`."""
+    """Raise `SettingError` if no file of a few bytes can be made at `place`."""
     try:
         with open(place, "xb") as file:
             file.write(bytes(PROBE_BYTES))
@@ -234,7 +235,7 @@ def _remove_stale(folder):
 
 
 def _not_written(path, error, kept=None):
-    """The `PlaceError` of a file; kept: its content, to be kept elsewhere."""
+    """Return the `PlaceError` of a file that was not written. kept: its content, which is written elsewhere."""
     reason = f"{path}: could not be written ({error.strerror or error})"
     if kept is None:
         return PlaceError(f"{reason}; make room and run again")
@@ -251,7 +252,7 @@ def _not_written(path, error, kept=None):
 
 
 class TemporaryFolder(tempfile.TemporaryDirectory):
-    """A temporary folder that is removed at a hard end, too (`remove_temporary_folders`)."""
+    """A temporary folder that `remove_temporary_folders` also removes when the process is ended."""
 
     def __init__(self, prefix: str) -> None:
         super().__init__(prefix=prefix)
@@ -263,6 +264,6 @@ class TemporaryFolder(tempfile.TemporaryDirectory):
 
 
 def remove_temporary_folders() -> None:
-    """Before a process ends without clearing up behind itself."""
+    """Remove the temporary folders of this process, before it is ended without a normal exit."""
     for folder in tuple(_TEMPORARY):
         shutil.rmtree(folder, ignore_errors=True)

@@ -1,4 +1,6 @@
-"""A study: a question, the runs that answer it, what is measured in each, and how the answer is shown.
+"""Studies as plans of runs, and the search for the points along a line at which an outcome changes.
+
+A study is a question, the runs that answer it, what is measured in each run, and the page that shows the answer.
 
     STUDY = Study("outcomes", "Who overturns?", plan, "outcomes.page")
 
@@ -6,18 +8,16 @@
         rows = yield Batch([Case(scene, solver) for solver in ("analytic", *request.engines)], outcome, "outcomes")
         return Computed({"quick": request.quick}, [row.values for row in rows])
 
-`plan` is a generator: it yields a `Batch` of cases and is sent their rows, as often as it needs (a search asks again
-where the answers point, a timing turn by turn). A `Computed` that it yields is written at once: whole as far as it
-goes; the last one is returned. What runs, stores, resumes and writes is `study.compute`, the same for every study. How
-to write a study, from the first file to its page: `comparisons.studies`.
+`plan` is a generator. It yields a `Batch` of cases and is sent their rows, as often as it needs: a search continues
+where the answers point, a timing goes turn by turn. A `Computed` that it yields is written at once, complete as far as
+it goes; the last one is returned. `study.compute` runs, stores, resumes and writes every study in the same way.
+`comparisons.studies` tells how to write a study, from the first file to its page.
 
-Location of the changes of an outcome along a line, with evaluations near the changes only.
-
-A search is a generator: it yields a list of points, is sent the list of their outcomes, and returns its result.
-`together` runs many searches in rounds, so that every round is one batch (one sweep); `drive` asks a function for the
-outcomes. Outcomes are any labels that compare equal or not. Labels that say more find more: between "overturns after
-one impact" and "overturns without" bisection must meet the safe gap, however thin; between two plain "overturns" it
-cannot.
+`boundaries` searches for the changes of an outcome along a line, and evaluates points near the changes only. A search
+is a generator: it yields a list of points, is sent the list of their outcomes, and returns its result. `together` runs
+many searches in rounds, so that every round is one batch (one sweep); `drive` takes the outcomes from a function.
+Outcomes are labels that are equal or not. Labels that say more find more: between "overturns after one impact" and
+"overturns without" bisection meets the safe gap, however thin; between two plain "overturns" it cannot.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ TIME_LIMIT = 300.0  # s, of one run
 
 @dataclass(frozen=True)
 class Request:
-    """What a plan is asked. engines: names of those to compare; quick: a first look, in minutes."""
+    """The request to a plan. engines: names of the engines to compare; quick: a small version, in minutes."""
 
     engines: tuple[str, ...] = ()
     quick: bool = False
@@ -52,15 +52,15 @@ class Request:
 
 @dataclass(frozen=True)
 class Batch:
-    """Cases to run, in parallel. measure: module-level, (`Case`, `Response`) -> dict of JSON values.
+    """Cases to run in parallel. measure: module-level function, (`Case`, `Response`) -> dict of JSON values.
 
-    alone: timed, so one after the other in one fresh process, with nothing else under way. rates: engines are judged
-    by it, by an answer that is their own. long: a run takes seconds: progress is shown of few, too.
+    alone: the runs are timed, so they are made one after the other in a fresh process, with nothing else under way.
+    rates: engines are judged by the results. long: a run takes seconds, so progress is shown even for few runs.
 
     Raises
     ------
     ValueError
-        An engine is to be judged by a scene that gives the restitution.
+        With `rates`, a scene gives the restitution: the result would not be the engine's own.
     """
 
     cases: Sequence[Case]
@@ -72,17 +72,18 @@ class Batch:
     long: bool = False
 
     def __post_init__(self) -> None:
-        given = (one for one in self.cases if one.scene.block.restitution is not None and one.solver not in SOLVERS)
-        if self.rates and (one := next(given, None)):
-            words = f"{one.solver} is given block.restitution = {one.scene.block.restitution!r}"
+        given = (case for case in self.cases if case.scene.block.restitution is not None and case.solver not in SOLVERS)
+        if self.rates and (case := next(given, None)):
+            words = f"{case.solver} is given block.restitution = {case.scene.block.restitution!r}"
             raise ValueError(f"{self.label}: {words}, and not judged by it; leave it out, or use rates=False")
 
 
 @dataclass(frozen=True)
 class Computed:
-    """An answer: what was asked (settings), rows and arrays.
+    """The answer of a plan: settings, rows and arrays.
 
-    solvers: on whose code it depends beside the batches'. name: of its file, where a study has several.
+    solvers: further solvers on whose code it depends, beside those of the batches. name: of the result, if a study has
+    several.
     """
 
     settings: dict
@@ -98,19 +99,23 @@ Plan = Generator[Batch | Computed, list[Row], Computed]
 
 @dataclass(frozen=True)
 class Study:
-    """A study, as commands, report and `compute` know it.
+    """A study as the commands, the report and `compute` use it.
 
-    name: on the command line, of its files, and the kind of its result. question: one line, the command's help.
-    plan: ``(request, **options)`` -> generator, see above; its keyword-only parameters, annotated as Typer wants them,
-    are options of the command. shown_by: the module that shows it, imported only there: its ``page(result)`` gives the
-    `comparisons.plotting.parts.Page`; its ``judgements(result)``, if it has them, rows of the report's first table, and
-    its ``glance(result)`` what stands above them.
-    problems: result -> sentences that end the command with status 1. whole: why one engine's rows cannot be computed
-    anew by themselves (`by_solver`); "" where they can: then its arrays bear its name. by_solver: whether its result is
-    a folder of files by solver, or one file. columns: {field: its `Column`} of its rows. parts: {value of a row's
-    ``part``, "" where rows have none: fields that each such row has}, separated by blanks; "?" behind one: null may
-    stand there; those behind "|" a row that failed need not have. Rows of another package's
-    study are not checked.
+    name: on the command line and of its files, and the kind of its result. question: the command's help; its first
+    sentence, of at most 60 characters, is its line among the commands. plan: ``(request, **options)`` -> generator, see
+    above; its keyword-only parameters, annotated as Typer wants them, are options of the command.
+
+    shown_by: the module that shows the study, imported only for that. Its ``page(result)`` returns the
+    `comparisons.plotting.parts.Page`; its ``judgements(result)``, if any, rows of the report's first table; its
+    ``glance(result)``, if any, what stands above that table.
+
+    problems: result -> sentences that end the command with status 1. whole: why the rows of one engine cannot be
+    computed alone (`by_solver`); "" if they can, and then the arrays of an engine bear its name. by_solver: the result
+    is a folder of files by solver, not one file.
+
+    columns: {field: its `Column`} of the rows. parts: {value of a row's ``part``, "" if rows have none: fields of such
+    a row, separated by blanks}. "?" after a field: it may be null. A row that failed may lack the fields after "|".
+    Rows of another package's study are not checked.
     """
 
     name: str
@@ -124,31 +129,31 @@ class Study:
     parts: Mapping[str, str] = field(default_factory=dict)
 
     def options(self) -> dict[str, inspect.Parameter]:
-        """The plan's options by name; annotations that are kept as text stand for what they do where it is."""
-        found = {}
+        """Return the options of the plan by name. Annotations kept as text are evaluated in the plan's module."""
+        parameters = {}
         for name, parameter in inspect.signature(self.plan).parameters.items():
             if parameter.kind is inspect.Parameter.KEYWORD_ONLY:
                 kind = parameter.annotation
                 known = eval(kind, self.plan.__globals__) if isinstance(kind, str) else kind
-                found[name] = parameter.replace(annotation=known)
-        return found
+                parameters[name] = parameter.replace(annotation=known)
+        return parameters
 
     def page(self, result: Result) -> Page:
-        """What is shown of a result."""
+        """Return the page of a result."""
         return import_module(self.shown_by).page(result)
 
     def judgements(self, result: Result) -> tuple[Judgement, ...]:
-        """Rows of the report's first table; none of a study that judges no engine."""
+        """Return rows for the report's first table; none if the study judges no engine."""
         return getattr(import_module(self.shown_by), "judgements", lambda result: ())(result)
 
     def glance(self, result: Result) -> Glance | None:
-        """What it gives to the report's first screen; None: nothing."""
+        """Return what the study adds to the report's first screen, or None."""
         return getattr(import_module(self.shown_by), "glance", lambda result: None)(result)
 
 
 @dataclass(frozen=True)
 class Transition:
-    """The outcome changes from `before` to `after` between `low` and `high`."""
+    """A change of the outcome from `before` to `after`, between `low` and `high`."""
 
     low: float
     high: float
@@ -162,7 +167,7 @@ class Transition:
 
 @dataclass(frozen=True)
 class Transitions:
-    """All transitions found along one line, in rising order, and the number of evaluations they took."""
+    """The transitions found along a line, in rising order, and the number of evaluations."""
 
     transitions: tuple[Transition, ...]
     evaluations: int
@@ -171,7 +176,7 @@ class Transitions:
 def together(
     searches: Sequence[Generator[list[Any], list[Any], Any]],
 ) -> Generator[list[tuple[int, Any]], list[Any], list[Any]]:
-    """Many searches as one, in rounds.
+    """Combine many searches into one, in rounds.
 
     Parameters
     ----------
@@ -181,25 +186,25 @@ def together(
     Returns
     -------
     generator
-        Yields once a round a list of (index of the search, point), is sent the list of their outcomes, and returns a
-        list of what each search returned.
+        In each round it yields a list of (index of the search, point) and is sent the list of their outcomes. It
+        returns the list of the searches' results.
 
     Raises
     ------
     ValueError
-        It was sent another number of outcomes than it gave points.
+        The number of outcomes sent differs from the number of points.
     """
     results = [None] * len(searches)
     answers: dict[int, Any] = dict.fromkeys(range(len(searches)))
     while answers:
-        asked = {}
+        points_asked = {}
         for index, answer in answers.items():
             try:
-                asked[index] = list(searches[index].send(answer))
+                points_asked[index] = list(searches[index].send(answer))
             except StopIteration as stop:
                 results[index] = stop.value
-        batch = [(index, point) for index, points in asked.items() for point in points]
-        answers = {index: [] for index in asked}
+        batch = [(index, point) for index, points in points_asked.items() for point in points]
+        answers = {index: [] for index in points_asked}
         for (index, _), outcome in zip(batch, (yield batch) if batch else (), strict=True):
             answers[index].append(outcome)
     return results
@@ -208,7 +213,7 @@ def together(
 def drive(
     searches: Sequence[Generator[list[Any], list[Any], Any]], evaluate: Callable[[list[tuple[int, Any]]], list[Any]]
 ) -> list[Any]:
-    """What each of `searches` returned; evaluate(batch) gives the outcomes of a round, see `together`."""
+    """Run `searches` and return their results. evaluate(batch) returns the outcomes of a round, see `together`."""
     rounds, outcomes = together(searches), None
     while True:
         try:
@@ -221,21 +226,21 @@ def drive(
 def boundaries(
     low: float, high: float, scan: int, tolerance: float, near: int = 4
 ) -> Generator[list[float], list[Any], Transitions]:
-    """Search for all transitions on [low, high]: scan, look closer beside each change, then bisect each.
+    """Search for all transitions on [low, high]: scan, refine beside each change, then bisect each.
 
-    The outcome need not be monotone. Found for certain: every stretch of one outcome wider than the scan
-    step (high - low)/(scan - 1); within one step of a change, every stretch wider than step/near; between
-    two points with different outcomes, at least one transition.
+    The outcome need not be monotone. The search certainly finds every stretch of one outcome that is wider than the
+    scan step (high - low)/(scan - 1); within one step of a change, every stretch wider than step/near; and between two
+    points with different outcomes at least one transition.
 
     Parameters
     ----------
     low, high : float
     scan : int
-        Points of the first, equidistant scan, at least 2.
+        Number of points of the first, equidistant scan; at least 2.
     tolerance : float
         Transitions are located within brackets no wider than this.
     near : int
-        Parts into which the scan's intervals with a change, and their neighbours, are divided.
+        Number of parts into which intervals of the scan with a change, and their neighbours, are divided.
 
     Returns
     -------

@@ -1,7 +1,6 @@
-"""Progress on standard error: lines, bars, and redirected output of others. Where that is no terminal a bar is a line
-as it begins, and one as it ends if it took long.
+"""Progress on standard error: lines, bars, redirected output, and the compilation of the analytic model.
 
-How far the compiling of the analytic model has come.
+If standard error is no terminal, a bar is a line at the begin, and another at the end if it took long.
 """
 
 from __future__ import annotations
@@ -20,14 +19,14 @@ from numba.core.event import Event, Listener, register, unregister
 from .files import readable
 
 COMPILING = "compiling the analytic model, once on this machine"
-PATIENCE = 2.0  # s that something may take before it is said
-SHOWN = 60  # characters of what is under way
+PATIENCE = 2.0  # s that something may take without a message
+SHOWN = 60  # characters shown of a task's name
 
 
 def compile_kernels(vertical: bool = False) -> None:
-    """`analytic.solver.compile_kernels` before a clock starts; shown where it takes a while.
+    """Compile the analytic model before a clock starts, and show that if it takes a while.
 
-    vertical : also for motions with a vertical component.
+    vertical: also for motions with a vertical component.
     """
     from analytic import solver
 
@@ -37,10 +36,10 @@ def compile_kernels(vertical: bool = False) -> None:
 
 @contextlib.contextmanager
 def compiling() -> Iterator[None]:
-    """Shows how many functions of the analytic model are compiled so far inside: a bar, or a line that it takes a while
-    where that is no terminal. Nothing where they are found on the disk."""
-    pass
+    """Show how many functions of the analytic model have been compiled inside, by a bar or, without a terminal, a line.
 
+    Nothing is shown if they are found on the disk.
+    """
     counted = Counted()
     with contextlib.ExitStack() as shown:
 
@@ -56,7 +55,7 @@ def compiling() -> Iterator[None]:
 
 @contextlib.contextmanager
 def _if_it_takes_long(tell):
-    """Calls `tell`, in another thread, once what is done inside has taken `PATIENCE`."""
+    """Call `tell`, in another thread, once the code inside has taken `PATIENCE`."""
     telling = threading.Timer(PATIENCE, tell)
     telling.start()
     try:
@@ -68,7 +67,7 @@ def _if_it_takes_long(tell):
 
 @contextlib.contextmanager
 def lines(text: str) -> Iterator[None]:
-    """A line on standard error as what is done inside begins, and one as it ends if it took more than `PATIENCE`."""
+    """Print a line when the code inside begins, and another when it ends if it took more than `PATIENCE`."""
     began, text = time.monotonic(), readable(text, SHOWN)
     say(text)
     yield
@@ -77,19 +76,21 @@ def lines(text: str) -> Iterator[None]:
 
 
 def say(text: str) -> None:
-    """A line of progress on standard error."""
+    """Print a line on standard error."""
     print(text, file=sys.stderr, flush=True)
 
 
 def log(text: str) -> None:
-    """A line of progress on standard error, with the time."""
+    """Print a line on standard error, with the time of day."""
     print(f"{time.strftime('%H:%M:%S')} {text}", file=sys.stderr, flush=True)
 
 
 @contextlib.contextmanager
 def spinner(text: str) -> Iterator[Callable[[str], None]]:
-    """A line on standard error with the time elapsed, while something runs; where that is no terminal, `text` once it
-    takes more than `PATIENCE`."""
+    """Show `text` and the time elapsed while the code inside runs. Yields a function that changes the text.
+
+    Without a terminal `text` is printed once, if that takes more than `PATIENCE`.
+    """
     from rich.console import Console
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
@@ -106,9 +107,9 @@ def spinner(text: str) -> Iterator[Callable[[str], None]]:
 
 @contextlib.contextmanager
 def bar(text: str, functions: int | None = None) -> Iterator[Callable[[int, int], None]]:
-    """A bar on standard error that is told (done, known of) while something runs; `lines` where that is no terminal.
+    """Show a bar while the code inside runs. Yields a function that takes (number done, number known of).
 
-    functions: about how many are to be compiled; they are counted behind the bar.
+    Without a terminal `lines` are printed. functions: about how many are to be compiled; the bar counts them.
     """
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
@@ -127,33 +128,33 @@ def bar(text: str, functions: int | None = None) -> Iterator[Callable[[int, int]
 
 @contextlib.contextmanager
 def redirected(*descriptors: int, to: int) -> Iterator[None]:
-    """What this process prints to `descriptors` (1 and 2), compiled code included, goes to the file number `to`."""
+    """Redirect what this process, also compiled code, prints to `descriptors` (1 and 2) to the file number `to`."""
     sys.stdout.flush(), sys.stderr.flush()
-    kept = {number: os.dup(number) for number in descriptors}
+    copies = {number: os.dup(number) for number in descriptors}
     for number in descriptors:
         os.dup2(to, number)
     try:
         yield
     finally:
         sys.stdout.flush(), sys.stderr.flush()
-        for number, copy in kept.items():
+        for number, copy in copies.items():
             os.dup2(copy, number)
             os.close(copy)
 
 
 def stdout_to_stderr() -> contextlib.AbstractContextManager[None]:
-    """What this process prints to standard output goes to standard error."""
+    """Redirect the standard output of this process to standard error."""
     return redirected(1, to=2)
 
 
-PACKAGE, COMPILE = "analytic", "numba:compile"  # whose functions are counted; as numba calls the event
+PACKAGE, COMPILE = "analytic", "numba:compile"  # the package whose functions are counted; numba's name of the event
 
 
 class Counted(Listener, AbstractContextManager["Counted"]):
-    """Counts functions of the model that are compiled in a `with` statement, and tells (how many, of about how many).
+    """Counts the functions of the model that are compiled in a `with` statement, and reports (number, about how many).
 
-    known: how many there are and are not compiled yet; a few are compiled twice, for other types, and some may not be
-    needed, or are on the disk.
+    known: the number of functions not compiled yet. It is an estimate: a few are compiled twice, for other types, and
+    some are not needed or are on the disk.
     """
 
     def __init__(self) -> None:
@@ -168,16 +169,16 @@ class Counted(Listener, AbstractContextManager["Counted"]):
         unregister(COMPILE, self)
 
     def on_start(self, event: Event) -> None:
-        """Nothing to say yet."""
+        """Do nothing: a function counts when it is compiled."""
 
     def on_end(self, event: Event) -> None:
-        """A function is compiled, by numba, the model's or what that calls."""
+        """Count a function that numba has compiled, if it is the model's."""
         if _own(event.data["dispatcher"].py_func.__module__):
             self.done += 1
             self._tell(self.done, max(self.done, self.known))
 
     def show(self, tell: Callable[[int, int], object]) -> None:
-        """From now on tell how far it is."""
+        """Report the progress to `tell`, now and from now on."""
         self._tell = tell
         tell(self.done, max(self.done, self.known))
 
@@ -187,12 +188,12 @@ def _own(module):
 
 
 def _known():
-    """Functions not yet compiled of loaded modules, and that these hold (`analytic.kernel.compiled.chosen`)."""
-    waiting = [one for name, module in sys.modules.copy().items() if _own(name) for one in vars(module).values()]
-    found = set()
+    """The number of functions not yet compiled in loaded modules and closures (`analytic.kernel.compiled.chosen`)."""
+    waiting = [value for name, module in sys.modules.copy().items() if _own(name) for value in vars(module).values()]
+    functions = set()
     while waiting:
-        one = waiting.pop()
-        if isinstance(one, Dispatcher) and one not in found:
-            found.add(one)
-            waiting += [cell.cell_contents for cell in one.py_func.__closure__ or ()]
-    return sum(not one.overloads for one in found)
+        dispatcher = waiting.pop()
+        if isinstance(dispatcher, Dispatcher) and dispatcher not in functions:
+            functions.add(dispatcher)
+            waiting += [cell.cell_contents for cell in dispatcher.py_func.__closure__ or ()]
+    return sum(not dispatcher.overloads for dispatcher in functions)

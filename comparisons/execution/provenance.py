@@ -1,4 +1,4 @@
-"""Result files: rows and arrays with the machine, versions, commit, source code and seed they come from."""
+"""Result files: rows and arrays with the machine, versions, commit, source code and seed behind them."""
 
 import contextlib
 import hashlib
@@ -30,11 +30,11 @@ from .sources import kept_digests, version_of
 
 SHORT = 80  # characters of a value in a message
 SCHEMA = StudyResult.model_fields["schema_"].default
-NO_DIGEST = "0" * 64  # until all is known that it is made of
+NO_DIGEST = "0" * 64  # a placeholder until the content is complete
 LARGEST = 2_000_000_000  # bytes of a result file, or of the arrays beside it
 PROJECT_FOLDER = Path(__file__).parents[2]
 RUNS = "runs.json"  # the array of a result that holds its sample of runs, as text
-RESULTS = PROJECT_FOLDER / "comparisons" / "results"  # those that the project ships
+RESULTS = PROJECT_FOLDER / "comparisons" / "results"  # the shipped results
 PACKAGES = ("numpy", "scipy", "numba", *(engine.package for engine in ENGINES.values()))
 
 
@@ -44,9 +44,10 @@ class ResultError(Mendable):
 
 @dataclass(frozen=True)
 class Result:
-    """What a study found: kind, its settings, rows (list of dict), arrays (dict of ndarray), provenance.
+    """The result of a study: kind, settings, rows (list of dict), arrays (dict of ndarray) and provenance.
 
-    runs: a sample of its runs, see `run_sample`, of `run_count` in all; None in a result of before they were kept.
+    runs: a sample of its runs, see `study.sample_of`. run_count: the number of all runs; None in results written before
+    runs were stored.
     """
 
     kind: str
@@ -59,14 +60,14 @@ class Result:
 
 
 def provenance(modules: Iterable[str] = ("analytic",), seed: object = None) -> dict[str, Any]:
-    """Where numbers computed here and now come from, as a JSON-ready dict without paths or names.
+    """Return where numbers computed here and now come from, as a JSON-ready dict without paths or names.
 
     Parameters
     ----------
     modules : iterable of str
         The modules and definitions whose code the numbers depend on: roots of `sources.source_digests`.
     seed : int, list or None
-        Of the random numbers used; None where none are.
+        Seed of the random numbers used; None if none are.
     """
     return {
         "time": datetime.now(UTC).isoformat(timespec="seconds"),
@@ -80,7 +81,7 @@ def provenance(modules: Iterable[str] = ("analytic",), seed: object = None) -> d
 
 
 def machine() -> dict[str, Any]:
-    """Processor model, cores (physical and logical), memory [GiB], operating system."""
+    """Return the processor model, cores (physical and logical), memory [GiB] and operating system."""
     model = platform.processor()
     if Path("/proc/cpuinfo").exists():
         named = re.search(r"^model name\s*:\s*(.+)$", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
@@ -95,7 +96,7 @@ def machine() -> dict[str, Any]:
 
 
 def write_result(path: str | PathLike[str], *content: Any, modules: Iterable[str], **more: Any) -> Path:
-    """`save` what is `made_here`."""
+    """Make a `Result` by `made_here` and `save` it at `path`."""
     return save(path, made_here(*content, modules=modules, **more))
 
 
@@ -110,21 +111,21 @@ def made_here(
     runs: Sequence[Any] = (),
     run_count: int = 0,
 ) -> Result:
-    """The `Result` of numbers computed here and now, made JSON-ready. modules, seed: see `provenance`."""
+    """Return the `Result` of numbers computed here and now, JSON-ready. modules, seed: see `provenance`."""
     origin = json_ready(provenance(modules, seed))
-    own = [json_ready(each) for each in (settings, rows, runs)]
-    return Result(kind, own[0], own[1], origin, dict(arrays or {}), own[2], run_count)
+    plain = [json_ready(content) for content in (settings, rows, runs)]
+    return Result(kind, plain[0], plain[1], origin, dict(arrays or {}), plain[2], run_count)
 
 
 def save(path: str | PathLike[str], result: Result) -> Path:
-    """Write a result file: JSON at `path`, which ends in ``.json``, and the arrays, if any, beside it as ``.npz``.
+    """Write a result as JSON at `path`, which ends in ``.json``, and its arrays, if any, beside it as ``.npz``.
 
     Raises
     ------
     ResultError
-        The content names a path of this machine, or rows are no dicts.
+        The content names a path of this machine, or its rows are no dicts.
     PlaceError
-        It cannot be written; a result that was there is there still.
+        The file cannot be written; an older result stays as it was.
     """
     path, runs = Path(path), result.runs
     content: dict[str, Any] = {
@@ -157,7 +158,7 @@ def save(path: str | PathLike[str], result: Result) -> Path:
 
 
 def copy_result(path: Path, folder: Path) -> list[Path]:
-    """Copy a result file and the arrays beside it into `folder`; returns the paths of the copies."""
+    """Copy a result file and its arrays into `folder`, and return the paths of the copies."""
     content, into = _content(path), folder / path.name
     text = path.read_text(encoding="utf-8")
     if content["arrays"] is None:
@@ -169,13 +170,13 @@ def copy_result(path: Path, folder: Path) -> list[Path]:
 
 
 def read_result(path: str | PathLike[str]) -> Result:
-    """The `Result` in the file at `path`.
+    """Read the `Result` in the file at `path`.
 
     Raises
     ------
     ResultError
-        The file is missing, of another layout (`comparisons.schemas.runs`), or not as it was written; or its arrays
-        are missing or another study's.
+        The file is missing, has another layout (`comparisons.schemas.runs`), or is not as it was written; or its arrays
+        are missing or are not those it was written with.
     """
     path = Path(path)
     content = _content(path)
@@ -186,18 +187,18 @@ def read_result(path: str | PathLike[str]) -> Result:
 
 
 def _content(path):
-    """What a result file holds, as it was written."""
+    """The content of a result file, checked against its digest."""
     try:
         content = json.loads(read_plain(path, LARGEST))
         _check_form(path.name, content)
-        whole = content["digest"] == digest_of(content)
+        intact = content["digest"] == digest_of(content)
     except FileNotFoundError as error:
         raise ResultError(f"{path.name}: no such result file; run the study that writes it") from error
     except OSError as error:
         raise ResultError(f"{path.name}: cannot be read ({error.strerror}); give a result file of a study") from error
     except (ValueError, RecursionError) as error:
         raise ResultError(f"{path.name}: not JSON ({error}); run the study again") from error
-    if not whole:
+    if not intact:
         raise ResultError(
             f"{path.name}: damaged, what it holds is not what its digest was made of; take the file from where it is "
             "whole, or run the study again"
@@ -206,13 +207,13 @@ def _content(path):
 
 
 def digest_of(content: Mapping[str, Any]) -> str:
-    """SHA-256 of all that a result file holds beside its digest: of its JSON, keys sorted, without spaces."""
+    """Return the SHA-256 of the content of a result file without its digest, as JSON with sorted keys and no spaces."""
     rest = {name: value for name, value in content.items() if name != "digest"}
     return hashlib.sha256(json.dumps(rest, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
 
 
 def _check_form(name, content):
-    """Raise `ResultError` where the content of a file is no result, or one of another layout."""
+    """Raise `ResultError` if the content of a file is no result, or has another layout."""
     content = content if isinstance(content, dict) else {}
     if content.get("schema") != SCHEMA:
         origin = content.get("provenance")
@@ -229,13 +230,12 @@ def _check_form(name, content):
 
 
 def record_check(path: Path, check: Mapping[str, Any] | None) -> None:
-    """Write into the provenance of the result at `path` when and how many of its runs were done again and held; None:
-    none were.
+    """Write the outcome of a check, or None, into the provenance of the result at `path`.
 
     Raises
     ------
     ResultError
-        The file is damaged, or cannot be written; it is as it was.
+        The file is damaged or cannot be written; it stays as it was.
     """
     content = _content(path)
     if content["provenance"].get("check") == check:
@@ -249,7 +249,7 @@ def record_check(path: Path, check: Mapping[str, Any] | None) -> None:
 
 
 def _arrays(path, content):
-    """{name: array} of the file beside a result file, {} where it has none."""
+    """{name: array} of the file beside a result file; {} if it has none."""
     if content["arrays"] is None:
         return {}
     with np.load(io.BytesIO(_beside(path, content))) as arrays:
@@ -268,12 +268,12 @@ def _beside(path, content):
 
 
 def at_commit(commit: str | None) -> str:
-    """Where code stood, in words."""
+    """Return in words at which commit the code was."""
     return f"at commit {commit[:7]}" if commit else "outside a checkout"
 
 
 def scrub(text: str) -> str:
-    """`text` without this machine's paths and addresses: project files stay readable, others lose their folders."""
+    """Return `text` without this machine's paths and addresses. Paths of the project stay readable."""
     for root, name in _roots():
         text = text.replace(root, name)
     text = re.sub(r'(File ")/[^"]*/', r"\1", text)  # paths in tracebacks that are none of these
@@ -281,7 +281,7 @@ def scrub(text: str) -> str:
 
 
 def json_ready(value: Any) -> Any:
-    """`value` as plain JSON types; arrays become lists, numbers that are not finite become None."""
+    """Return `value` in plain JSON types: arrays become lists, numbers that are not finite become None."""
     if is_dataclass(value) and not isinstance(value, type):
         value = asdict(value)
     if isinstance(value, np.ndarray | np.generic):
@@ -296,7 +296,7 @@ def json_ready(value: Any) -> Any:
 
 
 def _roots():
-    """Folders of this machine and what to call them, the inner ones first."""
+    """(folder of this machine, its replacement in texts) for the folders not to be named, inner ones first."""
     roots = [(str(PROJECT_FOLDER), ".")] + [(path, "site-packages") for path in site.getsitepackages()]
     roots += [
         (sys.prefix, "<environment>"),
@@ -309,7 +309,7 @@ def _roots():
 
 
 def _layout(content):
-    """JSON with one line per row, small and readable in a diff, and the digest of it all."""
+    """The content as JSON with its digest, one line for each row: small, and readable in a diff."""
     head = {**content, "digest": digest_of(content)}
     lines = ",\n  ".join(json.dumps(row, allow_nan=False) for row in head.pop("rows"))
     text = json.dumps(head, indent=1, allow_nan=False)[:-2]
@@ -317,7 +317,7 @@ def _layout(content):
 
 
 def checkout() -> dict[str, Any]:
-    """Commit of the project's checkout, and whether tracked files differ from it ("dirty"); None outside one."""
+    """Return the commit of the checkout and whether tracked files differ from it ("dirty"); None outside one."""
 
     def git(*words):
         return subprocess.run(
@@ -333,5 +333,5 @@ def checkout() -> dict[str, Any]:
 
 
 def commit_seed() -> int:
-    """A seed that every commit draws anew; 0 outside a checkout."""
+    """Return a seed that follows from the commit; 0 outside a checkout."""
     return int((checkout()["commit"] or "0")[:8], 16)

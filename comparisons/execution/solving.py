@@ -1,10 +1,8 @@
-"""One run as a user asks for it: ground motion, solver and settings by name, checked.
+"""Runs as the commands make them: options by name, one run, a scene under many motions, plausibility of a scene.
 
-Options that commands share (of a record, of the many motions a scene is tried under), and messages that name them:
-options, not the parameters or the keys behind them.
-
-Implausible numbers in a new scene: centimetres for metres, an impossible density, a tilt past the balance, bearings
-that do not yield.
+Options that several commands share stand here. Error messages name the option, not the parameter or key behind it.
+`doubts` finds implausible numbers in a new scene: centimetres for metres, an impossible density, a tilt past the
+balance, bearings that do not yield.
 """
 
 from __future__ import annotations
@@ -21,33 +19,40 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
+import analytic
+from analytic import Response, SampledMotion, synthetic_motion
 from analytic.errors import SceneError, SettingError
+from analytic.margins import SHARE, cliffs, nearby
+from analytic.motion import Motion
+from analytic.records import read_record
+from analytic.records.folder import folder_motions, reversed_sign, same_reversed
+from analytic.response import Caution, Failure, about_record
 from analytic.scene import Scene
-from analytic.scene_file import MATERIALS, UPLIFT, YIELD, derived
-from engines.simulating import RANGE
+from analytic.scene_file import MATERIALS, UPLIFT, YIELD, derived, load_scene
+from engines import BROKEN, ENGINES, get_engine, guard
+from engines.observe import failed_response
+from engines.simulating import RANGE, choose
 
+from .cases import versions
 from .files import readable
-from .progress import compile_kernels, say, spinner
+from .progress import bar, compile_kernels, say, spinner
 
-if TYPE_CHECKING:
-    from analytic import Caution, Response, SampledMotion, Scene
-
-ANALYTIC, KERNEL = "analytic", "kernel"  # and the variant that its runs are told as
+ANALYTIC, KERNEL = "analytic", "kernel"  # the model, and the name of its variant
 TIME_LIMIT = 300.0  # s, of one run
-TIME_LIMIT_HELP = "A run that takes longer is ended, and counts as failed."
+TIME_LIMIT_HELP = "End a run that takes longer; it counts as failed."
 
 
 def parse_settings(pairs: Iterable[str]) -> dict[str, Any]:
-    """``["step=1e-4"]`` -> ``{"step": 0.0001}``; values are JSON, anything else is text.
+    """Parse ``["step=1e-4"]`` into ``{"step": 0.0001}``. Values are JSON; anything else is text.
 
     Raises
     ------
     SettingError
-        A pair without "=", or a number that is not finite.
+        A pair has no "=", or a number is not finite.
     """
     settings = {}
     for pair in pairs:
@@ -64,40 +69,34 @@ def parse_settings(pairs: Iterable[str]) -> dict[str, Any]:
     return settings
 
 
-def ground_motion(record: str | PathLike[str] | None = None, **said: Any) -> SampledMotion:
-    """The motion in the file `record`, or the shipped synthetic one without it.
+def ground_motion(record: str | PathLike[str] | None = None, **stated: Any) -> SampledMotion:
+    """Return the motion in the file `record`, or without it the shipped synthetic one.
 
-    said : units, dt, column, channel
-        What the file does not say itself (see `analytic.records.read_record`); None: nothing.
+    stated: units, dt, column and channel, if the file does not state them (see `analytic.records.read_record`).
 
     Raises
     ------
     SettingError
-        Something is said of a record, and there is none.
+        An option of a record is given without a record.
     SceneError
         The record cannot be read.
     """
-    from analytic import synthetic_motion
-    from analytic.records import read_record
-
     if record is not None:
-        return read_record(record, **said)
-    for name, value in said.items():
+        return read_record(record, **stated)
+    for name, value in stated.items():
         if value is not None:
             raise SettingError(f"--{name} {value}: belongs to a record; give --record FILE")
     return synthetic_motion()
 
 
 def scene_of(text: str, file: str) -> Scene:
-    """The scene that a text makes as the file called `file`, before it is one.
+    """Return the scene that `text` gives as the content of `file`, before that is written.
 
     Raises
     ------
     SceneError
-        As of that file.
+        The text is no scene; the message names `file`.
     """
-    from analytic.scene_file import load_scene
-
     with tempfile.NamedTemporaryFile("w", suffix=".toml", dir=Path(file).resolve().parent, encoding="utf-8") as part:
         part.write(text)
         part.flush()
@@ -109,7 +108,7 @@ def scene_of(text: str, file: str) -> Scene:
 
 @contextlib.contextmanager
 def in_file(place: str) -> Iterator[None]:
-    """What a model refuses inside is a mistake in the scene file called `place`."""
+    """Let a `SceneError` raised inside name the scene file `place`."""
     try:
         yield
     except SceneError as error:
@@ -126,28 +125,25 @@ def simulate(
     words: str | None = None,
     compare: bool = False,
 ) -> Response:
-    """The `Response` of the solver called `solver`, run in a process of its own while `words` are shown.
+    """Run a scene with a solver in a separate process and return the `Response`. `words` are shown meanwhile.
 
-    compare: an engine's run with the analytic model (`engines.comparison`); of the model itself, whether a change as
-    small as its own errors is another outcome.
+    compare: compare an engine's run with the analytic model (`engines.comparison`); for the model itself, test whether
+    a change as small as its own errors gives another outcome.
 
-    What is odd about the record stands among its warnings. A run that crashes, or takes more than `time_limit` [s], is
-    a response of outcome "failed" with the evidence.
+    Warnings on the record are added to those of the run. A run that crashes, or takes more than `time_limit` [s], gives
+    a response with the outcome "failed" and the evidence.
 
     Raises
     ------
     SettingError
-        Unknown solver, variant or setting, or a setting of the wrong type.
+        The solver, variant or setting is unknown, or a setting has the wrong type.
     EngineNotInstalled
-        The engine cannot be imported here; says how to install it.
+        The engine cannot be imported here; the message says how to install it.
     """
-    from analytic.response import about_record
-    from engines.guard import OUT_OF_TIME, RAISED, run_apart
-
     settings = settings or {}
     check_solver(solver)
     compile_kernels(scene.motion is not None and scene.motion.vertical is not None)
-    response, failure = run_apart(
+    response, failure = guard.run_apart(
         _simulate,
         scene,
         solver,
@@ -158,14 +154,10 @@ def simulate(
         time_limit=time_limit,
         meanwhile=spinner(words) if words else None,
     )
-    if failure and failure.reason == RAISED and solver == ANALYTIC:
+    if failure and failure.reason == guard.RAISED and solver == ANALYTIC:
         raise RuntimeError(f"the analytic model raised {failure.message}")  # a mistake of this project, not a result
     if failure:
-        from engines.observe import failed_response
-
-        from .cases import versions
-
-        if failure.reason == OUT_OF_TIME:
+        if failure.reason == guard.OUT_OF_TIME:
             first, end, rest = failure.message.partition("\n")
             failure = dataclasses.replace(failure, message=f"{first}; --time-limit allows more{end}{rest}")
         response = failed_response(
@@ -176,9 +168,7 @@ def simulate(
 
 
 def near_motion(scene: Scene) -> tuple[Caution, ...]:
-    """`near` a scene's motion, shown while it is looked for; none without a motion."""
-    from analytic.margins import SHARE
-
+    """Return the warnings of `near` and show a line meanwhile; none without a motion."""
     if scene.motion is None:
         return ()
     with spinner(f"{scene.name}: within {SHARE:.0%} of the motion"):
@@ -186,10 +176,7 @@ def near_motion(scene: Scene) -> tuple[Caution, ...]:
 
 
 def near(scene: Scene) -> tuple[Caution, ...]:
-    """`analytic.margins.cliffs` of a scene with a motion, or that it was not looked for."""
-    from analytic.margins import SHARE, cliffs, nearby
-    from analytic.response import Caution
-
+    """Return the warnings of `analytic.margins.cliffs` for a scene with a motion, or that these were not determined."""
     try:
         return cliffs(scene, *nearby(scene))
     except SceneError as error:
@@ -198,14 +185,12 @@ def near(scene: Scene) -> tuple[Caution, ...]:
 
 
 def with_near(scene: Scene, response: Response) -> Response:
-    """The response of a scene with the warnings that `near` adds to a single run's, too."""
+    """Return the response of a scene with the warnings of `near` added."""
     return dataclasses.replace(response, warnings=(*response.warnings, *near(scene)))
 
 
 def check_solver(name: str) -> None:
     """Raise `SettingError` if no solver is called `name`."""
-    from engines import BROKEN, ENGINES
-
     if name in BROKEN:
         raise BROKEN[name]
     if name != ANALYTIC and name not in ENGINES:
@@ -213,17 +198,15 @@ def check_solver(name: str) -> None:
 
 
 def named_engines(names: Iterable[str]) -> tuple[str, ...]:
-    """The engines of these names, each once.
+    """Return these names of engines, each once.
 
     Raises
     ------
     SettingError
-        An engine has no such name; lists the known ones.
+        No engine has such a name; the message lists the known ones.
     EngineNotInstalled
-        As `engines.get_engine`.
+        As for `engines.get_engine`.
     """
-    from engines import get_engine
-
     names = tuple(dict.fromkeys(names))
     for name in names:
         try:
@@ -234,22 +217,17 @@ def named_engines(names: Iterable[str]) -> tuple[str, ...]:
 
 
 def check_time_limit(seconds: float) -> None:
-    """Raise `SettingError` if a run cannot be given so many seconds."""
-    from engines.guard import check_time_limit
-
+    """Raise `SettingError` if `seconds` is no valid time limit of a run."""
     try:
-        check_time_limit(seconds)
+        guard.check_time_limit(seconds)
     except ValueError as error:
         raise SettingError(f"--{error}".replace("time_limit", "time-limit", 1)) from None
 
 
 def _simulate(scene, solver, variant, settings, history, compare):
     if solver != ANALYTIC:
-        from engines import get_engine
-        from engines.simulating import choose
-
         engine = get_engine(solver)
-        if settings:  # else one called as an argument of `simulate` would be taken for that
+        if settings:  # a setting could have the name of an argument of `simulate`
             choose(engine, variant, settings)
             if "friction" in settings and scene.friction is not None:
                 words = f"{solver}: friction = {settings['friction']!r}"
@@ -265,8 +243,6 @@ def _simulate(scene, solver, variant, settings, history, compare):
 
 
 def _analytic(scene, variant, settings, history):
-    import analytic
-
     if variant not in (None, KERNEL):
         raise SettingError(f"the analytic model has no variant {variant!r}: leave --variant out, or give {KERNEL}")
     parameters = inspect.signature(analytic.simulate).parameters
@@ -280,7 +256,7 @@ def _analytic(scene, variant, settings, history):
 
 
 def _check_size(name, value):
-    """Numbers a solver can take: those that are finite as a double."""
+    """Raise `SettingError` unless the number is finite as a double."""
     try:
         finite = math.isfinite(value)
     except OverflowError:  # a whole number beyond the doubles, with hundreds of digits
@@ -290,32 +266,39 @@ def _check_size(name, value):
 
 
 def print_failures(responses: Iterable[Response]) -> None:
-    """Name the failed ones of the responses on standard error, with what a terminal can hold of the evidence."""
+    """Name each failed response on standard error, with the first line of the evidence."""
     for response in responses:
         if response.failure:
             evidence = readable(response.failure.message.partition("\n")[0])
             say(f"{response.engine} failed: {response.failure.reason}. {evidence}".rstrip(". ") + ".")
 
 
-if TYPE_CHECKING:
-    from analytic import Response, Scene
-    from analytic.motion import Motion
-    from analytic.response import Caution
-
-# What a user says of a record that the file itself does not.
+SceneFile = Annotated[str, typer.Argument(help="Scene file (TOML), or the name of a shipped scene.")]
+EngineNames = Annotated[
+    list[str] | None, typer.Option("--engine", help="Engine; may be repeated. Default: all that are installed.")
+]
+JsonFile = Annotated[str | None, typer.Option("--json", metavar="FILE", help="Write the result as JSON; - prints it.")]
+# What a user states about a record if its file does not.
 Units = Annotated[
-    str | None, typer.Option(help="Unit, if header and titles state none: m/s2, cm/s2, gal, mm/s2, g or %g.")
+    str | None,
+    typer.Option(help="Unit of the accelerations, if the file states none: m/s2, cm/s2, gal, mm/s2, g or %g."),
 ]
 Step = Annotated[
-    float | None, typer.Option(metavar="SECONDS", help="Sampling interval, if no line such as dt = 0.01 s states one.")
+    float | None,
+    typer.Option(metavar="SECONDS", help="Sampling interval, if the file states none (as in a line dt = 0.01 s)."),
 ]
 Column = Annotated[
-    str | None, typer.Option(help="Of several columns: the accelerations', its number from 1 on or its title.")
+    str | None,
+    typer.Option(help="Column of the accelerations, if there are several: its number (from 1) or its title."),
 ]
-Channel = Annotated[str | None, typer.Option(help="Of several channels: its number or direction, 3 or Up.")]
-# What `rocking new` and `rocking design` share; those of a record, wherever one is read.
-DEFINITION = "Of the damping. equivalent: W_D/(4 pi E_s), the usual one; paper: W_D/(2 pi E_s), twice as much."
-RATIO = "By design: ka/kb; Table 1(b) of the paper has 10."
+Channel = Annotated[
+    str | None, typer.Option(help="Channel to read, if there are several: its number or direction, such as 3 or Up.")
+]
+# Help texts that `rocking new` and `rocking design` share.
+DEFINITION = (
+    "Definition of the damping ratio. equivalent, the usual one: W_D/(4 pi E_s). paper, twice as much: W_D/(2 pi E_s)."
+)
+RATIO = "Bearings by design: stiffness ratio ka/kb; the paper's Table 1(b) has 10."
 RECORD_OPTIONS = {f"motion.{name}": f"--{name}" for name in ("units", "dt", "column", "channel")}
 _SAME = ("height", "width", "depth", "density", "mass", "period", "damping", "definition", "count", "friction")
 OPTIONS = {
@@ -329,13 +312,13 @@ OPTIONS = {
 
 @contextlib.contextmanager
 def named_by_options(options: Mapping[str, str]) -> Iterator[None]:
-    """Errors raised inside name options; options : {parameter of a function, or key of a scene: option}."""
+    """Let errors raised inside name options. options: {parameter of a function, or key of a scene: option}."""
     try:
         yield
     except SettingError as error:
         words = str(error)
         for name, option in options.items():
-            end = r"\b" if "_" in name else "(?= = )"  # a word of a sentence stays one
+            end = r"\b" if "_" in name else "(?= = )"  # a plain word of the sentence is not replaced
             words = re.sub(rf"(?<![\w.-]){re.escape(name)}{end}", option, words)
         raise SettingError(words) from None
     except SceneError as error:
@@ -343,91 +326,89 @@ def named_by_options(options: Mapping[str, str]) -> Iterator[None]:
 
 
 def _by_options(error: SceneError, options: Mapping[str, str]) -> SceneError:
-    """The same mistakes, naming options."""
+    """The same error, and the others it carries, with the names of options."""
     key = options.get(error.key, error.key)
-    of_a_file = key == error.key or error.key in RECORD_OPTIONS
-    file = error.file if of_a_file else None  # other options name no file
+    names_file = key == error.key or error.key in RECORD_OPTIONS
+    file = error.file if names_file else None  # other options name no file
     others = tuple(_by_options(other, options) for other in error.others)
     return SceneError(key, error.value, error.problem, error.remedy, file, others)
 
 
 Records = Annotated[
-    str | None, typer.Option(metavar="FOLDER", help="Also under the records in this folder, as they are recorded.")
+    str | None, typer.Option(metavar="FOLDER", help="Repeat under every record in this folder, unscaled.")
 ]
 BothSigns = Annotated[
-    bool,
-    typer.Option(
-        "--both-signs", help="Also under every motion with its sign changed, unless block and start are symmetric."
-    ),
+    bool, typer.Option("--both-signs", help="Repeat with the motion reversed (skipped for symmetric cases).")
 ]
 Directions = Annotated[
     int | None,
     typer.Option(
-        metavar="NUMBER", help="Under so many directions of each record's two horizontal components, over half a turn."
+        metavar="NUMBER",
+        help="Rotate the two horizontal components of each record to this many directions over 180 degrees.",
     ),
 ]
 
 
-OWN = "the scene's own motion"  # the record of one that is not among those of the folder
+OWN = "the scene's own motion"  # record of a scene's own motion that is not in the folder
 
 
 def motions_of(
     scene: Scene, records: str | None, both_signs: bool, directions: int | None, units: str | None = None
 ) -> tuple[dict[str, list[Motion]], list[str]]:
-    """({record: its motions}, the scene's own among them as of `with_own`; what is left out and why, said).
+    """Return ({record: its motions}, lines on what was left out and why). The lines are also printed.
+
+    The motions include the scene's own, see `with_own`.
 
     Raises
     ------
     SettingError
-        No such folder, no motion in it, or directions or units without a folder.
+        There is no such folder, or no motion in it; or directions or units are given without a folder.
     """
-    from analytic.records.folder import folder_motions, reversed_sign, same_reversed
-
-    from .progress import say
-
     for name, value in (("directions", directions), ("units", units)):
         if value is not None and records is None:
             raise SettingError(f"--{name} {value}: give the folder of the records with --records")
-    found: dict[str, list[Motion]] = {}
+    groups: dict[str, list[Motion]] = {}
     left: list[str] = []
     if records is not None:
         with named_by_options({"directions": "--directions"}):
             others, left = folder_motions(records, directions=directions, scene_motion=scene.motion, units=units)
-        found = {name: [*motions] for name, motions in others.items()}
+        groups = {name: [*motions] for name, motions in others.items()}
         for line in left:
             say(line)
-    found = with_own(scene.motion, found)
+    groups = with_own(scene.motion, groups)
     if both_signs and same_reversed(scene):
         say("--both-signs: mirrored the same, as block and start are symmetric; each motion is run once")
     elif both_signs:
-        found = {name: [*motions, *map(reversed_sign, motions)] for name, motions in found.items()}
-    return found, left
+        groups = {name: [*motions, *map(reversed_sign, motions)] for name, motions in groups.items()}
+    return groups, left
 
 
-def with_own(own: Motion | None, groups: Mapping[str, Sequence[Motion]]) -> dict[str, list[Motion]]:
-    """{record: its motions}, a scene's own motion among them: where it is not yet, the first of the record of its name
-    or, without one, of `OWN`."""
-    found = {record: [*motions] for record, motions in groups.items()}
-    if own is None or any(one.digest() == own.digest() for motions in found.values() for one in motions):
-        return found
-    return {own.label if own.label in found else OWN: [own, *found.pop(own.label, [])], **found}
+def with_own(motion: Motion | None, groups: Mapping[str, Sequence[Motion]]) -> dict[str, list[Motion]]:
+    """Return {record: its motions} with a scene's own motion, if it is not among them.
+
+    It is then the first motion of the record of its name or, if there is none, of the record `OWN`.
+    """
+    merged = {record: [*motions] for record, motions in groups.items()}
+    if motion is None or any(each.digest() == motion.digest() for motions in merged.values() for each in motions):
+        return merged
+    return {motion.label if motion.label in merged else OWN: [motion, *merged.pop(motion.label, [])], **merged}
 
 
 def other_motions(
     scene: Scene, records: str | None, both_signs: bool, directions: int | None, units: str | None = None
 ) -> tuple[dict[str, list[Motion]], list[str]]:
-    """`motions_of` where one of the options is given, else none."""
+    """Return `motions_of` if one of the options is given; otherwise no motions."""
     given = both_signs or any(value is not None for value in (records, directions, units))
     return motions_of(scene, records, both_signs, directions, units) if given else ({}, [])
 
 
 def read_row(record: str, motion: Motion, warnings: Sequence[Caution] = ()) -> dict[str, Any]:
-    """A motion as it was read: record, motion, peak [m/s2], and warnings on it, as `schemas.runs.MotionRead` has it;
-    further `warnings` behind them."""
-    from analytic.response import about_record
+    """Return a motion as it was read, with the fields of `schemas.runs.MotionRead`.
 
-    told = dict.fromkeys((*about_record(motion), *warnings))
-    return {"record": record, "motion": motion.label, "peak": motion.peak, "warnings": list(map(asdict, told))}
+    warnings: further ones, added to those on the record.
+    """
+    cautions = dict.fromkeys((*about_record(motion), *warnings))
+    return {"record": record, "motion": motion.label, "peak": motion.peak, "warnings": list(map(asdict, cautions))}
 
 
 def rows_of(
@@ -436,9 +417,7 @@ def rows_of(
     simulate: Callable[[Scene], Response],
     more: Callable[[Scene], Mapping[str, Any]] = lambda scene: {},
 ) -> list[dict[str, Any]]:
-    """`row_of` each motion, in the groups' order; shown as it goes on."""
-    from .progress import bar
-
+    """Return `row_of` each motion, in the order of the groups, and show a bar meanwhile."""
     pairs = [(record, motion) for record, motions in groups.items() for motion in motions]
     if not pairs:
         return []
@@ -457,13 +436,11 @@ def row_of(
     simulate: Callable[[Scene], Response],
     more: Callable[[Scene], Mapping[str, Any]] = lambda scene: {},
 ) -> dict[str, Any]:
-    """A scene under one of many motions, as `schemas.runs.MotionRun` has it: the one way from a motion to its warnings.
+    """Run a scene under one of many motions and return the fields of `schemas.runs.MotionRun`.
 
-    simulate : of the scene under the motion; where it is refused, the row is that of a failed run. more : what else a
-    row of a run has.
+    simulate: returns the response of the scene under the motion. If the scene is refused, the row is that of a failed
+    run. more: returns further fields of the row.
     """
-    from analytic.errors import SceneError
-
     try:
         under = scene.with_(motion=motion)
         response, added = simulate(under), more(under)
@@ -473,27 +450,20 @@ def row_of(
 
 
 def end_with(rows: Sequence[Mapping[str, Any]], *responses: Response) -> None:
-    """End the command with status 1 where the run of a motion, or one of the responses, failed."""
+    """End the command with status 1 if the run of a motion, or one of the responses, failed."""
     if any(row["failure"] for row in rows) or any(response.failure for response in responses):
         raise typer.Exit(1)
 
 
 def refused(scene: Scene, error: SceneError, **known: Any) -> Response:
-    """The failed response of a scene that a solver refuses; known : engine, variant, ..., the model's without them."""
-    from analytic.response import Failure
-    from engines.observe import failed_response
-
-    from .cases import versions
-
-    pass
-
+    """Return the failed response of a scene that a solver refuses. known: engine, variant, ...; else the model's."""
     name = known.get("engine", ANALYTIC)
     solver = {"engine": name, "variant": "", "settings": {}, "versions": versions(name)}
     return failed_response(scene, Failure("it cannot run this scene", str(error)), **{**solver, **known})
 
 
 def _measures(scene: Scene, response: Response) -> dict[str, Any]:
-    """What a run did."""
+    """Outcome, failure and peaks of a run, as fields of a row."""
     failure = response.failure
     return {
         "outcome": response.outcome,
@@ -504,74 +474,78 @@ def _measures(scene: Scene, response: Response) -> dict[str, Any]:
     }
 
 
-# Of the lightest material: walls of a tenth of the width fill a third of a hollow piece, and a figure half of its box.
+# Least density over that of the lightest material: walls of a tenth of the width fill a third of a hollow piece, and a
+# figure fills half of its box.
 HOLLOW = 1 / 6
 
 
+# Long because each doubt names options, values, range and remedy.
 def doubts(
     scene: Scene, height: float, width: float, depth: float | None = None, *, weighed: bool, designed: bool
 ) -> list[str]:
-    """Implausible values: the options, their value, the plausible range and the remedy; empty if there are none.
+    """Return a sentence on each implausible value: the options, their value, the plausible range and the remedy.
 
     Parameters
     ----------
     scene : Scene
-        Made from the options.
+        The scene made from the options.
     height, width, depth : float
-        Of the block [m]; the depth is the width where it is not given.
+        Dimensions of the block [m]; the depth is the width if it is not given.
     weighed : bool
-        The block's mass was given, not its density.
+        The mass of the block was given, not its density.
     designed : bool
         The bearings were given by their period, not by their constants.
     """
-    block, found = scene.block, []
+    block, sentences = scene.block, []
     sizes = f"--height {height:g} and --width {width:g}"
-    least, most, _ = RANGE["radius"]  # the engines' variants are tested for it, and nothing is promised beyond
-    if not least <= block.radius <= most:  # what else follows from the lengths is wrong with them
+    least, most, _ = RANGE["radius"]  # the range in which the engines are tested
+    if not least <= block.radius <= most:  # whatever follows from these lengths is wrong, too
         return [
             f"{sizes} give a radius R of {block.radius:.3g} m, a statue has {least:g} to {most:g} m; "
             f"give them in m{_meant(height, width)}"
         ]
-    least, most, _ = RANGE["slenderness"]  # likewise; stockier blocks slide or stand, more slender ones fall at once
+    least, most, _ = RANGE["slenderness"]  # stockier blocks slide or stand, more slender ones fall at once
     if not least <= block.slenderness <= most:
-        found.append(
+        sentences.append(
             f"{sizes} give a slenderness of {block.slenderness:.3g} rad, a statue has {least:g} to {most:g} rad: "
             f"a width of {math.tan(least):.2g} to {math.tan(most):.2g} of the height; "
             + ("exchange them" if least <= math.pi / 2 - block.slenderness <= most else "correct one")
         )
     if depth is not None and depth > 2 * RANGE["radius"][1]:  # a side of the largest statue is 2 R at most
-        found.append(
+        sentences.append(
             f"--depth {depth:g} is longer than any side of a statue, {2 * RANGE['radius'][1]:g} m; give it in m"
         )
     tilt = scene.start.tilt
     if scene.motion is None and not 0 < abs(tilt) < block.slenderness:
         what = "releases the block where it stands: nothing moves" if tilt == 0 else "is beyond its balance: it falls"
-        found.append(f"--tilt {tilt:g} {what}; give a size between 0 and the slenderness, {block.slenderness:.4g} rad")
+        sentences.append(
+            f"--tilt {tilt:g} {what}; give a size between 0 and the slenderness, {block.slenderness:.4g} rad"
+        )
     density = block.mass / (height * width * (depth or width))
     least, most = HOLLOW * min(MATERIALS.values()), max(MATERIALS.values())  # the densest one, solid
     if not least <= density <= most:
         given = f"--mass {block.mass:g} makes a block of" if weighed else "--density is"
         remedy = "give the mass in kg, or the block's --depth in m" if weighed else "give it in kg/m3"
-        found.append(
+        sentences.append(
             f"{given} {density:.3g} kg/m3, a statue has {least:g} (hollow wood) to {most:g} (bronze); {remedy}"
         )
     values = {name: value for name, value, _ in derived(scene)}
-    if values.get(YIELD, 0.0) >= values[UPLIFT]:  # until they yield they are stiff, and the block is lifted before that
+    if values.get(YIELD, 0.0) >= values[UPLIFT]:  # before they yield they are stiff, and the block lifts
         given = "--period, --damping and --xmax" if designed else "--ka, --kb and --alpha"
         remedy = (
             "give a longer --period, a lower --damping or a smaller --xmax"
             if designed
             else "give a lower --ka or a higher --alpha"
         )
-        found.append(
+        sentences.append(
             f"{given} give bearings that yield at {values[YIELD]:.3g} m/s2, and so do not isolate before the block "
             f"lifts at {values[UPLIFT]:.3g} m/s2: they should yield below that; {remedy}"
         )
-    return found
+    return sentences
 
 
 def _meant(height: float, width: float) -> str:
-    """A question for the lengths of a statue of which one or both were given in cm or mm."""
+    """Ask whether one or both of the lengths were given in cm or mm; "" if that gives no statue either."""
     guesses = []
     for unit, scale in (("cm", 100), ("mm", 1000)):
         for high, wide in ((height / scale, width / scale), (height / scale, width), (height, width / scale)):
@@ -581,17 +555,17 @@ def _meant(height: float, width: float) -> str:
     return f"; did you mean {' or '.join(guesses)}?" if guesses else ""
 
 
-def confirm(found: Sequence[str]) -> None:
-    """Return if nothing was found, or if the user confirms the values in a terminal.
+def confirm(sentences: Sequence[str]) -> None:
+    """Return if there are no doubts, or if the user confirms the values in a terminal.
 
     Raises
     ------
     SettingError
-        There is no terminal, or the answer is no.
+        There are doubts, and there is no terminal or the answer is no.
     """
-    if not found:
+    if not sentences:
         return
-    words = "; ".join(found)
+    words = "; ".join(sentences)
     if not sys.stdin.isatty():
         raise SettingError(f"{words} (--anyway writes the file as it is)")
     if not typer.confirm(f"{words}\nWrite it anyway?", err=True):

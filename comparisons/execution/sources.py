@@ -1,9 +1,9 @@
-"""Which definitions a number depends on, as digests of their code: comments, docstrings, layout, and the module that a
-definition stands in, do not count.
+"""Digests of the code that a number depends on, definition by definition.
 
-A definition is a statement of a module that is no import: a function, a class, a constant, a table. What it reads is
-found by the names in it: those of its own module and those that it imports, also inside functions. A class counts
-whole, as nobody can tell by its name which method is called.
+Comments, docstrings, layout, and the module in which a definition stands do not count. A definition is a statement of a
+module other than an import: a function, a class, a constant, a table. What it reads is found by the names in it: names
+of its own module and names that it imports, also inside functions. A class counts as a whole, because a name does not
+tell which method is called.
 """
 
 import ast
@@ -24,16 +24,16 @@ from analytic.scene_file import SHIPPED, shipped_scenes
 
 PROJECT = ("analytic", "engines", "comparisons")
 SHIPPED_NAMES = shipped_scenes()
-# What runs, stores, checks and describes runs, and what keeps compiled code, computes no number of theirs; `cases` says
-# what is run.
+# These modules run, store, check and describe runs, or keep compiled code, and compute no number. The exception is
+# `cases`, which says what is run.
 CARRIES_OUT, COMPUTES = (
     ("comparisons.execution", "comparisons.schemas", "analytic.kernel.cache"),
     "comparisons.execution.cases",
 )
-DIGITS = 8  # of a digest that is kept: of a thousand definitions one collides by chance in some 1e6 changes
+DIGITS = 8  # kept of a digest: with a thousand definitions, about one change in 1e6 goes undetected
 
 
-# {a name by which stored results call code: where that stands today}, of what was moved since
+# {name of moved code in stored results: where it stands today}
 ALIASES: dict[str, str] = {
     "analytic.time_stepping:simulate_time_stepping": "analytic.checks.time_stepping:simulate_time_stepping",
     "analytic.twin:simulate_twin": "analytic.checks.twin:simulate_twin",
@@ -46,30 +46,31 @@ ALIASES: dict[str, str] = {
     "comparisons.studies.sliding.study:plan": "comparisons.studies.statues.study:plan",
     "comparisons.studies.tolerances.study:plan": "comparisons.metrics.agreement:measure_all",
 }
-TABLE_OF_TOLERANCES = re.compile(r"(engines\.\w+)\.tolerances:TOLERANCES")  # of an engine: stands in its record
+TABLE_OF_TOLERANCES = re.compile(
+    r"(engines\.\w+)\.tolerances:TOLERANCES"
+)  # the table of an engine now stands in its record
 
 
 def source_digests(roots: Iterable[str]) -> dict[str, str]:
-    """Digest of every definition of the project that `roots` reach.
+    """Return the digest of every definition of the project that `roots` reach.
 
     Parameters
     ----------
     roots : iterable of str
-        Modules, with all that they hold (``engines.exudyn.adapter``), or definitions (``analytic:simulate``). What
-        they read is followed within `PROJECT` and the top-level packages of the roots, and not into what carries runs
-        out (`computes`).
+        Whole modules (``engines.exudyn.adapter``) or definitions (``analytic:simulate``). What they read is followed
+        within `PROJECT` and the top-level packages of the roots, but not into modules that only carry out runs
+        (`computes`).
 
     Returns
     -------
     dict
-        Name of the definition with its module's -> digest of its code and of the code of all that it reads by name,
-        sorted by name; and so of the scenes that the package ships, where a definition names them
-        (``analytic.scenes.caryatid-rigid``).
+        {name of the definition, with its module: digest of its code and of the code of all that it reads}, sorted by
+        name. Shipped scenes that a definition names are included (``analytic.scenes.caryatid-rigid``).
 
     Raises
     ------
     ModuleNotFoundError
-        The module of a root does not exist, or holds no such definition.
+        The module of a root does not exist, or has no such definition.
     """
     roots = list(roots)
     code = code_of(map(package_of, roots))
@@ -77,47 +78,49 @@ def source_digests(roots: Iterable[str]) -> dict[str, str]:
 
 
 def kept_digests(roots: Iterable[str]) -> dict[str, str]:
-    """What a result keeps of `source_digests`: {root: digests that those of the roots before it have not, joined}."""
+    """Return the digests that a result stores: {root: the joined digests that earlier roots do not have}."""
     known: set[str] = set()
     kept = {}
     for root in roots:
-        own = set(source_digests([root]).values()) - known
-        kept[root] = "".join(sorted(own))
-        known |= own
+        added = set(source_digests([root]).values()) - known
+        kept[root] = "".join(sorted(added))
+        known |= added
     return kept
 
 
 def changes(kept: Mapping[str, str]) -> list[str]:
-    """Names of the definitions that are others today than those of which `kept_digests` were kept: of those that do not
-    read another such one; and of roots that are gone."""
+    """Return names of the definitions that have changed since `kept_digests` were stored, and of roots that are gone.
+
+    A definition that reads another changed one is not named.
+    """
     known = {text[k : k + DIGITS] for text in kept.values() for k in range(0, len(text), DIGITS)}
     roots = list(map(today, kept))
-    code, there, gone = code_of(map(package_of, roots)), list[str](), list[str]()
+    code, present, gone = code_of(map(package_of, roots)), list[str](), list[str]()
     for root in roots:
-        (there if code.root(root) else gone).append(root)
-    others = {place for place in code.reached(there) if code.digest(place) not in known}
-    return gone + sorted(code.named(one) for one in others if not others & {*code.reads(one)} - {one})
+        (present if code.root(root) else gone).append(root)
+    changed = {place for place in code.reached(present) if code.digest(place) not in known}
+    return gone + sorted(code.named(place) for place in changed if not changed & {*code.reads(place)} - {place})
 
 
 def today(name: str) -> str:
-    """Where what a stored result calls `name`, "module:definition" or a module, stands today."""
+    """Return the present name of the module or "module:definition" that a stored result calls `name`."""
     return ALIASES.get(name, TABLE_OF_TOLERANCES.sub(r"\1:TOLERANCES", name))
 
 
 def computes(name: str) -> bool:
-    """Whether a number may depend on the module of this name, and does not only go through it."""
-    return name == COMPUTES or not any(f"{name}.".startswith(f"{one}.") for one in CARRIES_OUT)
+    """Return whether a number may depend on the code of this module. False: the module only carries out runs."""
+    return name == COMPUTES or not any(f"{name}.".startswith(f"{module}.") for module in CARRIES_OUT)
 
 
 def digests_of_all(packages: Iterable[str]) -> set[str]:
-    """Digests of every definition of the project and of some more packages: what the code holds, wherever it lies."""
+    """Return the digests of all definitions of the project and of further packages."""
     code = code_of(packages)
     return {code.digest(place) for place in code.all()}
 
 
-@functools.cache  # of this process: another version takes another one
+@functools.cache  # a version does not change within a process
 def version_of(package: str) -> str | None:
-    """Version of an installed package, also where its distribution has another name (pydrake's is drake); else None."""
+    """Return the version of an installed package or None. Its distribution may have another name (pydrake: drake)."""
     try:
         return version(package)
     except PackageNotFoundError:
@@ -127,7 +130,7 @@ def version_of(package: str) -> str | None:
 
 @dataclass(frozen=True)
 class Place:
-    """A definition: the module, and the number of its statement; `SCENE`: the shipped scene of that name."""
+    """A definition: its module and the number of its statement. With `SCENE`: the shipped scene of that name."""
 
     module: str
     number: int
@@ -138,8 +141,12 @@ SCENE = -1
 
 @dataclass(frozen=True)
 class Unit:
-    """A statement of a module. names: that it binds. code: digest of its own. reads: names, each with the attributes
-    behind it ("kernel", "run"). local: what its functions import, as `Module.imports`. scenes: shipped ones named."""
+    """A statement of a module.
+
+    names: the names that it binds. code: digest of its own code. reads: the names that it reads, each with the
+    attributes after it ("kernel", "run"). local: what its functions import, as `Module.imports`. scenes: the shipped
+    scenes that it names.
+    """
 
     names: tuple[str, ...]
     code: str
@@ -150,7 +157,7 @@ class Unit:
 
 @dataclass(frozen=True)
 class Module:
-    """imports: {name here: (module that it is of, name there or "" for the module itself)}."""
+    """The statements of a module. imports: {name here: (its module, its name there or "" for the module itself)}."""
 
     units: tuple[Unit, ...]
     imports: Mapping[str, tuple[str, str]] = field(default_factory=dict)
@@ -160,7 +167,7 @@ class Module:
 
 
 class Code:
-    """The definitions of some top-level packages, and what they read; all as it is when it is first asked for."""
+    """The definitions of some top-level packages, and what they read. A file is read once, when first needed."""
 
     def __init__(self, packages: Iterable[str]) -> None:
         self.packages = frozenset(packages)
@@ -169,57 +176,57 @@ class Code:
         self.digest, self.reads = functools.cache(self._digest), functools.cache(self._reads)
 
     def all(self) -> Iterator[Place]:
-        """All of them, and the shipped scenes."""
+        """Yield all definitions, and the shipped scenes."""
         for name, _ in _modules(self.packages):
             yield from (place for place in self.of(name, ()) if isinstance(place, Place))
-        yield from (Place(one, SCENE) for one in SHIPPED_NAMES)
+        yield from (Place(scene, SCENE) for scene in SHIPPED_NAMES)
 
     def root(self, root: str) -> list[Place]:
-        """The definitions of a root; none where it is gone."""
+        """Return the definitions of a root; none if it is gone."""
         module, _, name = root.partition(":")
-        found = self.of(module, tuple(name.split(".")) if name else ()) if self.file(module) else ()
-        return [one for one in found if isinstance(one, Place)]
+        reached = self.of(module, tuple(name.split(".")) if name else ()) if self.file(module) else ()
+        return [place for place in reached if isinstance(place, Place)]
 
     def reached(self, roots: Iterable[str]) -> set[Place]:
-        """The definitions that roots reach, themselves among them."""
+        """Return the definitions that roots reach, including their own."""
         waiting = []
         for root in roots:
             if not (places := self.root(root)) and not self.file(root):
                 raise ModuleNotFoundError(f"no source for {root!r}")
             waiting += places
-        found: set[Place] = set()
+        known: set[Place] = set()
         while waiting:
             place = waiting.pop()
-            if place not in found:
-                found.add(place)
+            if place not in known:
+                known.add(place)
                 waiting += [*self.reads(place), *self.nameless(place)]
-        return found
+        return known
 
     def _digest(self, place: Place) -> str:
-        """Of a definition's code and of what its names stand for."""
+        """Digest of a definition's code and of all that its names stand for."""
         if place.number == SCENE:
             return self._own(place)
-        found = {
-            name: sorted(self._own(one) if isinstance(one, Place) else one for one in targets)
+        targets_by_name = {
+            name: sorted(self._own(target) if isinstance(target, Place) else target for target in targets)
             for name, targets in self.targets(place).items()
         }
-        return _digest((self._own(place), sorted(found.items())))[:DIGITS]
+        return _digest((self._own(place), sorted(targets_by_name.items())))[:DIGITS]
 
     def _reads(self, place: Place) -> list[Place]:
-        """The definitions that one reads by name."""
+        """The definitions that a definition reads by name."""
         if place.number == SCENE:
             return []
-        return [one for some in self.targets(place).values() for one in some if isinstance(one, Place)]
+        return [target for targets in self.targets(place).values() for target in targets if isinstance(target, Place)]
 
     def nameless(self, place: Place) -> list[Place]:
-        """What else runs where a module is imported."""
+        """Return the statements without a name that run when the definition's module is imported."""
         if place.number == SCENE:
             return []
         units = self.module(place.module).units
         return [Place(place.module, k) for k, unit in enumerate(units) if not unit.names]
 
     def named(self, place: Place) -> str:
-        """A name for people."""
+        """Return the full name of a definition."""
         if place.number == SCENE:
             return f"analytic.scenes.{place.module}"
         names = self.module(place.module).units[place.number].names
@@ -231,24 +238,24 @@ class Code:
         return self.module(place.module).units[place.number].code
 
     def _targets(self, place):
-        """{name as it is read: definitions that it stands for, or the name of what is another package's}."""
+        """{name as it is read: the definitions that it stands for, or its full name if it is another package's}."""
         unit = self.module(place.module).units[place.number]
-        found = {}
+        stands_for = {}
         for chain in unit.reads:
             name, *rest = chain
             if name in unit.local:
                 targets = self._imported(unit.local[name], tuple(rest))
             else:
                 targets = self.of(place.module, chain)
-            others = [one for one in targets if one != place]
+            others = [target for target in targets if target != place]
             if others:
-                found[".".join(chain)] = others
+                stands_for[".".join(chain)] = others
         for scene in unit.scenes:
-            found[f"scene {scene}"] = [Place(scene, SCENE)]
-        return found
+            stands_for[f"scene {scene}"] = [Place(scene, SCENE)]
+        return stands_for
 
     def _of(self, module: str, chain: tuple[str, ...]) -> list[Place | str]:
-        """What a chain of names stands for in a module; all of it without a name."""
+        """The definitions that a chain of names stands for in a module; the whole module for an empty chain."""
         if package_of(module) not in self.packages:
             return [".".join((module, *chain[:1]))]
         if self.file(module) is None:  # a folder of modules, or nothing
@@ -258,12 +265,15 @@ class Code:
         here = self.module(module)
         if not chain:
             return [Place(module, k) for k in range(len(here.units))]
-        if chain == ("globals",):  # all that is there, and all that is imported
-            found = [one for source in here.imports.values() for one in self._imported(source, ())]
-            return [*found, *(Place(module, k) for k in range(len(here.units)))]
-        if own := here.binding(chain[0]):
-            return [Place(module, k) for k in own]
-        if here.imports.get(chain[0], (module, chain[0])) != (module, chain[0]):  # else: of the package's own module
+        if chain == ("globals",):  # the whole module, and all that it imports
+            places = [target for source in here.imports.values() for target in self._imported(source, ())]
+            return [*places, *(Place(module, k) for k in range(len(here.units)))]
+        if numbers := here.binding(chain[0]):
+            return [Place(module, k) for k in numbers]
+        if here.imports.get(chain[0], (module, chain[0])) != (
+            module,
+            chain[0],
+        ):  # otherwise it is a module of the package
             return self._imported(here.imports[chain[0]], chain[1:])
         if self.file(module).name == "__init__.py" and self.file(f"{module}.{chain[0]}"):
             return self.of(f"{module}.{chain[0]}", chain[1:])
@@ -275,12 +285,12 @@ class Code:
 
 
 def package_of(root: str) -> str:
-    """The top-level package of a root."""
+    """Return the top-level package of a root."""
     return root.partition(":")[0].partition(".")[0]
 
 
 def code_of(packages: Iterable[str]) -> Code:
-    """The `Code` of the project and some more packages, as it is now."""
+    """Return the present `Code` of the project and of further packages."""
     names = frozenset({*PROJECT, *packages})
     files = [*(file for _, file in _modules(names)), *sorted(SHIPPED.glob("*.toml"))]
     return _code(names, tuple((str(file), file.stat().st_mtime_ns) for file in files))
@@ -292,7 +302,7 @@ def _code(names, _files):
 
 
 def _modules(packages: Iterable[str]) -> Iterator[tuple[str, Path]]:
-    """(name, file) of all modules of some packages."""
+    """Yield (name, file) of all modules of some packages."""
     for package in packages:
         file = _file(package)
         if file and file.name == "__init__.py":
@@ -304,7 +314,7 @@ def _modules(packages: Iterable[str]) -> Iterator[tuple[str, Path]]:
 
 
 def _file(name):
-    """The file of a module; None: `name` is no module, or one of no source. Nothing but its package is looked for."""
+    """The file of a module, or None if there is no such module or no source of it. Only its package is imported."""
     package, *inner = name.split(".")
     spec = importlib.util.find_spec(package)
     places = spec and spec.submodule_search_locations
@@ -320,7 +330,7 @@ def _file(name):
 def _module(name):
     file = _file(name)
     package = name if file.name == "__init__.py" else name.rpartition(".")[0]
-    return _parsed(str(file), package, file.stat().st_mtime_ns)  # with its time: a file edited meanwhile is read again
+    return _parsed(str(file), package, file.stat().st_mtime_ns)  # an edited file has another time, and is read again
 
 
 def _scene(name):
@@ -340,40 +350,47 @@ def _parsed(file, package, _modified):
 
 
 def _bound(node, package):
-    """{name: (module, name there)} of an import; `Module.imports`."""
+    """{name: (module, name there)} of an import statement, as in `Module.imports`."""
     if isinstance(node, ast.Import):
-        whole = {one.asname: (one.name, "") for one in node.names if one.asname}
-        return whole | {name: (name, "") for one in node.names if not one.asname for name in one.name.split(".")[:1]}
+        whole = {alias.asname: (alias.name, "") for alias in node.names if alias.asname}
+        return whole | {
+            name: (name, "") for alias in node.names if not alias.asname for name in alias.name.split(".")[:1]
+        }
     base = importlib.util.resolve_name("." * node.level + (node.module or ""), package) if node.level else node.module
-    return {one.asname or one.name: (base, one.name) for one in node.names}
+    return {alias.asname or alias.name: (base, alias.name) for alias in node.names}
 
 
 def _unit(node, package, lines):
-    start = min(one.lineno for one in (node, *getattr(node, "decorator_list", ())))
+    start = min(part.lineno for part in (node, *getattr(node, "decorator_list", ())))
     text = textwrap.dedent("\n".join(lines[start - 1 : node.end_lineno]))
     table = symtable.symtable(f"from __future__ import annotations\n{text}", "unit", "exec")
     reading = Reading(package)
     code = _digest(reading.plain(node))
-    own = {"annotations"}  # of the line before it
-    read = (_global(table) | reading.types | reading.imports.keys()) - own
+    added = {"annotations"}  # bound by the line put before the statement
+    read = (_global(table) | reading.types | reading.imports.keys()) - added
     reads = {chain for chain in reading.chains if chain[0] in read}
     reads |= {(name,) for name in reading.imports if not any(chain[0] == name for chain in reads)}
-    bound = (one.get_name() for one in table.get_symbols() if one.is_assigned() or one.is_imported())
-    names = tuple(name for name in bound if name not in own)
+    bound = (symbol.get_name() for symbol in table.get_symbols() if symbol.is_assigned() or symbol.is_imported())
+    names = tuple(name for name in bound if name not in added)
     return Unit(names, code, frozenset(reads), reading.imports, tuple(sorted(reading.scenes)))
 
 
 def _global(table):
-    """Names that a statement and the functions in it read from outside."""
+    """The names that a statement and the functions in it read from outside."""
     top = table.get_type() == "module"
-    here = {one.get_name() for one in table.get_symbols() if (one.is_referenced() if top else one.is_global())}
+    here = {
+        symbol.get_name() for symbol in table.get_symbols() if (symbol.is_referenced() if top else symbol.is_global())
+    }
     return here.union(*map(_global, table.get_children()))
 
 
 @dataclass
 class Reading:
-    """What is met in a statement. chains: names read, with the attributes behind them. types: names in types of fields.
-    imports: as `Module.imports`. scenes: shipped ones that it names."""
+    """Collects what a statement reads, while its tree is turned into tuples.
+
+    chains: names with the attributes after them. types: names in the types of fields. imports: as `Module.imports`.
+    scenes: shipped scenes.
+    """
 
     package: str
     chains: set[tuple[str, ...]] = field(default_factory=set)
@@ -382,8 +399,10 @@ class Reading:
     scenes: set[str] = field(default_factory=set)
 
     def plain(self, node: Any, behind: tuple[str, ...] = ()) -> Any:
-        """The tree as tuples, without empty fields (which differ between Python versions) nor that whence a name is
-        imported. behind: attributes that follow it."""
+        """Return the tree as tuples. behind: the attributes that follow the node.
+
+        Empty fields are left out, because they differ between Python versions, and the modules of imports.
+        """
         if isinstance(node, list):
             return tuple(map(self.plain, node))
         if not isinstance(node, ast.AST):
@@ -397,15 +416,14 @@ class Reading:
             self.imports.update(_bound(node, self.package))
             fields = {"names": node.names}
         elif isinstance(node, ast.AnnAssign):
-            self.types |= {one.id for one in ast.walk(node.annotation) if isinstance(one, ast.Name)}
+            self.types |= {name.id for name in ast.walk(node.annotation) if isinstance(name, ast.Name)}
         elif isinstance(node, ast.Constant) and node.value in SHIPPED_NAMES:
             self.scenes.add(node.value)
         return kind, *((name, self.plain(value)) for name, value in fields.items() if value is not None and value != [])
 
 
 class _ForNumbers(ast.NodeTransformer):
-    """Takes out of a tree what says nothing of a number: docstrings, types of arguments and results, and what is
-    imported for a type checker only."""
+    """Removes from a tree what no number depends on: docstrings, types of arguments and results, imports for types."""
 
     def visit_Expr(self, node):
         return None if isinstance(node.value, ast.Constant) else self.generic_visit(node)

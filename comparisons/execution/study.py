@@ -1,8 +1,8 @@
-"""Execution of a study, the same for all: runs are stored and resumed, answers are written when they are complete.
+"""Execution of a study, the sample of runs stored with its result, and the check that repeats them.
 
-A random sample of a study's runs, stored with its result, so that they can be repeated without the plan.
-
-Repetition of stored runs with the present code, and the number that give the same result.
+Every study is executed in the same way: runs are stored and resumed, results are written when they are complete. A
+random sample of the runs is stored with the result, so that they can be repeated with the present code and without the
+plan.
 """
 
 from __future__ import annotations
@@ -51,46 +51,46 @@ from .sources import digests_of_all, package_of, source_digests, today
 from .sweep import Processes, Row, Store, number_of, run_sweep
 
 SIZE = 60  # runs stored with a result
-SEED = 0  # of their choice
-LONGEST, MOTIONS = 5000, 4  # of motions stored sample by sample: their length, and how many different ones
+SEED = 0  # of the random choice
+LONGEST, MOTIONS = 5000, 4  # most samples of a motion that is stored, and most such motions
 SYNTHETIC = re.compile(rf"synthetic ({'|'.join(STYLES)}) motion, seed (\d+)\b")
-NAMELESS = "sampled motion"  # label of a motion that a study makes by a formula; a record has its file's name
+NAMELESS = "sampled motion"  # label of a motion that a study makes by a formula; a record is labelled by its file
 
 
 def sample_of(runs: Iterable[tuple[Batch, Row]]) -> list[dict[str, Any]]:
-    """At most `SIZE` of the runs, chosen at random, as JSON values.
+    """Return at most `SIZE` of the runs, chosen at random, as JSON values.
 
-    Left out are runs under recorded motions, whose values may not be passed on; under long motions made by a formula;
-    and those whose measure is not a function.
+    Runs under recorded motions are left out, because their values may not be passed on. So are runs under long motions
+    made by a formula, and runs whose measure is no function.
     """
     known = [(batch, row) for batch, row in runs if inspect.isfunction(batch.measure)]
-    found: list[dict[str, Any]] = []
+    sample: list[dict[str, Any]] = []
     stored: set[str] = set()  # digests of motions stored sample by sample
     for batch, row in random.Random(SEED).sample(known, len(known)):
         motion = _motion_table(row.case.scene.motion)
         if motion is None or len(stored | _long(motion)) > MOTIONS:
             continue
         stored |= _long(motion)
-        found.append(_run_table(batch, row, motion))
-        if len(found) == SIZE:
+        sample.append(_run_table(batch, row, motion))
+        if len(sample) == SIZE:
             break
-    return found
+    return sample
 
 
 def case_of(run: Mapping[str, Any]) -> Case:
-    """The case of a stored run.
+    """Return the case of a stored run.
 
     Raises
     ------
     SceneError
-        It is no scene today.
+        The stored scene is no longer valid.
     """
     scene = Scene(**{**run["scene"], "motion": _motion(run["scene"]["motion"])})
     return Case(scene, run["engine"], run["variant"], run["settings"], run["tag"])
 
 
 def outcome_of(row: Row) -> dict[str, Any]:
-    """What is compared of a run: its values, or of one that failed the kind of failure and the reason."""
+    """Return what a check compares of a run: its values or, if it failed, the kind of failure and the reason."""
     if row.failure:
         return {"values": None, "failure": {name: row.failure[name] for name in ("kind", "reason")}}
     return {"values": row.values, "failure": None}
@@ -111,25 +111,27 @@ def _run_table(batch, row, motion):
 
 
 def _motion_table(motion):
-    """A motion as JSON values: {} without one, None for one that is not stored."""
+    """A motion as JSON values: {} without a motion, None if the motion may not be stored."""
     if motion is None:
         return {}
     if isinstance(motion, PulseMotion):
         return asdict(motion)
-    own = SYNTHETIC.match(motion.label)
-    if not own and motion.label != NAMELESS:
+    synthetic = SYNTHETIC.match(motion.label)
+    if not synthetic and motion.label != NAMELESS:
         return None
     vertical = _motion_table(motion.vertical)
     table = {"dt": motion.dt, "label": motion.label, "warnings": list(motion.warnings), "vertical": vertical}
-    if own and (factor := _factor(motion, synthetic_motion(own[1], int(own[2])))):
-        return None if vertical is None else table | {"style": own[1], "seed": int(own[2]), "factor": factor}
+    if synthetic and (factor := _factor(motion, synthetic_motion(synthetic[1], int(synthetic[2])))):
+        return (
+            None if vertical is None else table | {"style": synthetic[1], "seed": int(synthetic[2]), "factor": factor}
+        )
     if vertical is None or len(motion.samples) > LONGEST:
         return None
     return table | {"samples": motion.samples.tolist(), "digest": motion.digest()}
 
 
 def _factor(motion, base):
-    """The number by which `base` is multiplied to give the very samples of `motion`; None if there is none."""
+    """The factor that turns the samples of `base` exactly into those of `motion`, or None."""
     if len(motion.samples) != len(base.samples):
         return None
     peak = np.abs(base.samples).argmax()
@@ -139,9 +141,9 @@ def _factor(motion, base):
 
 
 def _long(motion):
-    """Digests of what a motion's table holds sample by sample."""
-    own = {motion["digest"]} if "samples" in motion else set()
-    return own | (_long(motion["vertical"]) if motion.get("vertical") else set())
+    """Digests of the motions that a table holds sample by sample."""
+    digests = {motion["digest"]} if "samples" in motion else set()
+    return digests | (_long(motion["vertical"]) if motion.get("vertical") else set())
 
 
 def _motion(table):
@@ -158,8 +160,8 @@ def _motion(table):
 
 
 RUNS = "runs.jsonl"  # rows of single runs, beside the result
-_stored: Path | None = None  # where the runs are of the study under way, or of the last one
-SHOWN = 30  # runs from which on a batch shows its progress; a bisection has many small ones, what is timed takes long
+_stored: Path | None = None  # the store of the present or last study
+SHOWN = 30  # least runs of a batch that shows its progress: a bisection has many small batches
 
 
 def compute(
@@ -173,28 +175,15 @@ def compute(
     progress: bool = True,
     **options: Any,
 ) -> list[Path]:
-    """Run a study's plan; returns the paths of its results in `folder`, mostly one: a folder of files by solver.
+    """Run a study's plan and return the paths of its results in `folder`, mostly one: a folder of files by solver.
 
-    Where `engines` are named and there is a result of the study, they are computed alone, with the options that it was
-    computed with, and their files are written beside those of the others (`by_solver`).
+    If `engines` are named and `folder` has a result of the study, these engines are computed alone, with the options of
+    that result, and their files are written beside the others (`by_solver`).
 
-    Parameters
-    ----------
-    study : Study
-    folder : path
-        Made if it does not exist. Runs already found there are not repeated.
-    engines : iterable of str or None
-        Those to compare; None: all that are installed.
-    quick : bool
-        A first look.
-    workers : int or None
-        Worker processes; None: one per core.
-    scheduler : str or None
-        Address of a Dask scheduler whose workers do the runs, or "local:N". What is timed is done here all the same.
-    progress : bool
-        Show it on standard error.
-    **options
-        Of the study's plan.
+    folder: is made if it does not exist; runs found there are not repeated. engines: names; None: all that are
+    installed. quick: a small version. workers: number of processes; None: one per core. scheduler: address of a Dask
+    scheduler that distributes the runs, or "local:N"; timed runs are made here. progress: show it on standard error.
+    options: those of the study's plan.
 
     Raises
     ------
@@ -202,9 +191,9 @@ def compute(
         `folder` is a file or itself a result, the number of workers is out of range, no scheduler answers, an engine
         has no such name, or files of engines that are not named would go (`check_none_goes`).
     EngineNotInstalled
-        As `engines.get_engine`.
+        As for `engines.get_engine`.
     ClusterError
-        As `comparisons.execution.cluster`.
+        As for `comparisons.execution.cluster`.
     StoreError
         Another study is writing there.
     ResultError
@@ -228,19 +217,18 @@ def compute(
         stack.callback(_leave_nothing_empty, folder)
         _stored = store.path
         with spinner(f"{study.name}: engines and code") if progress else contextlib.nullcontext():
-            # loads engines: after what is wrong with the place was found
-            asked = installed_engines() if engines is None else tuple(engines)
+            names = installed_engines() if engines is None else tuple(engines)  # loads engines
             roots = (name_of(study.plan), *(engine.adapter for engine in ENGINES.values()))
             code = digests_of_all(map(package_of, roots))
-        solvers = ("analytic", *asked)
+        solvers = ("analytic", *names)
         pool = Processes(workers, solvers) if scheduler is None else Cluster(scheduler, solvers)
-        plan = study.plan(Request(asked, quick), **options)
+        plan = study.plan(Request(names, quick), **options)
         return _carry_out(study, plan, folder, solvers, code, store, stack.enter_context(pool), progress, old)
 
 
 def kept() -> str:
-    """What is said when a study is ended early: how many runs are kept; "" where none are."""
-    if _stored is None or not _stored.exists():  # a report that has its runs removes them
+    """Return the sentence on the runs that an interrupted study has stored; "" if there are none."""
+    if _stored is None or not _stored.exists():  # a report removes its runs when it is complete
         return ""
     with open(_stored, "rb") as file:
         count = sum(line.endswith(b"\n") for line in file)
@@ -249,9 +237,9 @@ def kept() -> str:
 
 
 def _carry_out(study, plan, folder, always, code, store, pool, progress, old):
-    """Run what the plan asks for, and write what it finds; the paths. old: see `opened`, where engines run alone."""
+    """Run the batches of a plan, write its results and return their paths. old: `opened`, if engines run alone."""
     done: list[tuple[Batch, Row]] = []
-    found: list[Path] = []
+    paths: list[Path] = []
     answer, ended = None, False
     solvers = dict.fromkeys(always)
     while not ended:
@@ -263,7 +251,7 @@ def _carry_out(study, plan, folder, always, code, store, pool, progress, old):
             answer = None
             solvers.update(dict.fromkeys(step.solvers))
             if ended or old is None:
-                found.append(_written(study, folder, step, list(solvers), always[1:], code, done, old))
+                paths.append(_written(study, folder, step, list(solvers), always[1:], code, done, old))
             continue
         answer = _run(step, store, pool, progress)
         solvers.update(dict.fromkeys(case.solver for case in step.cases))
@@ -271,15 +259,15 @@ def _carry_out(study, plan, folder, always, code, store, pool, progress, old):
     if progress:
         reused = sum(row.reused for _, row in done)
         log(f"{len(done) - reused} runs done, {reused} found in {folder.name}/{RUNS}")
-    return list(dict.fromkeys(found))
+    return list(dict.fromkeys(paths))
 
 
 def _written(study, folder, answer, solvers, engines, code, done, old):
-    """The path at which an answer was written."""
+    """Write an answer as a result and return its path."""
     plan, path = name_of(study.plan), folder / (answer.name or study.name)
     roots = [plan, *dict.fromkeys(map(root_of, solvers))]
     edited = [name for name, digest in source_digests(roots).items() if digest not in code]
-    settings = {**answer.settings, EDITED: edited}  # its numbers are of the code before
+    settings = {**answer.settings, EDITED: edited}  # the numbers are those of the code at the start
     origin: dict[str, Any] = dict(modules=roots, seed=answer.seed, runs=sample_of(done), run_count=len(done))
     result = made_here(study.name, settings, answer.rows, answer.arrays, **origin)
     if not study.by_solver:
@@ -291,7 +279,7 @@ def _written(study, folder, answer, solvers, engines, code, done, old):
 
 
 def _leave_nothing_empty(folder):
-    """Remove what a mistake left: an empty store, and the folder if nothing else is there."""
+    """Remove an empty store that an error left, and the folder if nothing else is in it."""
     with contextlib.suppress(OSError):
         if (folder / RUNS).stat().st_size == 0:
             (folder / RUNS).unlink()
@@ -307,14 +295,15 @@ def _run(batch, store, pool, progress):
         return run_sweep(batch.cases, executor=executor, **options)
 
 
-DIFFERENCES_SHOWN = 3  # differences named of a run
+DIFFERENCES_SHOWN = 3  # differences of a run that a sentence names
 
 
 @dataclass(frozen=True)
 class Check:
-    """Of a result: runs repeated, of so many stored and so many in all; what differs, a sentence a run.
+    """The outcome of a check of a result.
 
-    missing: engines of stored runs that are not installed here; none of their runs is drawn.
+    runs: number of runs repeated, of the `stored` ones, of `total` runs of the study. differences: a sentence for each
+    run that differs. missing: engines that are not installed here, whose stored runs were not drawn.
     """
 
     result: str
@@ -330,7 +319,7 @@ class Check:
         return self.runs - len(self.differences)
 
     def words(self) -> str:
-        """The outcome in a sentence."""
+        """Return the outcome in a sentence."""
         without = f"; not installed: {', '.join(self.missing)}" if self.missing else ""
         if not self.runs:
             return f"{self.result}: nothing to check, none of its {self.total} runs can be stored{without}"
@@ -339,20 +328,20 @@ class Check:
 
 
 def check_all(name: str, folder: str | PathLike[str], number: int, seed: int, **options: Any) -> list[Check]:
-    """The `check` of each result of the study `name` in `folder`.
+    """Return the `check` of each result of the study `name` in `folder`.
 
     Raises
     ------
     SettingError
         `folder` is itself a result.
     ResultError
-        As `check`; or there is no such result, or none of them keeps a run.
+        As for `check`; or there is no such result, or no result has a stored run.
     """
     check_parent(folder)
-    own = Path(folder) / name
-    parts = [own] if own.exists() else sorted(Path(folder).glob(f"{name}-*"))  # a study may have several
-    checks = [check(part, number, seed, **options) for part in parts or [own]]
-    if not any(one.runs for one in checks):
+    path = Path(folder) / name
+    parts = [path] if path.exists() else sorted(Path(folder).glob(f"{name}-*"))  # a study may have several
+    checks = [check(part, number, seed, **options) for part in parts or [path]]
+    if not any(done.runs for done in checks):
         raise ResultError(f"{checks[0].words()}; run rocking study {name}, which computes all of it again")
     return checks
 
@@ -360,15 +349,15 @@ def check_all(name: str, folder: str | PathLike[str], number: int, seed: int, **
 def check(
     path: Path, number: int, seed: int, *, record: bool = False, workers: int | None = None, progress: bool = True
 ) -> Check:
-    """Do `number` runs of the result at `path` again, drawn with `seed` from those stored.
+    """Repeat `number` runs of the result at `path`, drawn with `seed` from the stored ones.
 
-    A run holds if all that was measured is as before, numbers within 1e-9 of themselves; CPU times are not compared.
-    What a study makes of its runs is not checked. record: write the outcome into the result's provenance.
+    A run holds if all that was measured is as before, numbers to a relative 1e-9. CPU times are not compared, and what
+    the study derives from its runs is not checked. record: write the outcome into the result's provenance.
 
     Raises
     ------
     ResultError
-        The result cannot be read, is older than this check, or the outcome cannot be recorded there.
+        The result cannot be read or was written before runs were stored, or the outcome cannot be written into it.
     """
     result = read(path)
     if result.run_count is None:
@@ -382,14 +371,14 @@ def check(
     if record:
         when = {"date": datetime.now(UTC).date().isoformat(), **checkout(), "seed": seed}
         places = [run["engine"] if (path / f"{run['engine']}.json").exists() else MODEL for run in drawn]
-        for file in path.glob("*.json"):  # those of which no run was drawn lose what an earlier check said
-            own = [differs for differs, place in zip(wrong, places, strict=True) if place == file.stem]
-            record_check(file, {**when, "runs": len(own), "held": own.count(None)} if own else None)
+        for file in path.glob("*.json"):  # a file of which no run was drawn loses its earlier check
+            in_file = [differs for differs, place in zip(wrong, places, strict=True) if place == file.stem]
+            record_check(file, {**when, "runs": len(in_file), "held": in_file.count(None)} if in_file else None)
     return done
 
 
 def _installed(name):
-    """Whether a solver can be used here; one that is unknown is not missing but wrong, which its run will say."""
+    """Whether a solver can be used here. True for an unknown one: its run then gives the error."""
     try:
         solver(name)
     except EngineNotInstalled:
@@ -400,15 +389,15 @@ def _installed(name):
 
 
 def _again(runs, workers, progress):
-    """What each of the stored runs gives today (`outcome_of` and the scene's digest), or why it cannot be done."""
-    found: list[Any] = [None] * len(runs)
+    """`outcome_of` each stored run today, with the scene's digest, or a sentence why it cannot be run."""
+    results: list[Any] = [None] * len(runs)
     groups: dict[Any, list[tuple[int, Any]]] = {}
     for place, run in enumerate(runs):
         try:
             case, measure = case_of(run), resolve_name(today(run["measure"]))
             solver(case.solver)
         except (KeyError, ImportError, AttributeError, SceneError) as error:
-            found[place] = f"it cannot be run any more ({error.args[0] if isinstance(error, KeyError) else error})"
+            results[place] = f"it cannot be run any more ({error.args[0] if isinstance(error, KeyError) else error})"
         else:
             groups.setdefault((measure, run["time_limit"]), []).append((place, case))
     names = sorted({case.solver for members in groups.values() for _, case in members})
@@ -418,22 +407,22 @@ def _again(runs, workers, progress):
             store = Path(folder) / "runs.jsonl"
             rows = run_sweep([case for _, case in members], store=store, measure=measure, **options)
             for (place, case), row in zip(members, rows, strict=True):
-                found[place] = {**outcome_of(row), "digest": case.scene.digest()}
-    return found
+                results[place] = {**outcome_of(row), "digest": case.scene.digest()}
+    return results
 
 
 def _differ(run: Mapping[str, Any], now: Any) -> str | None:
-    """In a sentence what a stored run has otherwise than today's; None where nothing."""
+    """In a sentence how a stored run differs from today's, or None."""
     if isinstance(now, str):
         return f"{_named(run)}: {now}"
     if run["failure"] != now["failure"]:
         return f"{_named(run)}: {_state(run['failure'])} when stored, now {_state(now['failure'])}"
-    found = [each for part in ("digest", "values") for each in differences(part, run[part], now[part])]
+    changes = [each for part in ("digest", "values") for each in differences(part, run[part], now[part])]
     shown = "; ".join(
-        f"{where}: stored {short(then)}, now {short(here)}" for where, then, here in found[:DIFFERENCES_SHOWN]
+        f"{where}: stored {short(then)}, now {short(here)}" for where, then, here in changes[:DIFFERENCES_SHOWN]
     )
-    more = f"; and {len(found) - DIFFERENCES_SHOWN} more" if len(found) > DIFFERENCES_SHOWN else ""
-    return f"{_named(run)}: {shown}{more}" if found else None
+    more = f"; and {len(changes) - DIFFERENCES_SHOWN} more" if len(changes) > DIFFERENCES_SHOWN else ""
+    return f"{_named(run)}: {shown}{more}" if changes else None
 
 
 def _state(failure):
@@ -441,5 +430,5 @@ def _state(failure):
 
 
 def _named(run):
-    own = ", ".join(f"{name} = {value}" for name, value in {**run["settings"], **run["tag"]}.items())
-    return ", ".join(filter(None, (run["engine"], run["variant"], run["scene"]["name"], own)))
+    details = ", ".join(f"{name} = {value}" for name, value in {**run["settings"], **run["tag"]}.items())
+    return ", ".join(filter(None, (run["engine"], run["variant"], run["scene"]["name"], details)))

@@ -1,13 +1,11 @@
-"""Many runs: a row for each case, computed in parallel, resumable, and safe against crashes and hangs.
+"""Sweeps of many runs: in parallel, resumable, and safe against crashes and hangs.
 
     with Processes() as executor:
         rows = run_sweep(cases, store="results/map.jsonl", measure=outcome, executor=executor)
 
-The store can be reused: rows whose scene, solver, variant, settings, tag, measure, versions and source code are
-unchanged are not run again. It is a file of one line of JSON per run, appended; what a killed sweep leaves is found
-again.
-
-Executors of the runs of a sweep: worker processes that may crash or hang.
+`run_sweep` gives a row for each case. The store is a file with one line of JSON for each run. It can be used again,
+also after a sweep was killed: a run is not repeated if its scene, solver, variant, settings, tag, measure, versions
+and source code are unchanged. An `Executor` makes the runs; `Processes` uses worker processes, which may crash or hang.
 """
 
 import contextlib
@@ -49,20 +47,20 @@ from .files import Mendable, PlaceError, TemporaryFolder
 from .progress import lines, redirected
 from .provenance import json_ready, scrub
 
-ENOUGH_SECONDS = 0.2  # of a task, in which short runs are combined; a kill loses at most that
+ENOUGH_SECONDS = 0.2  # after which a task of several short runs ends; a kill loses no more
 MOST_BROKEN = 3  # pools in a row that end without finishing a task
-MOST_WORKERS = 64  # where there are no more cores than that
-GRACE_SECONDS = 0.5  # beyond the time limit, for the worker to write down where it hangs
+MOST_WORKERS = 64  # unless there are more cores
+GRACE_SECONDS = 0.5  # beyond the time limit, for the worker to report where it hangs
 EVIDENCE_CHARACTERS = 4000
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 
 
 @dataclass(frozen=True)
 class Task:
-    """Cases done one after the other by one worker.
+    """Cases that one worker runs one after the other.
 
-    The worker stops after `ENOUGH_SECONDS` and hands back what it has by then, at least one line. The time
-    limit [s] holds for the task as a whole.
+    The worker stops after `ENOUGH_SECONDS` and returns the lines it has by then, at least one. The time limit [s] holds
+    for the whole task.
     """
 
     ticket: str
@@ -82,21 +80,21 @@ class Done:
 
 
 class Executor(contextlib.AbstractContextManager["Executor"]):
-    """The place where the runs of a sweep are done; the end of a `with` statement drops what is under way."""
+    """Makes the runs of a sweep. The end of a `with` statement drops the runs under way."""
 
     slots: int  # tasks to keep submitted so that no worker waits
 
     @abstractmethod
     def submit(self, task: Task) -> None:
-        """Take a task; returns at once."""
+        """Accept a task and return at once."""
 
     @abstractmethod
     def next(self) -> Done:
-        """Wait for any submitted task to end; every task ends, lost or done."""
+        """Wait until any submitted task ends, done or lost, and return its `Done`."""
 
 
 def number_of(workers: int | None) -> int:
-    """How many worker processes that is, one per core for None; raises `SettingError` if they are too many or few."""
+    """Return the number of worker processes; None: one per core. Raises `SettingError` for too many or too few."""
     cores = os.cpu_count() or 1
     most, number = max(MOST_WORKERS, cores), cores if workers is None else workers
     if not 1 <= number <= most:
@@ -107,8 +105,8 @@ def number_of(workers: int | None) -> int:
 class Processes(Executor):
     """Runs in `workers` processes (default: one per core), each with one numerical thread.
 
-    Workers are forked from a server that has imported the `solvers`: one that crashed is replaced in
-    hundredths of a second, and nothing of this process's state reaches them.
+    Workers are forked from a server that has imported the `solvers`. A worker that crashed is replaced within
+    hundredths of a second, and the state of this process does not reach the workers.
     """
 
     def __init__(self, workers: int | None = None, solvers: Iterable[str] = ()) -> None:
@@ -179,7 +177,7 @@ class Processes(Executor):
         return ProcessPool(self._workers, initializer=_start_worker, initargs=(tuple(sys.path),), context=self._context)
 
     def _renew(self):
-        """A new pool: a pool ends when a worker dies that has no task, as when it is killed while idle."""
+        """Start a new pool. A pool ends when a worker without a task dies, for example when it is killed while idle."""
         self._broken += 1
         if self._broken > MOST_BROKEN:
             raise RuntimeError(
@@ -203,7 +201,7 @@ class Processes(Executor):
 
 
 def lines_of(task: Task) -> tuple[str, ...]:
-    """The rows of a task's first cases, run in this process, as lines of JSON."""
+    """Run the first cases of a task in this process, and return their rows as lines of JSON."""
     start, lines = time.monotonic(), []
     for case, key in zip(task.cases, task.keys, strict=True):
         row: dict[str, Any] = {"key": key, "values": {}, "failure": None, "cost": {}}
@@ -212,7 +210,7 @@ def lines_of(task: Task) -> tuple[str, ...]:
             if math.isfinite(response.cpu_seconds):  # nan: nothing was stepped
                 row["cost"] = {"cpu_seconds": response.cpu_seconds}
             if response.outcome == "failed":
-                # Measures see sound responses only; of a failed one everything is kept as evidence.
+                # Measures get sound responses only. A failed response is kept whole, as evidence.
                 row["values"] = response.to_json()
                 row["failure"] = {"kind": "solver", **row["values"].pop("failure")}
             else:
@@ -221,7 +219,7 @@ def lines_of(task: Task) -> tuple[str, ...]:
             row["values"] = json_ready(row["values"])
             row["values"].pop("cpu_seconds", None)
             line = json.dumps(row, allow_nan=False)
-        except PlaceError:  # a disk that is full is no failure of a solver
+        except PlaceError:  # a full disk is no failure of a solver
             raise
         except Exception as error:
             row["values"] = {"outcome": "failed"}
@@ -245,13 +243,13 @@ def _start_worker(path):
 
 
 def end_with(parent: Any) -> None:
-    """End this process when its `parent` (of `multiprocessing.parent_process`) has ended."""
+    """End this process when its `parent` (`multiprocessing.parent_process`) has ended."""
     parent.join()  # end with the parent, even if that is killed
     os._exit(1)
 
 
 def _work(task, log):
-    """In a worker: the lines of a task; what it prints and where it hangs goes to `log`."""
+    """In a worker: run a task and return its lines. What it prints, and where it hangs, goes to `log`."""
     with open(log, "wb") as file, redirected(1, 2, to=file.fileno()):
         faulthandler.enable(file, all_threads=False)
         faulthandler.dump_traceback_later(task.time_limit, file=file)
@@ -271,7 +269,7 @@ def _work(task, log):
 
 @contextlib.contextmanager
 def _one_thread():
-    """One numerical thread for processes started inside: libraries read these variables when loaded."""
+    """Give processes started inside one numerical thread each. Libraries read these variables when they are loaded."""
     before = {name: os.environ[name] for name in THREAD_VARIABLES if name in os.environ}
     os.environ.update(dict.fromkeys(THREAD_VARIABLES, "1"))
     try:
@@ -301,23 +299,23 @@ try:
 except ImportError:  # Windows has none: no lock there
     fcntl = None  # type: ignore[assignment]  # Windows has none
 
-SYNC_SECONDS = 1.0  # a killed process loses nothing written, a power cut at most this much
+SYNC_SECONDS = 1.0  # a power cut loses at most the rows of this time; a killed process loses none
 
 
 class StoreError(Mendable):
-    """A file of results that cannot be used; the message names file, line and remedy."""
+    """The store of runs cannot be used; the message names file, line and remedy."""
 
 
 class Store(contextlib.AbstractContextManager["Store"]):
-    """Append-only file of rows keyed by their case: a context manager around one JSONL file.
+    """A file of rows in JSONL, to which rows are only appended; a context manager.
 
-    A row is a dict with at least "key". A torn last line (the process was killed while it wrote) is
-    dropped when the file is opened.
+    A row is a dict with at least "key", the key of its case. An incomplete last line, left by a killed process, is
+    removed when the file is opened.
 
     Raises
     ------
     StoreError
-        Another sweep has the file open, it cannot be read and written, or a whole line in it is no row.
+        Another sweep uses the file, it cannot be read and written, or a complete line in it is no row.
     """
 
     def __init__(self, path: str | PathLike[str]) -> None:
@@ -338,17 +336,17 @@ class Store(contextlib.AbstractContextManager["Store"]):
         self._synced = time.monotonic()
 
     def __exit__(self, *_: object) -> None:
-        with contextlib.suppress(OSError):  # said when the rows were written
+        with contextlib.suppress(OSError):  # reported when the rows were written
             self._sync()
         self._file.close()
 
     def append(self, lines: Sequence[str]) -> None:
-        """Write rows given as lines of JSON (str, no line end).
+        """Append rows, given as lines of JSON without line ends.
 
         Raises
         ------
         StoreError
-            The disk is full or failed; the file holds the rows before these.
+            The disk is full or failed; the file keeps the earlier rows.
         """
         data, end = memoryview("".join(line + "\n" for line in lines).encode()), self._file.seek(0, os.SEEK_END)
         try:
@@ -405,12 +403,11 @@ MOST_CASES = 512  # in a task
 
 @dataclass(frozen=True)
 class Row:
-    """Result of one case.
+    """The result of a case.
 
-    values: what the measure returned, deterministic; of a run that failed in the solver the whole response.
-    failure: None, or kind ("solver", "exception", "time limit", "crash"), reason and message; the
-    outcome in values is then "failed". cost: cpu_seconds and whatever else of the measure's "cost" differs from run to
-    run.
+    values: what the measure returned, which is deterministic; the whole response if the solver failed. failure: None,
+    or kind ("solver", "exception", "time limit", "crash"), reason and message; the outcome in values is then "failed".
+    cost: cpu_seconds, and the measure's "cost", which differs from run to run. reused: found in the store, not run now.
     """
 
     case: Case
@@ -434,28 +431,28 @@ def run_sweep(
     progress: bool = True,
     label: str = "runs",
 ) -> list[Row]:
-    """Run every case and return its `Row`s in the order of the cases, whatever the order they ran in.
+    """Run every case and return the `Row`s in the order of the cases.
 
     Parameters
     ----------
     cases : iterable of Case
         Equal cases are run once.
     store : path or Store
-        JSONL file of rows, appended to as they arrive. Rows found there are not run again.
+        JSONL file to which rows are appended as they arrive. Cases whose rows are found there are not run again.
     time_limit : float
-        Seconds a run may take; beyond, its row is "failed". A row that failed so is run again when the
-        limit is raised, and so is one whose worker was killed from outside.
+        Limit of a run [s]; a run that takes longer has failed. Such a run is repeated when the limit is raised, and so
+        is a run whose worker was killed from outside.
     measure : callable
         Module-level, (`Case`, `Response`) -> dict of JSON values; runs in the worker, on responses that did not fail.
     executor : Executor
-        Where to run, `Processes` or a `comparisons.execution.cluster.Cluster`; it stays open.
+        Makes the runs: `Processes`, or a `comparisons.execution.cluster.Cluster`. It stays open.
     progress : bool
         Show a bar with the remaining time on standard error.
 
     Raises
     ------
     KeyError, EngineNotInstalled
-        A solver that does not exist or is not installed: before anything runs.
+        A solver does not exist or is not installed. This is checked before anything runs.
     StoreError
         The store is in use or damaged.
     ClusterError
@@ -463,7 +460,7 @@ def run_sweep(
     """
     cases = list(cases)
     for name in sorted({case.solver for case in cases}):
-        solver(name)  # what cannot run is an error now, not a failed row each
+        solver(name)  # raises now, in place of a failed row for each case
     keys = [case.key(measure) for case in cases]
     with ExitStack() as stack:
         if not isinstance(store, Store):
@@ -485,7 +482,7 @@ def run_sweep(
 
 def _run(waiting, store, executor, measure, time_limit, advance):
     pending = deque(waiting.items())
-    alone: deque[Any] = deque()  # cases of lost tasks, which run one by one to find the cause
+    alone: deque[Any] = deque()  # cases of lost tasks; they run one by one, to find the one that failed
     submitted: dict[str, Any] = {}
     size = 1  # of the next task: twice what was done in the last one, which ends after `ENOUGH_SECONDS`
     while pending or alone or submitted:
@@ -498,7 +495,7 @@ def _run(waiting, store, executor, measure, time_limit, advance):
             executor.submit(Task(ticket, cases, keys, measure, time_limit))
         done = executor.next()
         members = submitted.pop(done.ticket, None)
-        if members is None:  # of a sweep that was broken off, on a shared executor
+        if members is None:  # a task of an interrupted sweep on the same executor
             continue
         if done.lost and len(members) > 1:
             alone.extend(members)
@@ -511,7 +508,7 @@ def _run(waiting, store, executor, measure, time_limit, advance):
 
 
 def _settled(row, time_limit):
-    """Whether a stored row is final; a run stopped from outside, or by a shorter time limit, is repeated."""
+    """Whether a stored row is final. A run stopped from outside, or by a shorter time limit, is repeated."""
     fields = (("values", dict), ("failure", dict | None), ("cost", dict))
     if row is None or not all(name in row and isinstance(row[name], kind) for name, kind in fields):
         return False
@@ -526,7 +523,7 @@ def _lost_line(key, lost):
 
 
 def _bar(stack, label, total, solvers):
-    """A function that moves a bar on by a count; shown until `stack` ends. `lines` where that is no terminal."""
+    """Show a bar until `stack` ends, and return a function that advances it by a count. No terminal: `lines`."""
     console = Console(stderr=True)
     if not console.is_terminal:
         stack.enter_context(lines(f"{label}: {total} to do in {solvers} solver{'s' * (solvers > 1)}"))

@@ -1,15 +1,12 @@
-"""Measured differences between an engine and the analytic model: one function per quantity of the tolerance table.
+"""Agreement of an engine with the analytic model: the table of tolerances and the measures of its quantities.
 
-Each takes (engine, variant, scenes, runs) and returns one number, the worst found. scenes: what to run, one of the
-names below. runs: a dict in which simulations are kept that several measures share.
+A measure takes (engine, variant, scenes, runs) and returns a number, the worst value. scenes: what to run, one of the
+names below. runs: a dict of simulations that several measures share.
 
-The table of agreement tolerances: the bound for each engine, and the error measured when the bound was set.
-
-The rows stand beside the engines (`engines.exudyn`), what they measure stands here.
-
-The verification tests assert every row, the report prints the table with the value measured anew beside it. A bound
-is at most twice the `measured` worst (but for round-off); where an engine gets better, the test says so, and the
-bound is to be tightened.
+The bounds stand in the records of the engines (`engines.exudyn`), their measures stand here. The verification tests
+assert every row; the report prints the table with the values measured anew. A bound is at most twice the worst value
+`measured` when it was set (except for round-off). If an engine gets better, the test says so, and the bound is to be
+tightened.
 """
 
 import math
@@ -35,7 +32,7 @@ STARTS = (0.3, 0.37, 0.44, 0.51, 0.59, 0.66, 0.73, 0.8)  # released tilt over sl
 SLENDERNESSES = (0.1, 0.2, 0.3, 0.45)
 IMPACTS = 3
 
-# Names of scenes; the first four are families of free rocking
+# Names of scenes. The first four are families of free rocking.
 RIGID, SLIDING = "rigid ground", "sliding base"
 RIGID_2, SLIDING_2 = "rigid ground, slenderness 0.2", "sliding base, slenderness 0.2"
 DRIVEN, ISOLATED = "rocking on bearings, one-sine", "isolated Caryatid, synthetic motion"
@@ -53,7 +50,7 @@ FREE_ROCKING = {
     RIGID_2: (None, (0.2,)),
     SLIDING_2: (BASE, (0.2,)),
 }
-# (slenderness, ((pulse, its frequency over omega_r), ...)) by the name of the scenes
+# {name of scenes: (slenderness, ((pulse, its frequency over omega_r), ...))}
 BOUNDARIES = {
     PULSES: (0.25, (("one-sine", 2.0), ("one-sine", 5.0))),
     HARD_PULSES: (0.28, (("one-sine", 7.0), ("one-cosine", 2.0))),
@@ -61,16 +58,16 @@ BOUNDARIES = {
 
 
 class Unmeasurable(RuntimeError):
-    """The engine's run failed, or lacks the quantity to be measured; the message says which and why."""
+    """The engine's run failed, or does not have the quantity to be measured; the message tells which and why."""
 
 
 def traced(engine: str, variant: str, scene: Scene, history: bool = True) -> tuple[Response, Trace]:
-    """(the engine's response, its accepted steps as a `Trace`).
+    """Return (the engine's response, its accepted steps as a `Trace`).
 
     Raises
     ------
     Unmeasurable
-        It failed, or the scene gives the restitution.
+        The run failed, or the scene gives the restitution.
     """
     if scene.block.restitution is not None:
         raise Unmeasurable("the restitution is given: it says nothing of the engine's own impact")
@@ -81,7 +78,7 @@ def traced(engine: str, variant: str, scene: Scene, history: bool = True) -> tup
 
 
 def free_rocking(scenes: str) -> dict[float, list[Scene]]:
-    """{slenderness: scenes} of a family: free rocking from every start, up to past the third impact's swing."""
+    """Return {slenderness: scenes} of a family: free rocking from every start, beyond the third impact."""
     base, slendernesses = FREE_ROCKING[scenes]
     family: dict[float, list[Scene]] = {}
     for slenderness in slendernesses:
@@ -104,9 +101,10 @@ def _free_responses(engine, variant, scenes, runs):
 
 
 def impact_rms(kind: str, engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
-    """Error of this kind of `impact_errors` of the first three impacts, rms over starts and impacts; worst slenderness.
+    """Return the rms error of the first three impacts over starts and impacts, for the worst slenderness.
 
-    "state": of e_phi against eq. (7); "jump": of the base velocity jump against momentum, relative.
+    kind: one of `impact_errors`: "state", of e_phi against eq. (7); "jump", of the base velocity jump against momentum,
+    relative.
     """
     return max(
         rms(np.concatenate([impact_errors(scene, response, IMPACTS)[kind] for scene, response in pairs]))
@@ -115,7 +113,7 @@ def impact_rms(kind: str, engine: str, variant: str, scenes: str, runs: dict[Any
 
 
 def swing_restitution_bias(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
-    """|mean| error of e_phi against eq. (7) from the energies of the swings around the first three impacts."""
+    """Return |mean error| of e_phi against eq. (7), from the energies of the swings around the first three impacts."""
     errors = [
         impact_errors(scene, response, IMPACTS)["swing"]
         for pairs in _free_responses(engine, variant, scenes, runs).values()
@@ -125,7 +123,7 @@ def swing_restitution_bias(engine: str, variant: str, scenes: str, runs: dict[An
 
 
 def impact_times(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
-    """Largest error of the times of the first three impacts [s]."""
+    """Return the largest error of the times of the first three impacts [s]."""
     worst = 0.0
     for pairs in _free_responses(engine, variant, scenes, runs).values():
         for scene, response in pairs:
@@ -138,7 +136,7 @@ def impact_times(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -
 
 
 def named_scene(name: str) -> Scene:
-    """The scenes of the table that are one scene each; `KeyError` of another."""
+    """Return the scene of this name, of those that are single scenes; `KeyError` for another name."""
     block, shaking = caryatid_block(0.2), 0.01 * np.arange(6001)
     level = np.sin(8 * shaking) + 0.5 * np.sin(26 * shaking)
     level /= np.abs(level).max()
@@ -165,21 +163,21 @@ def _agreement(engine, variant, scenes, runs):
 
 
 def error_of(error: str, engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
-    """|Error| of a run, in the unit of this field of `errors.Agreement`, over the whole scene."""
+    """Return |error| of a run over the whole scene. error: a field of `errors.Agreement`, which also gives the unit."""
     return abs(getattr(_agreement(engine, variant, scenes, runs), error))
 
 
 def boundary_scene(slenderness: float, pulse: str, frequency: float, amplitude: float) -> Scene:
-    """One pulse of frequency times omega_r and amplitude times g tan(slenderness), on rigid ground."""
+    """Return a scene of one pulse on rigid ground. frequency: over omega_r; amplitude: over g tan(slenderness)."""
     scene = Scene(block=caryatid_block(slenderness), duration=1.0)
     motion = PulseMotion(pulse, amplitude * 9.81 * math.tan(slenderness), frequency * scene.rocking_frequency)
     return scene.with_(motion=motion, duration=motion.end + 6.0)
 
 
 def first_boundary(*pulse: Any) -> float:
-    """Least amplitude over g tan(slenderness) at which the model overturns; found by scanning, then halving.
+    """Return the least amplitude over g tan(slenderness) at which the model overturns, by a scan and bisection.
 
-    pulse : slenderness, shape, frequency, as `boundary_scene`.
+    pulse: slenderness, shape and frequency, as for `boundary_scene`.
     """
 
     def falls(amplitude):
@@ -195,7 +193,7 @@ def first_boundary(*pulse: Any) -> float:
 
 
 def boundary_shift(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
-    """Largest relative shift of the first overturning boundary, its bracket included, under the pulses `scenes`."""
+    """Return the largest relative shift of the first overturning boundary, including its bracket, under the pulses."""
     slenderness, pulses = BOUNDARIES[scenes]
     worst = 0.0
     for pulse in pulses:
@@ -218,7 +216,7 @@ def boundary_shift(engine: str, variant: str, scenes: str, runs: dict[Any, Any])
 
 
 def bearing_replay(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
-    """Largest difference of the engine's bearing force from `paper_force` on its own displacements, over n_d f0."""
+    """Return the largest difference over n_d f0 of the engine's bearing force from `paper_force` of its motion."""
     scene = named_scene(scenes)
     trace, law = traced(engine, variant, scene)[1], BearingLaw.of(scene.bearings)
     force = paper_force(law, trace.base_displacement)
@@ -226,32 +224,32 @@ def bearing_replay(engine: str, variant: str, scenes: str, runs: dict[Any, Any])
 
 
 def bearing_impulse(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
-    """Relative error of the bearing impulse shown by the momentum of the engine's motion, against the law.
+    """Return the relative error of the bearing impulse that the momentum of the engine's motion shows.
 
-    Unlike `bearing_replay` it does not use the force that the adapter reports.
+    Unlike `bearing_replay` this does not use the force that the adapter reports.
     """
     scene = named_scene(scenes)
     return impulse_error(scene, traced(engine, variant, scene)[1])
 
 
 def paper_force(law: BearingLaw, x: np.ndarray) -> np.ndarray:
-    """Force of all bearings [N] along displacements x [m], shape (n,), x[0] = 0, by the paper's eqs (9)-(12).
+    """Return the force of all bearings [N] along displacements x [m], shape (n,), x[0] = 0, by eqs (9) to (12).
 
-    With its own history, the reversal points, and (12) with the sign mended: a second implementation beside
-    `analytic.rocking`, whose history is the last point. Travel since a reversal up to 1.3 m.
+    This is a second implementation beside `analytic.rocking`. Its history is the reversal points, there it is the last
+    point. The sign in (12) is corrected. Travel since a reversal is at most 1.3 m.
     """
     force, s, x_j = np.zeros(len(x)), 0.0, 0.0
     for i in range(1, len(x)):
-        way = math.copysign(1.0, x[i] - x[i - 1]) if x[i] != x[i - 1] else s
-        if way != s:  # a reversal, or the first step
-            s, x_j = way, history_point(law, x[i - 1], force[i - 1], way)
+        direction = math.copysign(1.0, x[i] - x[i - 1]) if x[i] != x[i - 1] else s
+        if direction != s:  # a reversal, or the first step
+            s, x_j = direction, history_point(law, x[i - 1], force[i - 1], direction)
         if s:
             force[i] = branch(law, x[i], s, x_j)
     return law.count * force
 
 
 def branch(law: BearingLaw, x: float, s: float, x_j: float, misprinted: bool = False) -> float:
-    """Force of one bearing [N] on the branch of direction s, eqs (9) to (12), with the paper's x_j [m].
+    """Return the force of one bearing [N] on the branch of direction s, eqs (9) to (12), with the paper's x_j [m].
 
     The bracket is 1 + s x - s x_j + 2 x0. As printed, eq. (12) for unloading (s = -1) has the signs of loading:
     1 + x - x_j + 2 x0.
@@ -265,13 +263,13 @@ def branch(law: BearingLaw, x: float, s: float, x_j: float, misprinted: bool = F
 
 
 def history_point(law: BearingLaw, x: float, force: float, s: float) -> float:
-    """x_j [m] of the branch of direction s through the point (x [m], force [N]) of a reversal, eqs (10), (12)."""
+    """Return x_j [m] of the branch of direction s through a reversal at x [m] and force [N], eqs (10), (12)."""
     a, z = 1 - law.constants.alpha, force - law.kb * x
     return x + s * (1 + 2 * law.constants.x0 - (law.constants.d0 + a * (s * z - law.f0) / law.dk) ** (1 / a))
 
 
 def corner_lift(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
-    """Largest lift of a corner of a block that should stand [m]."""
+    """Return the largest lift [m] of a corner of a block that should stand."""
     scene = named_scene(scenes)
     response = traced(engine, variant, scene, history=False)[0]
     if response.outcome != "stands":
@@ -280,21 +278,21 @@ def corner_lift(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) ->
 
 
 def base_drift(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
-    """Largest difference of the base displacement from the model's [m] while the block stands."""
+    """Return the largest difference of the base displacement from the model's [m] while the block stands."""
     scene = named_scene(scenes)
-    found, reference = traced(engine, variant, scene)[0].history, simulate(scene).history
+    history, reference = traced(engine, variant, scene)[0].history, simulate(scene).history
     return float(
-        np.abs(np.interp(reference.time, found.time, found.base_displacement) - reference.base_displacement).max()
+        np.abs(np.interp(reference.time, history.time, history.base_displacement) - reference.base_displacement).max()
     )
 
 
 @dataclass(frozen=True)
 class Tolerance:
-    """One row: `quantity` of an engine's variant over `scenes`, measured by `measure`, is at most `bound` [unit].
+    """A row of the table: `quantity` of an engine's variant over `scenes`, as `measure` gives it, is at most `bound`.
 
-    measured: the worst found when the bound was set. round_off: the bound is what is asked for, and the measured value
-    mere round-off, far below. source: what the error comes from. bound, measured: None for an engine that states no
-    tolerances: what is found then neither holds nor fails.
+    measured: the worst value when the bound was set. round_off: the bound is a requirement, and the measured value mere
+    round-off, far below it. source: the cause of the error. bound, measured: None for an engine that states no
+    tolerances; its values then neither hold nor fail.
     """
 
     quantity: str
@@ -313,7 +311,7 @@ class Tolerance:
         return f"{self.quantity}: {self.engine}, {self.variant}, {self.scenes}"
 
     def found(self, runs: dict[Any, Any] | None = None) -> float:
-        """The quantity measured here and now; `runs` (dict) keeps simulations that rows share.
+        """Measure the quantity now. runs: a dict of simulations that rows share.
 
         Raises
         ------
@@ -324,17 +322,17 @@ class Tolerance:
         return self.measure(self.engine, self.variant, self.scenes, {} if runs is None else runs)
 
     def holds(self, value: float) -> bool | None:
-        """Whether a measured value lies within the bound; None without one."""
+        """Return whether a measured value is within the bound; None without a bound."""
         return None if self.bound is None else value <= self.bound
 
-    def result(self, found: float | None, failure: str | None) -> dict[str, Any]:
-        """The row with what was `found`, or why nothing was, as JSON values."""
+    def result(self, value: float | None, failure: str | None) -> dict[str, Any]:
+        """Return the row as JSON values, with the `value` found or the reason of a failure."""
         names = "quantity", "engine", "variant", "scenes", "bound", "unit", "measured", "source"
-        holds = self.holds(math.inf if found is None else found)
-        return {name: getattr(self, name) for name in names} | {"found": found, "holds": holds, "failure": failure}
+        holds = self.holds(math.inf if value is None else value)
+        return {name: getattr(self, name) for name in names} | {"found": value, "holds": holds, "failure": failure}
 
     def check(self, runs: dict | None = None) -> float:
-        """The quantity measured here and now, asserted to hold a bound if one is stated: a test of one's own engine.
+        """Measure the quantity now and assert that it holds its bound, if any. Tests of an engine can call this:
 
             @pytest.mark.parametrize("row", rows("exudyn"), ids=lambda row: row.name)
             def test_engine(row):
@@ -343,16 +341,16 @@ class Tolerance:
         Raises
         ------
         AssertionError
-            It does not hold; says what was found.
+            It does not hold; the message gives the value.
         Unmeasurable, EngineNotInstalled
-            As `found`.
+            As for `found`.
         """
         value = self.found(runs)
         assert self.holds(value) is not False, f"{self.name}: {value:.3g} {self.unit}, tolerated {self.bound:.3g}"
         return value
 
 
-# quantity: how it is measured, unit
+# {quantity: (its measure, its unit)}
 QUANTITIES: dict[str, tuple[Callable[..., float], str]] = {
     "restitution, rms": (partial(impact_rms, "state"), "-"),
     "restitution from swings, |mean error|": (swing_restitution_bias, "-"),
@@ -402,9 +400,9 @@ TABLE = _table()
 
 
 def rows(engine: str, variant: str | None = None) -> tuple[Tolerance, ...]:
-    """The rows of an engine's variant, its default one without a name.
+    """Return the rows of an engine's variant; None: its main one.
 
-    Of an engine that states no tolerances they are those of the first engine here, without bounds.
+    An engine that states no tolerances gets the rows of the first engine, without bounds.
 
     Raises
     ------
@@ -431,15 +429,15 @@ def rows(engine: str, variant: str | None = None) -> tuple[Tolerance, ...]:
 
 
 def rows_of(engine: str, variant: str) -> tuple[Tolerance, ...]:
-    """The rows of `TABLE` of an engine's variant."""
+    """Return the rows of `TABLE` for an engine's variant."""
     return tuple(row for row in TABLE if (row.engine, row.variant) == (engine, variant))
 
 
 def measure_all(rows: Iterable[Tolerance] = TABLE) -> list[dict[str, Any]]:
-    """The table measured here and now: a list of dict, JSON values, in the order of `rows`.
+    """Measure rows of the table now. Returns a list of dicts of JSON values, in the order of `rows`.
 
-    Each holds the row's columns, `found` (None where a run failed), `holds` (None without a bound), and `failure`, in
-    words or None.
+    Each has the row's columns, `found` (None if a run failed), `holds` (None without a bound) and `failure` (words or
+    None).
     """
     runs: dict[Any, Any] = {}
     results = []

@@ -1,20 +1,20 @@
-"""Analysis of one impact from the positions of the block in an engine's steps.
+"""Analysis of one impact, and of the cause of its error, from the positions of the block in an engine's steps.
 
-Newton's laws give the impulses that an engine must have used between two steps, whatever its solver calls them: of both
-corners upward and of both together along the ground. Momentum then splits the error of e into parts that add up to it.
-With L about the landing corner, which neither friction nor that corner's own impulse changes, s and r the speed of a
-corner on the ground the way the centre goes and away from the ground, mt = m/M (0 on rigid ground), J' = J_O - m mt h^2
-and w the rate before the impact:
+Newton's laws give the impulses that an engine must have used between two steps, whatever its solver calls them: upward
+at each corner, and along the ground at both together. The angular momentum about the landing corner, which neither
+friction nor the impulse of that corner changes, then splits the error of e into parts that add up to it. s and r are
+the speeds of a corner on the ground, in the direction of the centre's motion and away from the ground; mt = m/M (0 on
+rigid ground); J' = J_O - m mt h^2; and w is the rate before the impact:
 
     J' w de = 2 b (impulse of the old corner, less what bears the block up to the landing)     parts `support`, `pull`
               - m (h (1 - mt) s + b r), of the pivot after, and + of the pivot before          parts `slip`, `rebound`
 
-`pull` is what is negative of the old corner's impulses. What is left over is the bearings' and gravity's while the
-contact lasts, of second order. Two more quantities are given in the same unit. `flight`: the energy gained in the
-second half of the swing before, as a share of w. `shape`: the change of e by a strike that acts where the weight acted
-just before, when just before, when the landing corner is in the air and should be unloaded.
+`pull` is the negative part of the old corner's impulses. The remainder, of second order, comes from bearings and
+gravity during the contact. Two more quantities have the same unit. `flight`: the energy gained in the second half of
+the swing before, as a share of w. `shape`: the change of e by a strike that acts where the weight acted just before,
+when the landing corner is in the air and should be unloaded.
 
-The cause of the error follows from these steps alone, without the variant's settings.
+`cause_of` infers the cause of the error from these steps alone, without the variant's settings.
 """
 
 import math
@@ -34,43 +34,43 @@ from engines.swings import ArrayModel, Trace, find_swings, to_contact
 from .agreement import Unmeasurable
 
 PARTS = ("support", "pull", "slip", "rebound")  # of the error of e
-BESIDE = 3  # steps in flight that are shown on each side of the contact
-LEAST_STRIKE = 0.1  # of the impulse that turns the centre's fall into a rise
+BESIDE = 3  # steps in flight shown on each side of the contact
+LEAST_STRIKE = 0.1  # least impulse of a strike, over the impulse that turns the centre's fall into a rise
 
 
 @dataclass(frozen=True)
 class Contact:
-    """An impact of a trace with n steps around it; columns of two: landing corner, old corner.
+    """An impact of a trace, with n steps around it. Of two columns the first is the landing corner, then the old one.
 
     Parameters
     ----------
     placed : bool
-        The trace has the position of the block; else it is taken to pivot about its corners, whose motion is unknown.
+        The trace has the position of the block. Otherwise the block is assumed to pivot about its corners.
     landing : float
-        When the flight before reaches tilt = 0 [s].
+        Time at which the flight before reaches tilt = 0 [s].
     before, after : float
         Tilt rates extrapolated to tilt = 0 [rad/s].
     error : float
         after/before less the scene's restitution.
     parts : dict
-        Of the error: support, pull, slip, rebound, see above; where the block is not `placed`, their sum as contact.
-        Beside them flight and, where it is placed, shape.
+        Parts of the error: support, pull, slip, rebound, see above, or their sum as contact if the block is not
+        `placed`. Beside them flight and, if the block is placed, shape.
     late : float
-        Error of e by a strike that is late, over the delay [1/s].
+        Error of e caused by a late strike, over the delay [1/s].
     time : array, shape (n,)
-        From the landing [s].
+        Time from the landing [s].
     tilt, energy : arrays, shape (n,)
         [rad]; less work done and bearings' loss, over the kinetic energy before the impact, 1 at the first step.
     height, sinking, slip : arrays, shape (n, 2)
-        Of the corners: above the ground [m], speed downward and along the base [m/s].
+        Height of the corners above the ground [m], their speed downward and along the base [m/s].
     impulse : array, shape (n - 1, 2)
-        Upward [N s], between two steps.
+        Upward impulse between two steps [N s].
     friction : array, shape (n - 1,)
-        Of both corners, along the ground [N s].
+        Impulse of both corners along the ground [N s].
     strike : array, shape (n - 1,)
-        Share of the impact in the landing corner's impulse: without what bears the block after the landing; sum 1.
+        The landing corner's impulse without the part that supports the block after the landing, over its sum.
     first, last : int
-        Indices of the last step in clean flight before the contact and the first one after it.
+        Indices of the last step in clean flight before the contact, and of the first one after it.
     """
 
     placed: bool
@@ -94,7 +94,7 @@ class Contact:
 
     @property
     def phase(self) -> float:
-        """Error of e by a strike that is late by one step, the longest while the landing corner is struck."""
+        """Error of e caused by a strike that is late by one step, the longest while the landing corner is struck."""
         return self.late * float(np.diff(self.time)[self._struck].max())
 
     @property
@@ -114,12 +114,12 @@ class Contact:
 
 
 def contact_of(scene: Scene, trace: Trace, which: int = 0) -> Contact:
-    """The `Contact` of the impact number `which` of a trace.
+    """Return the `Contact` of the impact number `which` of a trace.
 
     Raises
     ------
     Unmeasurable
-        The trace has no such impact between two swings, or no corner is struck there.
+        The trace has no such impact between two swings, or no corner is struck in it.
     """
     placed = trace.centre is not None
     if not placed:
@@ -134,17 +134,17 @@ def contact_of(scene: Scene, trace: Trace, which: int = 0) -> Contact:
     begin = max(swings.last[k] - BESIDE, 0)
     first, last = int(swings.last[k] - begin), int(swings.clean[k + 1] - begin)
     seen, side = trace.at(slice(begin, begin + last + BESIDE + 1)), swings.side[k]
-    told = corner_motion(scene, seen, side) | corner_impulses(scene, seen, side)
+    corners = corner_motion(scene, seen, side) | corner_impulses(scene, seen, side)
     landing, rates = float(land[k]), (float(before[k]), float(after[k + 1]))
     normals, steps = pivot_forces(scene, seen, side, landing, rates), np.diff(seen.time)
-    ahead = np.clip(landing - seen.time[:-1], 0.0, steps)  # how much of each step lies before the landing
-    strike = told["impulse"][:, 0] - normals[1] * (steps - ahead)
+    ahead = np.clip(landing - seen.time[:-1], 0.0, steps)  # part of each step before the landing
+    strike = corners["impulse"][:, 0] - normals[1] * (steps - ahead)
     strike[:first], strike[last:] = 0.0, 0.0
     # The centre falls at b w before the impact and rises at e b w after it.
     if not strike.sum() > LEAST_STRIKE * scene.block.mass * scene.block.half_width * abs(sum(rates)):
         raise Unmeasurable(f"no corner is struck while the tilt is below {trace.contact_tilt:.3g}: elsewhere, or none")
-    parts = _parts(scene, told, rates[0], normals[0] * ahead[first:last].sum(), slice(first, last))
-    borne = told["impulse"][:first].sum(axis=0)  # in flight, by each corner
+    parts = _parts(scene, corners, rates[0], normals[0] * ahead[first:last].sum(), slice(first, last))
+    borne = corners["impulse"][:first].sum(axis=0)  # in flight, by each corner
     parts["shape"] = float(borne[0] / borne.sum()) * _moved(scene, strike.sum(), rates[0])
     if not placed:
         parts = {"contact": sum(parts[name] for name in PARTS)}
@@ -161,19 +161,19 @@ def contact_of(scene: Scene, trace: Trace, which: int = 0) -> Contact:
         strike=strike / strike.sum(),
         first=first,
         last=last,
-        height=told["height"],
-        sinking=told["sinking"],
-        slip=told["slip"],
-        impulse=told["impulse"],
-        friction=told["friction"],
+        height=corners["height"],
+        sinking=corners["sinking"],
+        slip=corners["slip"],
+        impulse=corners["impulse"],
+        friction=corners["friction"],
     )
 
 
 def _gained_in_flight(scene: Scene, trace: Trace, first: int, last: int, rate: float) -> float:
-    """Energy gained in the second half of a swing, as a share of the rate at its end.
+    """The energy gained in the second half of a swing, as a share of the rate at its end.
 
-    Not the first half: a start may settle on its contact. Of a weak impact in the middle of a strong motion it is the
-    share of what moves most, as the work of ground and bearings is known to a share of that.
+    The first half is left out, because a start may settle on its contact. For a weak impact within a strong motion the
+    unit is the largest kinetic energy, because the work of ground and bearings is known to a share of that.
     """
     middle = np.searchsorted(trace.time, 0.5 * (trace.time[first] + trace.time[last]))
     balance, kinetic = energy_balance(scene, trace.at(slice(middle, last + 1)))
@@ -181,45 +181,45 @@ def _gained_in_flight(scene: Scene, trace: Trace, first: int, last: int, rate: f
 
 
 def frames(contact: Contact) -> dict[str, dict[str, list[float]]]:
-    """The contact in four frames, each of times from the landing [s] and values.
+    """Return the contact in four frames, each of times from the landing [s] and values.
 
-    straddle: the landing corner's height [m] about the step that is struck; energy: over the kinetic one before the
-    impact. Where the block is placed also penetration: that height over the whole contact; and rebound: the landing
-    corner's speed away from the ground, over that of its fall.
+    straddle: the landing corner's height [m] around the step that is struck. energy: over the kinetic energy before the
+    impact. If the block is placed, also penetration: that height over the whole contact; and rebound: the landing
+    corner's speed away from the ground, over the speed of its fall.
     """
     time, height = contact.time.tolist(), contact.height[:, 0].tolist()
     struck = int(contact.strike.argmax())
     near = slice(max(struck - BESIDE, 0), struck + BESIDE + 2)
-    told = {
+    shown = {
         "straddle": {"time": time[near], "landing": height[near]},
         "energy": {"time": time, "energy": contact.energy.tolist()},
     }
     if contact.placed:
         speed = -contact.sinking[:, 0] / contact.sinking[contact.first, 0]
-        told["penetration"] = {"time": time, "landing": height}
-        told["rebound"] = {"time": time, "speed": speed.tolist()}
-    return told
+        shown["penetration"] = {"time": time, "landing": height}
+        shown["rebound"] = {"time": time, "speed": speed.tolist()}
+    return shown
 
 
 def _moved(scene: Scene, impulse: float, rate: float) -> float:
-    """Change of e by an impulse at the old corner [N s], or by one a second [N]."""
+    """The change of e by an impulse at the old corner [N s]; per second for a force [N]."""
     return float(2 * scene.block.half_width * impulse / (_inertia(scene) * abs(rate)))
 
 
 def _inertia(scene: Scene) -> float:
-    """J' [kg m2], see above."""
+    """J' [kg m2], see the module."""
     block = scene.block
     return block.inertia - block.mass * scene.mass_share * block.half_height**2
 
 
-def _parts(scene: Scene, told: dict[str, np.ndarray], rate: float, borne: float, window: slice) -> dict[str, float]:
-    """The parts of the error of e; borne: impulse [N s] that bears the block up to the landing."""
+def _parts(scene: Scene, corners: dict[str, np.ndarray], rate: float, borne: float, window: slice) -> dict[str, float]:
+    """The parts of the error of e. borne: impulse [N s] that supports the block up to the landing."""
     block, way = scene.block, math.copysign(1.0, rate)
-    old, scale = told["impulse"][window, 1], _inertia(scene) * abs(rate)
+    old, scale = corners["impulse"][window, 1], _inertia(scene) * abs(rate)
     pulled = float(np.minimum(old, 0.0).sum())
     ends = [(-1.0, window.start, 1), (1.0, window.stop, 0)]  # the pivot before, the pivot after
-    slipped = way * sum(sign * told["slip"][k, corner] for sign, k, corner in ends)
-    risen = -sum(sign * told["sinking"][k, corner] for sign, k, corner in ends)
+    slipped = way * sum(sign * corners["slip"][k, corner] for sign, k, corner in ends)
+    risen = -sum(sign * corners["sinking"][k, corner] for sign, k, corner in ends)
     return {
         "support": _moved(scene, float(old.sum()) - pulled - borne, rate),
         "pull": _moved(scene, pulled, rate),
@@ -228,7 +228,7 @@ def _parts(scene: Scene, told: dict[str, np.ndarray], rate: float, borne: float,
     }
 
 
-LEAST = 1e-3  # of e, or of the rate before: a smaller error has no cause worth a name
+LEAST = 1e-3  # least error of e, or share of the rate before, for which a cause is named
 CAUSES = {
     "damping": "the block loses speed in flight: something is damped that was not asked for",
     "shape": "a corner in the air bears weight: the contact is not where the block's corner is",
@@ -245,13 +245,13 @@ CAUSES = {
 # velocities are those of the steps' ends; without convergence they take up to eight (one iteration, started from the
 # step before). A resolved compliant contact takes a dozen or more.
 AT_ONCE, MANY = 2, 10
-SATURATED = 5.0  # largest friction over normal impulse of a sliding contact, over the strike's, in which it may turn
-STRADDLING = 2.0  # parts over what gravity gains in a step, up to which the step explains them: a strike is seen in two
-HALF = 0.5  # of the largest part, from which on a part or a reason of parts is named
+SATURATED = 5.0  # largest friction over normal impulse of a sliding contact, over that of the strike
+STRADDLING = 2.0  # parts up to this multiple of the phase are explained by the step: a strike appears in two steps
+HALF = 0.5  # share of the largest part from which a part counts as a cause
 
 
 def cause_of(contact: Contact) -> str | None:
-    """One of `CAUSES`, or None where the error is below `LEAST`."""
+    """Return one of `CAUSES`, or None if the error is below `LEAST`."""
     parts = {name: abs(value) for name, value in contact.parts.items()}
     flight, shape = parts.pop("flight"), parts.pop("shape", 0.0)
     if max(flight, abs(contact.error)) < LEAST:
@@ -272,7 +272,7 @@ def cause_of(contact: Contact) -> str | None:
 
 
 def _sudden(contact, part, pulled):
-    """The cause of a sudden strike's error that one step does not explain, by its largest part."""
+    """The cause of the error of a sudden strike that one step does not explain, by its largest part."""
     if not contact.placed:
         return "unseen"
     if part == "slip":
@@ -283,7 +283,7 @@ def _sudden(contact, part, pulled):
 
 
 def _saturated(contact):
-    """Whether friction over normal impulse is nowhere larger than at the strike, as of a contact that slides."""
+    """Whether friction over normal impulse is nowhere much larger than at the strike, as in a contact that slides."""
     window = slice(contact.first, contact.last)
     upward, strike = contact.impulse[window].sum(axis=1), contact.strike[window]
     loaded = upward > 1e-3 * upward.max()
@@ -292,14 +292,14 @@ def _saturated(contact):
 
 
 def diagnosis(engine: str, variant: str, scene: Scene, which: int = 0, **settings: Any) -> dict[str, object]:
-    """The analysis of impact number `which` of a run, ready for JSON.
+    """Run a scene and return the analysis of impact number `which`, ready for JSON.
 
     Returns
     -------
     dict
-        engine, variant, "tier" (its kind), best (the engine's main variant); if it can be analysed: placed, error,
-        cause and words (None below `LEAST`), parts, steps, energy_lost (over the kinetic one before), frames, and where
-        the block is placed deepest [m]; else why_not.
+        engine, variant, "tier" (its kind) and best (it is the engine's main variant). If the impact can be analysed:
+        placed, error, cause and words (None below `LEAST`), parts, steps, energy_lost (over the kinetic energy before),
+        frames, and deepest [m] if the block is placed; otherwise why_not.
     """
     record = get_engine(engine)
     row: dict[str, object] = {"engine": engine, "variant": variant, "tier": record.variants[variant].kind}
@@ -326,12 +326,13 @@ def diagnosis(engine: str, variant: str, scene: Scene, which: int = 0, **setting
 
 
 def corner_motion(scene: Scene, trace: Trace, side: float) -> dict[str, np.ndarray]:
-    """How the corners move in a trace with a centre; `side`, +1 or -1, is the old corner's.
+    """Return the motion of the corners in a trace with a centre. side: that of the old corner, +1 or -1.
 
     Returns
     -------
     dict
-        height above the ground [m], sinking: speed downward, slip: speed along the base [m/s]; arrays, shape (n, 2).
+        Arrays of shape (n, 2): height above the ground [m], sinking (speed downward) and slip (speed along the base)
+        [m/s].
     """
     lever, drop = _levers(scene, trace.tilt, side)
     _, z, vx, vz = np.asarray(trace.centre).T
@@ -341,19 +342,20 @@ def corner_motion(scene: Scene, trace: Trace, side: float) -> dict[str, np.ndarr
 
 
 def _levers(scene: Scene, tilt: np.ndarray, side: float) -> tuple[np.ndarray, np.ndarray]:
-    """(x, z) [m] of landing corner and old corner from the block's centre, shapes (n, 2)."""
+    """(x, z) [m] of the landing and the old corner from the block's centre, shapes (n, 2)."""
     b, h = scene.block.half_width, scene.block.half_height
     across, cos, sin = np.array([-side * b, side * b]), np.cos(tilt)[:, None], np.sin(tilt)[:, None]
     return across * cos - h * sin, -across * sin - h * cos
 
 
 def corner_impulses(scene: Scene, trace: Trace, side: float) -> dict[str, np.ndarray]:
-    """Impulses on the corners between the n steps of a trace with a centre, from the change of its momentum.
+    """Return the impulses on the corners between the n steps of a trace with a centre, from its change of momentum.
 
     Returns
     -------
     dict
-        impulse: of each corner upward, shape (n - 1, 2), friction: of both along the ground, shape (n - 1,) [N s].
+        impulse [N s]: upward at each corner, shape (n - 1, 2). friction [N s]: along the ground at both corners
+        together, shape (n - 1,).
     """
     block, time, (_, _, across, up) = scene.block, trace.time, np.asarray(trace.centre).T
     lever, drop = (0.5 * (each[1:] + each[:-1]) for each in _levers(scene, trace.tilt, side))
@@ -361,13 +363,13 @@ def corner_impulses(scene: Scene, trace: Trace, side: float) -> dict[str, np.nda
     friction = block.mass * (np.diff(across) + ground)
     upward = block.mass * (np.diff(up) + scene.gravity * np.diff(time) + upright)
     spin = block.centre_inertia * np.diff(trace.tilt_rate)
-    # Friction at the lower corner (both are loaded where level): z H - x_a N_a - x_o N_o = spin, N_a + N_o = N
+    # Friction acts at the lower corner (at both if level): z H - x_a N_a - x_o N_o = spin, N_a + N_o = N
     landing = (drop.min(axis=1) * friction - lever[:, 1] * upward - spin) / (lever[:, 0] - lever[:, 1])
     return {"impulse": np.column_stack([landing, upward - landing]), "friction": friction}
 
 
 def _gained(motion: Motion | None, time: np.ndarray) -> np.ndarray | float:
-    """Velocity [m/s] that the ground gains in each step."""
+    """The velocity [m/s] that the ground gains in each step."""
     velocity = ground_velocity(motion)
     return np.diff([velocity(t) for t in time.tolist()]) if velocity else 0.0
 
@@ -375,9 +377,9 @@ def _gained(motion: Motion | None, time: np.ndarray) -> np.ndarray | float:
 def pivot_forces(
     scene: Scene, trace: Trace, side: float, landing: float, rates: tuple[float, float]
 ) -> tuple[float, float]:
-    """Normal force on a block that pivots at tilt 0 [N], before and after the landing [s], by eqs (3)-(6).
+    """Return the normal force [N] on a block that pivots at tilt 0, before and after the landing, by eqs (3) to (6).
 
-    rates: tilt rates before and after it [rad/s].
+    landing: its time [s]. rates: tilt rates before and after it [rad/s].
     """
     model, motion = ArrayModel.of(scene), scene.motion
     ground, up = (motion.acceleration(landing), vertical_acceleration(motion, landing)) if motion else (0.0, 0.0)

@@ -1,6 +1,6 @@
-"""Where overturning begins and ends: the analytic boundaries, and a solver's boundary searched for beside one of them.
+"""Overturning boundaries: those of the analytic model, and the search for a solver's boundary beside one of them.
 
-Amplitudes are over g tan(slenderness), frequencies over omega_r.
+Amplitudes are given over g tan(slenderness), frequencies over omega_r.
 """
 
 import itertools
@@ -19,14 +19,14 @@ from ..execution.cases import Case
 from ..execution.plan import Batch, boundaries, drive, together
 from ..execution.sweep import Row
 
-LOWEST, HIGHEST = 0.5, 20.0  # of the amplitudes searched
+LOWEST, HIGHEST = 0.5, 20.0  # range of the amplitudes searched
 SCAN = 400  # points of the first scan, equidistant in the logarithm: 0.9 % apart
 ANALYTIC = 1e-6  # tolerance of the analytic boundaries, relative
-BESIDE = 2e-5  # relative distance from a boundary at which the analytic run tells how long overturning takes
-CUT = 0.45  # where a bracket is divided: not in the middle, which may be the analytic boundary itself
-WIDEST = 5e-3  # half-width of a bracket, relative, beyond which a boundary counts as not found
-ROOM = 0.9  # of the way to the middle between two boundaries, what a search may use
-# why there is no boundary, by the outcomes seen: whether it overturns
+BESIDE = 2e-5  # relative distance from a boundary at which the model is run for its mode and least normal force
+CUT = 0.45  # point at which a bracket is divided; the middle may be the analytic boundary itself
+WIDEST = 5e-3  # relative half-width of a bracket beyond which a boundary counts as not found
+ROOM = 0.9  # part of the way to the middle between two boundaries that a search may use
+# {outcomes seen, True: overturns: why there is no boundary}
 REASONS = {
     frozenset(): "no run was decided",
     frozenset({True}): "overturns on both sides",
@@ -39,9 +39,9 @@ REASONS = {
 class Edge:
     """A boundary of the analytic model along the amplitude.
 
-    rises: overturning lies above it. mode: impacts before overturning. low, high: amplitudes half way to the
-    neighbouring boundaries. min_normal: least normal force over m g of the analytic model beside it; below 0 that model
-    holds the corner down, where a block would slide or jump.
+    rises: overturning lies above it. mode: number of impacts before overturning. low, high: amplitudes half way to the
+    neighbouring boundaries. min_normal: least normal force over m g in the analytic model beside it; below 0 the model
+    holds the corner down, whereas a block would slide or jump.
     """
 
     ground: str
@@ -57,7 +57,7 @@ class Edge:
 
 @dataclass(frozen=True)
 class Located:
-    """A solver's boundary: its relative shift and the half-width of the bracket; shift None where it was not found."""
+    """A solver's boundary: its relative shift and the half-width of the bracket. shift: None if it was not found."""
 
     shift: float | None
     half_width: float | None
@@ -66,13 +66,13 @@ class Located:
 
 
 def pulse(scene: Scene, shape: str, frequency: float, amplitude: float) -> PulseMotion:
-    """The `PulseMotion` of the two ratios."""
+    """Return the `PulseMotion` with this frequency over omega_r and amplitude over g tan(slenderness)."""
     unit = scene.gravity * math.tan(scene.block.slenderness)
     return PulseMotion(shape, amplitude * unit, frequency * scene.rocking_frequency)
 
 
 def edges(scene: Scene, ground: str, shape: str, frequencies: Sequence[float]) -> list[Edge]:
-    """All `Edge`s of the analytic model on a ground of that name, ascending at each frequency.
+    """Return all `Edge`s of the analytic model at each frequency, ascending. ground: its name.
 
     Raises
     ------
@@ -96,43 +96,43 @@ def edges(scene: Scene, ground: str, shape: str, frequencies: Sequence[float]) -
 
 
 def _edges(scene, ground, shape, frequency, transitions):
-    """Those of the transitions at which overturning begins or ends."""
-    transitions = [one for one in transitions if -1 in (one.before, one.after)]
-    amplitudes = [math.exp(one.position) for one in transitions]
+    """Yield the edges: the transitions at which overturning begins or ends."""
+    transitions = [transition for transition in transitions if -1 in (transition.before, transition.after)]
+    amplitudes = [math.exp(transition.position) for transition in transitions]
     limits = [LOWEST, *(math.sqrt(a * b) for a, b in itertools.pairwise(amplitudes)), 1.5 * HIGHEST]
-    for one, amplitude, low, high in zip(transitions, amplitudes, limits, limits[1:], strict=False):
-        rises = one.before == -1
+    for transition, amplitude, low, high in zip(transitions, amplitudes, limits, limits[1:], strict=False):
+        rises = transition.before == -1
         beside = pulse(scene, shape, frequency, amplitude * (1 + BESIDE if rises else 1 - BESIDE))
-        mode, normal = int(one.after if rises else one.before), least_normal(scene, beside)
+        mode, normal = int(transition.after if rises else transition.before), least_normal(scene, beside)
         yield Edge(ground, shape, frequency, amplitude, rises, mode, low, high, normal)
 
 
 def least_normal(scene: Scene, motion: Motion) -> float:
-    """Least N/(m g) in the analytic model under `motion`."""
+    """Return the least N/(m g) in the analytic model under `motion`."""
     return simulate(scene.with_(motion=motion, duration=None), history=False).min_normal_ratio
 
 
 def locate(
     edge: Edge, distances: Sequence[Sequence[float]], tolerance: float
 ) -> Generator[list[float], list[Any], Located]:
-    """Search for a solver's boundary beside an analytic one, outward in the steps of `distances`, then by bisection.
+    """Search for a solver's boundary beside an analytic one, outward at `distances`, then by bisection.
 
-    Of several boundaries the nearest is taken. Where two boundaries lie closer than the distances reach, it is
-    shortened to their middle.
+    The nearest of several boundaries is taken. Distances that reach beyond the middle between two analytic boundaries
+    are shortened.
 
     Parameters
     ----------
     edge : Edge
     distances : sequence of tuples of float
-        Relative distances above 0; a further tuple is tried only where those before show no boundary.
+        Relative distances above 0. A further tuple is tried only if the earlier ones show no boundary.
     tolerance : float
         Largest width of the bracket, relative.
 
     Returns
     -------
     generator
-        For `refine.drive`; yields lists of amplitudes, is sent True (overturns), False or None (failed, undecided),
-        returns a `Located`.
+        For `plan.drive`. It yields lists of amplitudes, is sent True (overturns), False or None (failed, undecided),
+        and returns a `Located`.
     """
     known: dict[float, bool | None] = {}
     bracket = None
@@ -166,20 +166,20 @@ def locate(
 
 
 def _nearest(known, rises):
-    """The pair of neighbouring offsets between which the outcome changes the way of the edge, nearest to 0."""
+    """The pair of neighbouring offsets, nearest to 0, between which the outcome changes as at the edge, or None."""
     points = sorted(point for point, answer in known.items() if answer is not None)
     pairs = [(a, b) for a, b in itertools.pairwise(points) if known[a] == (not rises) and known[b] == rises]
     return min(pairs, key=lambda pair: abs(pair[0] + pair[1]), default=None)
 
 
-DISTANCES = ((2e-4, 1.2e-2), (3e-2,), (0.1,), (0.3,))  # relative, where a boundary is sought, see `locate`
+DISTANCES = ((2e-4, 1.2e-2), (3e-2,), (0.1,), (0.3,))  # relative distances of `locate`
 TOLERANCE = 2e-5  # of a solver's boundary
-LEVEL_DISTANCES, LEVEL_TOLERANCE = ((2e-3, 2e-2), (0.1,), (0.3,)), 2e-4  # of levels, and of engines as they come
+LEVEL_DISTANCES, LEVEL_TOLERANCE = ((2e-3, 2e-2), (0.1,), (0.3,)), 2e-4  # for other levels, and for defaults
 
 
 @dataclass(frozen=True)
 class Setting:
-    """A variant at a level of its accuracy parameter; settings: what sets it, nothing at the default."""
+    """A variant at a level of its accuracy parameter. settings: those that give the level; none at the default."""
 
     engine: str
     variant: str
@@ -191,7 +191,7 @@ class Setting:
 
 
 class Point(NamedTuple):
-    """A pulse on a ground; min_normal: least N/(m g) of the analytic model there or at the boundary nearby."""
+    """A pulse on a ground. min_normal: least N/(m g) of the analytic model there or at the boundary nearby."""
 
     ground: str
     shape: str
@@ -201,7 +201,7 @@ class Point(NamedTuple):
 
 
 def usual_settings(engines: Sequence[str]) -> tuple[list[Setting], list[Setting]]:
-    """(the engines' main variants, their other ones of the kind "defaults"), at their default levels."""
+    """Return (main variants of the engines, their other variants of the kind "defaults"), at their default levels."""
     main, others = [], []
     for engine in map(get_engine, engines):
         for variant, spec in engine.variants.items():
@@ -222,7 +222,7 @@ Asked = Generator[Batch, list[Row], list[Any]]
 class Runs:
     """Runs pulses in solvers, and stores failures and the outcomes at default levels.
 
-    outcomes: {(engine, ground, shape, frequency, amplitude): (overturns, or None where undecided; whether of the scan)}
+    outcomes: {(engine, ground, shape, frequency, amplitude): (overturns, None if undecided; whether of the scan)}.
     """
 
     def __init__(self, grounds: Mapping[str, Scene], default: Sequence[Setting] = ()) -> None:
@@ -231,7 +231,7 @@ class Runs:
         self._grounds, self._default = grounds, default
 
     def ask(self, points: Sequence[tuple[Setting, Point]], label: str, scan: bool = False) -> Asked:
-        """Outcomes (True, False, None) of (`Setting`, `Point`) pairs."""
+        """Run (`Setting`, `Point`) pairs and return whether each overturns, None if undecided."""
         cases = [
             Case(
                 under(self._grounds, point),
@@ -257,22 +257,22 @@ class Runs:
                 self.outcomes[setting.engine, *point[:-1]] = answers[-1], scan
         return answers
 
-    def search_usual(self, part: str, engines: Sequence[str], found: Sequence[Edge]) -> Asked:
-        """Rows of `search` of the `usual_settings`: the main variants' are known more closely."""
+    def search_usual(self, part: str, engines: Sequence[str], model_edges: Sequence[Edge]) -> Asked:
+        """Return rows of `search` for the `usual_settings`, with the finer tolerance for the main variants."""
         main, others = usual_settings(engines)
-        rows = yield from self.search(part, main, found, DISTANCES, TOLERANCE)
-        return rows + (yield from self.search(part, others, found, LEVEL_DISTANCES, LEVEL_TOLERANCE))
+        rows = yield from self.search(part, main, model_edges, DISTANCES, TOLERANCE)
+        return rows + (yield from self.search(part, others, model_edges, LEVEL_DISTANCES, LEVEL_TOLERANCE))
 
     def search(
         self,
         part: str,
         settings: Sequence[Setting],
-        found: Sequence[Edge],
+        model_edges: Sequence[Edge],
         distances: Sequence[Sequence[float]],
         tolerance: float,
     ) -> Asked:
-        """Rows, called `part`, of the boundaries that settings have beside those found in the analytic model."""
-        jobs = list(itertools.product(settings, found))
+        """Return rows of the boundaries of `settings` beside those of the analytic model. part: of each row."""
+        jobs = list(itertools.product(settings, model_edges))
         label = f"{part}: {', '.join(f'{setting.engine} {setting.variant}' for setting in settings)}"
         searches = together([locate(edge, distances, tolerance) for _, edge in jobs])
         answers: Any = None
@@ -299,9 +299,9 @@ class Runs:
                 "rises": edge.rises,
                 "mode": edge.mode,
                 "room": min(1 - edge.low / edge.amplitude, edge.high / edge.amplitude - 1),
-                **vars(one),
+                **vars(boundary),
             }
-            for (setting, edge), one in zip(jobs, located, strict=True)
+            for (setting, edge), boundary in zip(jobs, located, strict=True)
         ]
 
 

@@ -1,16 +1,13 @@
-"""Errors of a response, the same for every solver and in every command, study and page.
+"""Errors of a response, the sensitivity horizon of a scene, and scenes modelled with more than they need.
 
-Restitution: from the swings around each impact (`swing_restitution`, as in an experiment), from the states at it
-(`state_restitution`, also under forces) and from successive rates (`rate_restitution`, without a history). Base
-velocity jump, impact times, missed impacts, distance of the tilt graphs, energy.
+The errors are the same for every solver and in every command, study and page. Restitution is measured from the swings
+around an impact (`swing_restitution`, as in an experiment), from the states at it (`state_restitution`, also under
+forces), and from successive rates (`rate_restitution`, without a history). Other measures are the base velocity jump,
+impact times, missed impacts, the distance of the tilt graphs, and the energy.
 
-The sensitivity horizon of a scene: the time up to which trajectories can be compared.
-
-Rocking under a long record is chaotic: a change of the restitution in the fourth digit soon gives another motion, in
-the exact model, too. Point-wise agreement of two solvers can be required only until then. The horizon depends on the
-size of a solver's errors, so that each solver has its own.
-
-Scenes modelled with more than they need, to measure the cost of it and its effect on the error.
+The sensitivity horizon is the time up to which trajectories can be compared. Rocking under a long record is chaotic: a
+change of the restitution in the fourth digit soon gives another motion, in the exact model, too. Two solvers can agree
+point by point only until then. The horizon depends on the size of a solver's errors, so each solver has its own.
 """
 
 import dataclasses
@@ -29,19 +26,19 @@ from engines.comparison import changed_copies
 from engines.events import impacts_of, matched
 from engines.swings import Trace
 
-# Of the run's fastest: slower impacts are not swings but an engine's chatter before rest.
+# Least rate of an impact over the fastest of the run: slower impacts are an engine's chatter before rest.
 SLOWEST_IMPACT = 0.1
 # Time after an impact that belongs to it [s]: exudyn's compliant corners relax for 6 ms.
 SETTLE = 0.01
 
 
 def swing_restitution(scene: Scene, response: Response) -> np.ndarray:
-    """Effective restitution of each impact from the energies of the swings around it, shape (impacts,).
+    """Return the restitution of each impact from the energies of the swings around it, shape (impacts,).
 
-    For free rocking on rigid ground: cos(u') - cos(gamma) = e^2 (cos(u) - cos(gamma)), u = gamma - peak |tilt| of
-    the swing before, u' of the one after; on a base that slides freely the same holds for the energy relative to
-    the centre of mass of block and base. Each peak is refined from the sample nearest to it by the energy
-    integral. NaN where one of the swings has no peak in the history, that is fewer than about four samples.
+    For free rocking on rigid ground: cos(u') - cos(gamma) = e^2 (cos(u) - cos(gamma)), u = gamma - peak |tilt| of the
+    swing before, u' of the swing after. On a base that slides freely the same holds for the energy relative to the
+    centre of mass of block and base. Each peak is refined from the nearest sample by the energy integral. NaN if a
+    swing has no peak in the history, that is fewer than about four samples.
 
     Raises
     ------
@@ -65,9 +62,10 @@ def swing_restitution(scene: Scene, response: Response) -> np.ndarray:
 
 
 def flight_energy(scene: Scene, tilt: Values, rate: Values) -> Values:
-    """Energy over m g R of a block in free flight, 0 at tilt = rate = 0; constant between impacts. Arrays or floats.
+    """Return the energy over m g R of a block in free flight, 0 at tilt = rate = 0. Arrays or floats.
 
-    cos(u) - cos(gamma) + rate^2/(2 p^2), u = gamma - |tilt|; on a freely sliding base relative to the centre of mass.
+    It is constant between impacts: cos(u) - cos(gamma) + rate^2/(2 p^2), u = gamma - |tilt|; on a freely sliding base
+    relative to the centre of mass.
     """
     block, tilt = scene.block, np.abs(tilt)
     u = block.slenderness - tilt
@@ -79,7 +77,7 @@ def flight_energy(scene: Scene, tilt: Values, rate: Values) -> Values:
 
 
 def state_restitution(response: Response) -> np.ndarray:
-    """e_phi = rate after / rate before of each impact, shape (impacts,); for any base and motion, eq. (7).
+    """Return e_phi = rate after / rate before of each impact, shape (impacts,), for any base and motion, eq. (7).
 
     An engine's rates are its flight states extrapolated to the impact by the model's equations (engines.observe).
     """
@@ -88,9 +86,9 @@ def state_restitution(response: Response) -> np.ndarray:
 
 
 def base_jump_error(scene: Scene, response: Response) -> np.ndarray:
-    """Error of the base velocity's jump against momentum, relative, shape (impacts,); of a scene with a base.
+    """Return the relative error of the jump of the base velocity against momentum, shape (impacts,).
 
-    Momentum: x'+ - x'- = mt h (w- - w+), eq. (8) corrected, with the rates the response itself has.
+    Momentum: x'+ - x'- = mt h (w- - w+), eq. (8) corrected, with the response's own rates. The scene has a base.
     """
     rates = _rates(response)
     expected = scene.mass_share * scene.block.half_height * (rates[:, 0] - rates[:, 1])
@@ -99,21 +97,21 @@ def base_jump_error(scene: Scene, response: Response) -> np.ndarray:
 
 
 def strong_impacts(response: Response) -> tuple[Impact, ...]:
-    """The impacts of a response that are at least `SLOWEST_IMPACT` as fast as its fastest."""
+    """Return the impacts of a response that are at least `SLOWEST_IMPACT` times as fast as the fastest."""
     fastest = max((abs(impact.rate_before) for impact in response.impacts), default=0.0)
     return tuple(impact for impact in response.impacts if abs(impact.rate_before) >= SLOWEST_IMPACT * fastest)
 
 
 def impact_errors(scene: Scene, response: Response, most: int | None = None) -> dict[str, np.ndarray]:
-    """Errors of the strong impacts of a run, of the first `most` of them.
+    """Return the errors of the first `most` strong impacts of a run.
 
     Returns
     -------
     dict
-        Arrays of shape (impacts,): state, restitution less the scene's, from the states at the impact; time [s]; for
-        free rocking with a history also swing, the same from the energies of the swings, NaN where a swing has no peak;
-        on a base also jump, of the base velocity, relative: against momentum with the run's own rates (jump), against
-        e_x of eq. (8) corrected (jump_8) and as printed (jump_8_printed).
+        Arrays of shape (impacts,). state: restitution from the states at the impact, less the scene's. time [s]. For
+        free rocking with a history also swing: the same from the energies of the swings, NaN if a swing has no peak.
+        On a base also the relative errors of the base velocity jump: against momentum with the run's own rates (jump),
+        against e_x of eq. (8) corrected (jump_8), and as printed (jump_8_printed).
     """
     response = dataclasses.replace(response, impacts=strong_impacts(response))
     expected = restitution(scene)
@@ -133,16 +131,15 @@ def impact_errors(scene: Scene, response: Response, most: int | None = None) -> 
 
 
 def rate_restitution(response: Response) -> np.ndarray:
-    """Restitution of each strong impact of free rocking from successive rates, shape (impacts kept,).
+    """Return the restitution of strong impacts of free rocking from successive rates, shape (impacts used,).
 
-    The swing between two impacts keeps its energy (and the base's momentum), so the rate before the next impact is the
-    rate after this one: for a solver that applies eq. (7) exactly, the error is that of the swing. No history is
-    needed.
+    A swing between two impacts conserves energy (and the base's momentum), so the rate before the next impact equals
+    the rate after this one. For a solver that applies eq. (7) exactly, the error is that of the swing.
     """
     before = np.array([impact.rate_before for impact in response.impacts])
     fast = np.abs(before) >= SLOWEST_IMPACT * np.abs(before).max(initial=0.0)
-    kept = fast[:-1] & fast[1:] & (before[:-1] * before[1:] < 0)
-    return np.abs(before[1:] / before[:-1])[kept]
+    used = fast[:-1] & fast[1:] & (before[:-1] * before[1:] < 0)
+    return np.abs(before[1:] / before[:-1])[used]
 
 
 def rms(values: npt.ArrayLike) -> float:
@@ -154,19 +151,19 @@ def worst(values: npt.ArrayLike) -> float:
 
 
 def impact_time_errors(response: Response, reference: Response) -> np.ndarray:
-    """Time of the impact minus that of the reference's [s], shape (reference impacts,); NaN for a missed one.
+    """Return the error of the time [s] of each impact of the reference, shape (impacts,); NaN for a missed one.
 
-    An impact belongs to the reference's impact on the same side that is nearest in time, if it lies within half
-    the interval to the reference's neighbouring impacts.
+    It is the time of the response's nearest impact on the same side, minus that of the reference. The impact counts as
+    missed if that is further than half the interval to the reference's neighbouring impacts.
     """
-    wanted = np.array([impact.time for impact in reference.impacts])
+    expected = np.array([impact.time for impact in reference.impacts])
     sides = np.sign([impact.rate_before for impact in reference.impacts])
     times = np.array([impact.time for impact in response.impacts])
-    own = np.sign([impact.rate_before for impact in response.impacts])
-    errors = np.full(len(wanted), np.nan)
-    gaps = np.diff(wanted, prepend=-math.inf, append=math.inf)
-    for i in range(len(wanted)):
-        near = times[own == sides[i]] - wanted[i]
+    own_sides = np.sign([impact.rate_before for impact in response.impacts])
+    errors = np.full(len(expected), np.nan)
+    gaps = np.diff(expected, prepend=-math.inf, append=math.inf)
+    for i in range(len(expected)):
+        near = times[own_sides == sides[i]] - expected[i]
         if len(near):
             error = near[np.abs(near).argmin()]
             if -gaps[i] / 2 <= error <= gaps[i + 1] / 2:
@@ -175,30 +172,30 @@ def impact_time_errors(response: Response, reference: Response) -> np.ndarray:
 
 
 def strong_time_errors(response: Response, reference: Response, until: float = math.inf) -> np.ndarray:
-    """`impact_time_errors` of the reference's strong impacts up to `until` [s]: NaN where one is missed."""
+    """Return `impact_time_errors` for the reference's strong impacts up to `until` [s]."""
     strong = {impact.time for impact in strong_impacts(reference) if impact.time <= until}
-    kept = [impact.time in strong for impact in reference.impacts]
-    return impact_time_errors(response, reference)[kept]
+    return impact_time_errors(response, reference)[[impact.time in strong for impact in reference.impacts]]
 
 
 def lost_impacts(response: Response, reference: Response, until: float = math.inf) -> int:
-    """Number of strong impacts of the reference up to `until` [s] that the response lacks."""
+    """Return the number of strong impacts of the reference up to `until` [s] that the response misses."""
     return int(np.isnan(strong_time_errors(response, reference, until)).sum())
 
 
 def graph_distance(
     response: Response, reference: Response, *, tilt_scale: float, time_scale: float, until: float = math.inf
 ) -> float | None:
-    """Hausdorff distance of the graphs (time/time_scale, tilt/tilt_scale) of two responses up to `until` [s]; None
-    where that leaves a history fewer than two samples.
+    """Return the Hausdorff distance of the graphs (time/time_scale, tilt/tilt_scale) of two responses.
 
-    The measure for motions whose velocity jumps (M. D. P. Monteiro Marques 1987, doi:10.1016/0022-0396(87)90143-4;
-    V. Acary 2012, doi:10.1016/j.apnum.2012.06.026), here with the Euclidean norm in place of the maximum norm:
-    an impact that is late by dt costs dt/time_scale, however large the difference at one instant. Distances
-    are from the samples of one graph to the straight lines between the samples of the other. Both are taken over the
-    same span, up to `until` or to where the shorter one ends; what the other does just after it may be nearest.
+    None if a history has fewer than two samples up to `until` [s].
+
+    This is the measure for motions whose velocity jumps (M. D. P. Monteiro Marques 1987,
+    doi:10.1016/0022-0396(87)90143-4; V. Acary 2012, doi:10.1016/j.apnum.2012.06.026), here with the Euclidean norm in
+    place of the maximum norm. An impact that is late by dt contributes dt/time_scale, however large the difference at
+    one instant. Distances are measured from the samples of one graph to the straight lines between the samples of the
+    other. The samples are those up to `until`, or up to the end of the shorter history; the lines may lie beyond.
     """
-    graphs = [_history(one) for one in (response, reference)]
+    graphs = [_history(each) for each in (response, reference)]
     end = min(until, *(history.time[-1] for history in graphs))
     (ta, ya), (tb, yb) = lines = [(history.time / time_scale, history.tilt / tilt_scale) for history in graphs]
     spans = []
@@ -218,14 +215,14 @@ def graph_distance(
 def _segment_distance(t, y, t0, y0, t1, y1):
     dt, dy = t1 - t0, y1 - y0
     length2, along = dt * dt + dy * dy, 0.0
-    if length2 > 0:  # else both samples are one point, as the last two of a history may be in rounding
+    if length2 > 0:  # otherwise both samples are the same point, as the last two of a history may be
         along = min(1.0, max(0.0, ((t - t0) * dt + (y - y0) * dy) / length2))
     return math.hypot(t - t0 - along * dt, y - y0 - along * dy)
 
 
 @njit(cache=True)
 def _directed(ta, ya, tb, yb):
-    """Largest distance of a point of graph a from graph b; b is searched outward from the same time."""
+    """The largest distance of a point of graph a from graph b, which is searched outward from the same time."""
     worst = 0.0
     for i in range(len(ta)):
         begin = min(max(np.searchsorted(tb, ta[i]) - 1, 0), len(tb) - 2)
@@ -245,11 +242,11 @@ def _directed(ta, ya, tb, yb):
 def energy_errors(
     scene: Scene, response: Response, *, until: float = math.inf, step: float = 0.0, settle: float = SETTLE
 ) -> tuple[float, float]:
-    """(drift between events, gain without a source) up to `until` [s] and the unstable point, from the history.
+    """Return (drift between events, gain without a source) up to `until` [s] or the unstable point, from the history.
 
-    Drift: largest change of the balance (mechanical energy + loss in the bearings - input work) within one swing or
-    rest, over m g R (1 - cos gamma); 0 if exact. A sample or `step` [s] beside an event belongs to neither side.
-    Gain: as `engines.checks.energy_gain`, with `settle` [s] after an uplift or impact left out.
+    Drift: the largest change of the balance (mechanical energy + loss in the bearings - input work) within a swing or
+    rest, over m g R (1 - cos gamma); 0 if exact. Samples within about one sample or `step` [s] of an event are left
+    out. Gain: as `engines.checks.energy_gain`, without the time `settle` [s] after an uplift or impact.
     """
     history = _history(response)
     last = min(until, math.inf if response.unstable_time is None else response.unstable_time)
@@ -268,12 +265,12 @@ def energy_errors(
 
 @dataclass(frozen=True)
 class Agreement:
-    """A response against the reference; errors are response minus reference.
+    """The errors of a response, response minus reference.
 
-    same_outcome; overturning_time_error [s], None unless both overturn; peak_tilt_error over slenderness;
-    peak_displacement_error relative to the reference's peak, None on rigid ground; impact_time_error: root mean
-    square over the matched impacts [s], None without any; lost_impacts of the reference; graph_distance of
-    the tilt (None without histories, or two samples of them); the last three up to `until` [s].
+    overturning_time_error [s]: None unless both overturn. peak_tilt_error: over the slenderness.
+    peak_displacement_error: relative to the reference's peak, None on rigid ground. impact_time_error [s]: root mean
+    square over the matched impacts, None without any. lost_impacts: impacts of the reference that are missed.
+    graph_distance: of the tilt, None with fewer than two samples. The last three are taken up to `until` [s].
     """
 
     same_outcome: bool
@@ -287,7 +284,7 @@ class Agreement:
 
 
 def compare(scene: Scene, response: Response, reference: Response, *, until: float = math.inf) -> Agreement:
-    """The `Agreement` of two responses of one scene, trajectories up to the sensitivity horizon `until` [s].
+    """Return the `Agreement` of two responses of a scene, with trajectories up to the sensitivity horizon `until` [s].
 
     Tilt is scaled by the slenderness and time by 2 pi/omega_r.
     """
@@ -330,26 +327,26 @@ def _history(response):
     return response.history
 
 
-# Relative change of the copies without a solver; errors of tuned engines are equivalent to 1e-5 to 1e-3.
+# Relative change of the copies if no solver is given. Errors of tuned engines correspond to 1e-5 to 1e-3.
 PERTURBATION = 1e-4
-# Sizes that a solver's perturbation is given: from the least on, in these steps, to the most.
+# Sizes of a solver's perturbation: least, factor from one to the next, most.
 LEAST, LADDER, MOST = 1e-6, 2.0, 0.5
-# Copies further apart than this share of the slenderness no longer show the same motion.
+# Share of the slenderness: copies further apart no longer show the same motion.
 SPREAD = 0.01
-# Share of SPREAD at which a solver's own distance from the model is taken as the measure of its errors: early enough
-# to foretell where it reaches SPREAD, and above what sampling its history costs.
+# Share of SPREAD at which a solver's distance from the model measures its errors: early enough to predict where it
+# reaches SPREAD, and above the error of sampling.
 EARLY = 0.1
-# Sampling of the copies: periods 2 pi/omega_r contain this many samples, so that no part of a swing is overlooked.
+# Samples of the copies in a period 2 pi/omega_r, so that no part of a swing is overlooked.
 SAMPLES_PER_PERIOD = 1000
 
 
 @dataclass(frozen=True, eq=False)
 class Horizon:
-    """The sensitivity horizon [s], the last time before a copy parts or the run's end; and the spread it comes from.
+    """The sensitivity horizon [s], and the spread of the copies that it follows from.
 
-    perturbation: relative change of the copies [-]. time [s] and spread, arrays of shape (n,): the largest |tilt of a
-    copy - tilt of the scene| / slenderness up to each time. Copies are told apart by name in `copies`: the time [s] at
-    which each parted, or None.
+    horizon: the last time before a copy departs, or the end of the run. perturbation: relative change of the copies
+    [-]. time [s] and spread, arrays of shape (n,): the largest |tilt of a copy - tilt of the scene| / slenderness up to
+    each time. copies: {name of the copy: time [s] at which it departed, or None}.
     """
 
     horizon: float
@@ -360,16 +357,16 @@ class Horizon:
 
     @property
     def parts(self) -> bool:
-        """Whether a copy parts before the run ends."""
+        """Whether a copy departs before the run ends."""
         return any(time is not None for time in self.copies.values())
 
 
 def unsure_outcome(scene: Scene, outcome: str, perturbation: float = LEAST) -> Caution | None:
-    """A warning where the model's `outcome` is another one for one of the `changed_copies`, or None."""
+    """Return a warning if one of the `changed_copies` has another outcome than the model's `outcome`, or None."""
     for name, copy in changed_copies(scene, perturbation).items():
         try:
             other = simulate(copy, history=False).outcome
-        except SceneError as error:  # of the copy, not of the scene
+        except SceneError as error:  # the copy is refused, not the scene
             other = f"cannot be run ({error.problem})"
         if other != outcome:
             words = (
@@ -381,7 +378,7 @@ def unsure_outcome(scene: Scene, outcome: str, perturbation: float = LEAST) -> C
 
 
 def sensitivity_horizon(scene: Scene, *, perturbation: float = PERTURBATION) -> Horizon:
-    """Time until which the motion of a scene can be compared point by point.
+    """Return the time until which the motion of a scene can be compared point by point.
 
     Parameters
     ----------
@@ -400,7 +397,7 @@ def sensitivity_horizon(scene: Scene, *, perturbation: float = PERTURBATION) -> 
             other = simulate(copy, output_step=step).history
         except SceneError:
             continue
-        # Where one has overturned and stopped, it keeps its last tilt.
+        # A copy that has overturned and ended keeps its last tilt.
         tilt = np.interp(base.time, other.time, other.tilt)
         apart = np.abs(tilt - base.tilt) / scene.block.slenderness
         beyond = np.flatnonzero(apart > SPREAD)
@@ -413,26 +410,26 @@ def sensitivity_horizon(scene: Scene, *, perturbation: float = PERTURBATION) -> 
 
 
 def perturbation_of(scene: Scene, response: Response, reference: Response) -> float:
-    """Size of the relative change of `changed_copies` that moves the model as far as a solver's errors move the solver.
+    """Return the relative change of `changed_copies` that has as much effect as the errors of a solver.
 
-    Measured in the run: from `restitution_error` on, `LADDER` times as large until the copies are as far off the model
-    as the solver's tilt is where it is first off by `EARLY` of `SPREAD`. That holds whatever moves the block:
+    The size starts at `restitution_error` and grows by factors of `LADDER`, until the copies differ from the model as
+    much as the solver's tilt does when it first differs by `EARLY` times `SPREAD`. This holds for all errors:
     compliance, steps, times of uplift, missed impacts.
 
     Parameters
     ----------
     scene : Scene
     response, reference : Response
-        The solver's, and the analytic model's; with histories.
+        The solver's and the analytic model's, with histories.
 
     Returns
     -------
     float
         At least `LEAST`, at most `MOST`.
     """
-    own, model = response.history, reference.history
-    time = model.time[model.time <= own.time[-1]]
-    apart = np.abs(np.interp(time, own.time, own.tilt) - model.tilt[: len(time)]) / scene.block.slenderness
+    solver, model = response.history, reference.history
+    time = model.time[model.time <= solver.time[-1]]
+    apart = np.abs(np.interp(time, solver.time, solver.tilt) - model.tilt[: len(time)]) / scene.block.slenderness
     off = np.flatnonzero(apart > EARLY * SPREAD)
     until = time[off[0]] if len(off) else np.inf
     error = (
@@ -449,7 +446,7 @@ def perturbation_of(scene: Scene, response: Response, reference: Response) -> fl
 
 
 def restitution_error(scene: Scene, response: Response, *, until: float = np.inf) -> float:
-    """Relative error of e_phi, rms over the impacts resolved up to `until` [s], weighted by rate; 0 without any."""
+    """Return the relative rms error of e_phi over the impacts up to `until` [s], weighted by rate; 0 without any."""
     rates = np.array([impact.rate_before for impact in response.impacts if impact.time <= until])
     e = RockingModel.of(scene).restitution
     if not len(rates) or e == 0:
@@ -459,7 +456,7 @@ def restitution_error(scene: Scene, response: Response, *, until: float = np.inf
 
 
 def _slipping_error(scene: Scene, response: Response, reference: Response, until: float) -> float:
-    """As `restitution_error`, of a block that slides: against its matching impacts in the model, as it is not (7)."""
+    """`restitution_error` of a block that slides, against matching impacts of the model, since (7) does not hold."""
     here, there = impacts_of(response), impacts_of(reference)
     meant, partner = matched(scene, there, here, until)
     (_, before, after), (_, model, left) = here[partner[partner >= 0]].T, meant[partner >= 0].T
@@ -470,21 +467,21 @@ def _slipping_error(scene: Scene, response: Response, reference: Response, until
 
 
 def solver_horizon(scene: Scene, response: Response, reference: Response) -> Horizon:
-    """The `Horizon` of one solver: that of its own size of perturbation, `perturbation_of`."""
+    """Return the `Horizon` of a solver, for its own `perturbation_of`."""
     return sensitivity_horizon(scene, perturbation=perturbation_of(scene, response, reference))
 
 
-HEAVY = 1e6  # mass of a base that stands for rigid ground, over the block's
-SUPPORT_FREQUENCY = 2 * math.pi * 50  # rad/s: a support meant to be rigid
+HEAVY = 1e6  # mass of a base that represents rigid ground, over the block's
+SUPPORT_FREQUENCY = 2 * math.pi * 50  # rad/s, of a support meant to be rigid
 
 
 def on_heavy_base(scene: Scene) -> Scene:
-    """Rigid ground as a free base of 10^6 block masses: two degrees of freedom instead of one."""
+    """Model rigid ground as a free base of 10^6 block masses: two degrees of freedom instead of one."""
     return scene.with_(base=Base(mass=HEAVY * scene.block.mass))
 
 
 def on_stiff_springs(scene: Scene) -> Scene:
-    """Rigid ground as a heavy base on linear springs of 50 Hz: two degrees of freedom, and a stiff one."""
+    """Model rigid ground as a heavy base on linear springs of 50 Hz: two degrees of freedom, one of them stiff."""
     base = Base(mass=HEAVY * scene.block.mass)
     springs = Bearings(law="linear", ka=(base.mass + scene.block.mass) * SUPPORT_FREQUENCY**2)
     return scene.with_(base=base, bearings=springs)

@@ -1,4 +1,4 @@
-"""Runs of an engine's script, as it is or with a mistake, in a process of its own, as who wrote it would run it."""
+"""Runs of an engine's script, correct or with a mistake, in a separate process."""
 
 import hashlib
 import math
@@ -24,7 +24,7 @@ from ..execution.files import TemporaryFolder
 from ..execution.provenance import scrub
 
 NAME = "script"
-SECONDS = 300.0  # of a script; those that end take 5 s of CPU time at most
+SECONDS = 300.0  # time limit of a script; a script that ends takes 5 s of CPU time at most
 RUN = """
 import runpy, sys
 import numpy
@@ -35,16 +35,16 @@ numpy.savez(sys.argv[2], rows=rows, contact=numbers["contact"], settle=numbers.g
 
 
 class ScriptFailed(RuntimeError):
-    """A script has not come to its end; the message says why."""
+    """A script did not reach its end; the message says why."""
 
 
 def with_mistake(engine: Engine, scene: Scene, mistake: Mistake | None) -> dict[str, str]:
-    """{file name: text} of the scene's script and the record that it reads, if any; None: without a mistake.
+    """Return {file name: text} of a scene's script, with a mistake if given, and of the record that it reads.
 
     Raises
     ------
     ValueError
-        The mistake cannot be made in it.
+        The mistake cannot be made in this script.
     """
     files = write_script(engine, scene, NAME)
     script = f"{NAME}.py"
@@ -52,10 +52,10 @@ def with_mistake(engine: Engine, scene: Scene, mistake: Mistake | None) -> dict[
 
 
 def simulate_script(scene: Scene, *, engine: str, version: Mapping[str, str], history: bool = False) -> Response:
-    """The response of a scene by an engine's script as it is written; a script that fails is a failed run.
+    """Run a scene by an engine's script and return the response. A script that fails gives a failed run.
 
-    Its CPU time is what the script prints: of its steps, not of its imports. version: of engine and script
-    (`version_of`), by which a stored run is known.
+    The CPU time is that of the script's steps, without its imports. version: versions of engine and script
+    (`version_of`), which identify a stored run.
     """
     record = get_engine(engine)
     about: dict[str, Any] = dict(engine=engine, variant=NAME, settings={}, versions=version)
@@ -67,40 +67,40 @@ def simulate_script(scene: Scene, *, engine: str, version: Mapping[str, str], hi
 
 
 def version_of(engine: Engine, scene: Scene, mistake: Mistake | None = None) -> str:
-    """A digest of a scene's script, which the digests of source files do not hold."""
+    """Return a digest of a scene's script. The digests of source files do not include it."""
     return hashlib.sha256("".join(with_mistake(engine, scene, mistake).values()).encode()).hexdigest()[:16]
 
 
 def as_written(scene: Scene, trace: Trace, **about: Any) -> Response:
-    """What is read of the steps of a scene's script; about: as `engines.observe.observe` takes it."""
+    """Return the response that the steps of a script give. about: further arguments of `engines.observe.observe`."""
     over = "overturned" if abs(trace.tilt[-1]) >= math.pi / 2 else None
     return observe(scene, trace, ended=over, steps=len(trace.time) - 1, **about)
 
 
 def run_script(files: Mapping[str, str], time_limit: float) -> tuple[Trace, float]:
-    """The steps of a script, and their CPU time [s]; time_limit [s].
+    """Run a script and return its steps and their CPU time [s]. time_limit: [s].
 
     Raises
     ------
     ScriptFailed
-        It raised an error, crashed, took too long, or returned what are no steps.
+        The script raised an error, crashed, took too long, or returned no valid steps.
     """
     with TemporaryFolder("script-") as folder:
         for name, text in files.items():
             Path(folder, name).write_text(text, encoding="utf-8")
-        found = Path(folder, "found.npz")
-        command = [sys.executable, "-I", "-c", RUN, str(Path(folder, f"{NAME}.py")), str(found)]
-        alike = end_with_parent if os.name == "posix" else None  # an interrupted study leaves no script behind
+        output = Path(folder, "found.npz")
+        command = [sys.executable, "-I", "-c", RUN, str(Path(folder, f"{NAME}.py")), str(output)]
+        guard = end_with_parent if os.name == "posix" else None  # an interrupted study leaves no script running
         try:
-            done = subprocess.run(command, cwd=folder, capture_output=True, timeout=time_limit, preexec_fn=alike)
+            done = subprocess.run(command, cwd=folder, capture_output=True, timeout=time_limit, preexec_fn=guard)
         except subprocess.TimeoutExpired:
             raise ScriptFailed(f"no end within {time_limit:g} s") from None
         if done.returncode < 0:
             raise ScriptFailed(f"killed by signal {-done.returncode}")
         if done.returncode:
-            said = done.stderr.decode(errors="replace").strip().splitlines() or [f"exit code {done.returncode}"]
-            raise ScriptFailed(scrub(said[-1]))
-        with np.load(found) as numbers:
+            lines = done.stderr.decode(errors="replace").strip().splitlines() or [f"exit code {done.returncode}"]
+            raise ScriptFailed(scrub(lines[-1]))
+        with np.load(output) as numbers:
             rows, contact, settle, cpu = (numbers[name] for name in ("rows", "contact", "settle", "cpu"))
     try:
         columns = dict(zip(Trace.COLUMNS, rows.T, strict=True))

@@ -1,10 +1,11 @@
-"""Are two solvers' overturning outcomes different? The class of a run, one word, the same in every study; intervals and
-paired tests; lognormal fragility of independent runs: the fit, its intervals by bootstrap, whether the curve fits.
+"""Statistics of outcomes: classes of runs, intervals, paired tests, lognormal fragility, and forecasts.
 
-Forecasts of a yes or no, as probabilities: how good they are, fitted to some cases and judged on others.
+The class of a run is one word, the same in every study. Intervals and paired tests tell whether the overturning
+outcomes of two solvers differ. Fragility is fitted to independent runs, with intervals by bootstrap and a test of fit.
 
-Cases of one group (tests under one record) may all say the same. So a group is held out as a whole, and intervals are
-those of a bootstrap over groups. A forecast says yes where its probability is one half or more.
+A forecast of a yes or no is a probability, fitted to some cases and judged on others; it says yes from one half on.
+Cases of one group (tests under one record) may depend on each other. So a group is held out as a whole, and intervals
+come from a bootstrap over groups.
 """
 
 import math
@@ -21,8 +22,8 @@ from scipy.stats import binom, binomtest, chi2, norm
 
 from analytic.response import COMPARED
 
-EQUAL = 0.05  # share of runs that may differ between solvers that are called equal
-TOO_FEW = "inconclusive (too few runs)"  # of `equality`
+EQUAL = 0.05  # largest share of differing runs of solvers that count as equal
+TOO_FEW = "inconclusive (too few runs)"  # a result of `equality`
 
 
 @dataclass(frozen=True)
@@ -43,18 +44,18 @@ class Confusion:
         return self.only_a + self.only_b
 
     def table(self) -> np.ndarray:
-        """Rows: A stands, A overturns; columns: B stands, B overturns; shape (2, 2)."""
+        """Return the counts, shape (2, 2). Rows: A stands, A overturns; columns: B stands, B overturns."""
         return np.array([[self.both_stand, self.only_b], [self.only_a, self.both_overturn]])
 
 
 def confusion(a: npt.ArrayLike, b: npt.ArrayLike) -> Confusion:
-    """Confusion table of two arrays of outcomes, shape (n,), True where it overturns.
+    """Return the confusion table of two arrays of outcomes, shape (n,), True: overturns.
 
     Raises
     ------
     ValueError
-        The arrays differ in length, are empty or are not boolean: a failed run has no outcome, so leave
-        out its pair and say how many were left out.
+        The arrays differ in length, are empty, or are not boolean. A failed run has no outcome: leave its pair out, and
+        say how many were left out.
     """
     a, b = np.asarray(a), np.asarray(b)
     if a.dtype != bool or b.dtype != bool or a.shape != b.shape or a.ndim != 1 or len(a) == 0:
@@ -66,9 +67,9 @@ def confusion(a: npt.ArrayLike, b: npt.ArrayLike) -> Confusion:
 
 
 def wilson(count: float, size: float, level: float = 0.95) -> tuple[float, float]:
-    """Wilson score interval (low, high) of a probability seen `count` times in `size` (Wilson 1927).
+    """Return Wilson's score interval (1927) of a probability that was seen `count` times in `size`: (low, high).
 
-    Neither need be whole: of runs that depend on each other, `size` is the number of independent ones.
+    Neither needs to be a whole number: if runs depend on each other, `size` is the number of independent ones.
     """
     z = norm.ppf(0.5 + level / 2)
     share, spread = count / size, z**2 / size
@@ -78,18 +79,18 @@ def wilson(count: float, size: float, level: float = 0.95) -> tuple[float, float
 
 
 def equality(differs: npt.ArrayLike, groups: Sequence[Any] | None = None) -> tuple[str, tuple[float, float]]:
-    """Whether two solvers are equal, a word, and the 95 % interval of the share of runs in which they are not.
+    """Return whether two solvers are equal, in a word, and the 95 % interval of the share of runs that differ.
 
-    "yes": its upper limit is below `EQUAL`. `TOO_FEW`: it would not be with none differing, and the lower limit is not
-    above `EQUAL`. "no": otherwise; lack of power proves nothing.
+    "yes": the upper limit is below `EQUAL`. `TOO_FEW`: even if no run differed, the upper limit would not be below
+    `EQUAL`, and the lower limit is not above it. "no": otherwise; lack of power proves nothing.
 
     Parameters
     ----------
     differs : bool array, shape (n,), n >= 1
-        Run by run; a failed one differs.
+        Whether each run differs; a failed run differs.
     groups : sequence of length n, optional
-        Of each run: runs of one group, as of one record, may all depend on each other, and so count as one run. None:
-        all runs are independent.
+        Group of each run. Runs of a group, such as those under one record, may depend on each other, so a group counts
+        as one run. None: all runs are independent.
     """
     differs = np.asarray(differs, dtype=bool)
     size = len(differs) if groups is None else len(set(groups))
@@ -100,14 +101,14 @@ def equality(differs: npt.ArrayLike, groups: Sequence[Any] | None = None) -> tup
 
 
 def mcnemar(table: Confusion) -> float:
-    """Two-sided p-value of the exact McNemar test: are the discordant pairs of a `Confusion` split evenly?"""
+    """Return the two-sided p-value of the exact McNemar test: are the discordant pairs split evenly?"""
     if table.discordant == 0:
         return 1.0
     return float(binomtest(table.only_a, table.discordant, 0.5).pvalue)
 
 
 def cohen_kappa(table: npt.ArrayLike, level: float = 0.95) -> tuple[float, float, float] | tuple[None, None, None]:
-    """Cohen's kappa (1960) of a square table of counts, and its interval: (kappa, low, high).
+    """Return Cohen's kappa (1960) of a square table of counts, and its interval: (kappa, low, high).
 
     The interval is the large-sample one of Fleiss, Cohen and Everitt (1969). Without any
     disagreement that has no width: then the Wilson interval of the agreement is used, with the chance
@@ -135,7 +136,7 @@ def cohen_kappa(table: npt.ArrayLike, level: float = 0.95) -> tuple[float, float
 
 
 def detectable_difference(size: int, discordance: float, level: float = 0.05, power: float = 0.8) -> float | None:
-    """Smallest difference of two overturning probabilities that `size` pairs would show, or None if none.
+    """Return the smallest difference of two overturning probabilities that `size` pairs would show, or None.
 
     Exact power of the exact McNemar test. The number of discordant pairs is binomial with the rate
     `discordance`, or with the difference itself where that is larger; given it, their split is binomial.
@@ -166,7 +167,7 @@ def detectable_difference(size: int, discordance: float, level: float = 0.05, po
 
 
 def holm(p_values: npt.ArrayLike) -> np.ndarray:
-    """p-values of several tests, adjusted for their number by Holm's step-down method (1979); shape kept."""
+    """Return the p-values of several tests, adjusted for their number by Holm's step-down method (1979); same shape."""
     p_values = np.asarray(p_values, dtype=float)
     order = np.argsort(p_values, axis=None)
     steps = p_values.ravel()[order] * np.arange(p_values.size, 0, -1)
@@ -176,13 +177,13 @@ def holm(p_values: npt.ArrayLike) -> np.ndarray:
 
 
 def compare_outcomes(a: npt.ArrayLike, b: npt.ArrayLike) -> dict[str, Any]:
-    """Do solvers A and B overturn the same blocks? A dict of counts, of McNemar's test, and of the difference it sees.
+    """Return whether solvers A and B overturn the same blocks: counts, McNemar's test, and the difference it detects.
 
     Parameters
     ----------
     a, b : bool arrays, shape (n,)
-        Outcomes on the same n independent motions. Several intensities of one motion are not
-        independent: compare each intensity by itself, and adjust the p-values with `holm`.
+        Outcomes on the same n independent motions. Several intensities of one motion are not independent: compare each
+        intensity separately, and adjust the p-values with `holm`.
     """
     table = confusion(a, b)
     return {
@@ -193,11 +194,11 @@ def compare_outcomes(a: npt.ArrayLike, b: npt.ArrayLike) -> dict[str, Any]:
     }
 
 
-NORMAL = 1.959963984540054  # standard deviations that hold 95 %
-ITERATIONS, HALVINGS = 60, 30  # of Newton
-STEEPEST, FARTHEST = 1e4, 50.0  # slope of a curve, beyond it outcomes are separated; logarithm of a median
-BINS, LEAST_VARIANCE = 10, 3.0  # of the test of fit: at most, and of the count in each, at least
-MISSING = 0.1  # share of draws that may determine no curve
+NORMAL = 1.959963984540054  # half-width of the central 95 % of a normal distribution, in standard deviations
+ITERATIONS, HALVINGS = 60, 30  # limits of Newton's method
+STEEPEST, FARTHEST = 1e4, 50.0  # largest slope of a curve, beyond which outcomes are separated; of |ln median|
+BINS, LEAST_VARIANCE = 10, 3.0  # of the test of fit: most bins, and least variance of the count in each
+MISSING = 0.1  # largest share of draws that determine no curve
 
 
 @dataclass(frozen=True)
@@ -208,24 +209,24 @@ class Fragility:
     dispersion: float
 
     def probability(self, intensity: npt.ArrayLike) -> Any:
-        """Probability of exceedance at `intensity` (array or float, the unit of the fit)."""
+        """Return the probability of exceedance at `intensity` (array or float, in the unit of the fit)."""
         return norm.cdf(np.log(np.asarray(intensity) / self.median) / self.dispersion)
 
 
 def fit_fragility(intensity: npt.ArrayLike, exceeded: npt.ArrayLike, size: npt.ArrayLike = 1.0) -> Fragility:
-    """Lognormal fragility by maximum likelihood, Baker (2015), doi:10.1193/021113EQS025M, eq. (11).
+    """Fit a lognormal fragility by maximum likelihood, Baker (2015), doi:10.1193/021113EQS025M, eq. (11).
 
     Parameters
     ----------
     intensity : array, shape (k,)
-        Of each run, or intensity levels; above 0.
+        Intensity of each run, or intensity levels; above 0.
     exceeded, size : arrays, shape (k,)
-        Runs that exceeded the limit state, and all of them; of single runs 0 or 1, of 1.
+        Number of runs that exceeded the limit state, and of all runs; for single runs 0 or 1, and 1.
 
     Raises
     ------
     ValueError
-        The outcomes determine no rising curve: they are separated, all alike, or fall with intensity.
+        The outcomes determine no rising curve: they are separated, all equal, or fall with intensity.
     """
     intensity, exceeded = np.asarray(intensity, dtype=float), np.asarray(exceeded, dtype=float)
     size = np.broadcast_to(np.asarray(size, dtype=float), intensity.shape)
@@ -244,25 +245,25 @@ def fit_fragility(intensity: npt.ArrayLike, exceeded: npt.ArrayLike, size: npt.A
 
 
 def draws(count: int, size: int, seed: int = 0) -> np.ndarray:
-    """How often each of `size` runs is in each of `count` bootstrap samples, shape (count, size)."""
+    """Return how often each of `size` runs is in each of `count` bootstrap samples, shape (count, size)."""
     chosen = np.random.Generator(np.random.PCG64(seed)).integers(size, size=(count, size))
     places = chosen + size * np.arange(count)[:, None]
     return np.bincount(places.ravel(), minlength=count * size).reshape(count, size)
 
 
 def resampled(intensity: npt.ArrayLike, exceeded: npt.ArrayLike, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(medians, dispersions) of the bootstrap samples `weights` of `draws`; NaN where one determines no curve.
+    """Return (medians, dispersions) of bootstrap samples; NaN where a sample determines no curve.
 
-    Two fits to the same runs with the same weights are paired.
+    weights: as `draws` returns them. Two fits to the same runs with the same weights are paired.
     """
     return _probit(np.log(np.asarray(intensity)), weights * np.asarray(exceeded, dtype=float), weights.astype(float))
 
 
 def interval(estimate: float, values: np.ndarray) -> list[float] | None:
-    """The 95 % interval [low, high] of a positive estimate from its bootstrap values, normal in the logarithm.
+    """Return the 95 % interval [low, high] of a positive estimate from its bootstrap values, normal in the logarithm.
 
-    The standard bootstrap interval, Efron and Tibshirani (1993), sec. 13.3: percentiles of dispersions cover less, as
-    values lie below their estimate. None where too many values are NaN.
+    This is the standard bootstrap interval, Efron and Tibshirani (1993), sec. 13.3. Percentiles of dispersions cover
+    less, because the values lie below their estimate. None if too many values are NaN.
     """
     if np.isnan(values).mean() > MISSING:
         return None
@@ -271,10 +272,10 @@ def interval(estimate: float, values: np.ndarray) -> list[float] | None:
 
 
 def goodness(intensity: npt.ArrayLike, exceeded: npt.ArrayLike, curve: Fragility) -> float | None:
-    """p-value of a fitted curve: Pearson's chi-square over bins of equal expected variance, two parameters fitted.
+    """Return the p-value of a fitted curve: Pearson's chi-square over bins, with two parameters fitted.
 
-    As Hosmer and Lemeshow (1980), whose bins hold equally many runs: those in the tails would hold next to none of
-    the variance. None where the runs are too few for three bins.
+    The test is that of Hosmer and Lemeshow (1980), but with bins of equal expected variance in place of equally many
+    runs: bins in the tails would have hardly any variance. None if the runs are too few for three bins.
     """
     order = np.argsort(np.asarray(intensity))
     exceeded, expected = np.asarray(exceeded, dtype=float)[order], curve.probability(np.asarray(intensity)[order])
@@ -289,22 +290,22 @@ def goodness(intensity: npt.ArrayLike, exceeded: npt.ArrayLike, curve: Fragility
 
 
 def points(intensity: npt.ArrayLike, exceeded: npt.ArrayLike, count: int) -> list[dict[str, Any]]:
-    """Shares in `count` bins of equally many runs, with their Wilson intervals; intensity: the geometric mean."""
+    """Return the shares in `count` bins of equally many runs, with Wilson intervals. intensity: the geometric mean."""
     intensity, exceeded = np.asarray(intensity), np.asarray(exceeded)
-    found = []
+    bins = []
     for members in np.array_split(np.argsort(intensity), count):
         if len(members):
             low, high = wilson(int(exceeded[members].sum()), len(members))
             middle = float(np.exp(np.log(intensity[members]).mean()))
             share = float(exceeded[members].mean())
-            found.append({"intensity": middle, "share": share, "size": len(members), "low": low, "high": high})
-    return found
+            bins.append({"intensity": middle, "share": share, "size": len(members), "low": low, "high": high})
+    return bins
 
 
 def _probit(log_intensity, exceeded, size):
-    """Maximum likelihood of P = Phi(a + b ln x) for several samples at once, as (median, dispersion), NaN without one.
+    """(median, dispersion) of P = Phi(a + b ln x) by maximum likelihood for several samples at once; NaN without a fit.
 
-    exceeded, size: shape (samples, k). All samples start at the fit to them together.
+    exceeded, size: shape (samples, k). All samples start at the fit to their sum.
     """
     centre = size.sum(axis=0) @ log_intensity / size.sum()
     x = log_intensity - centre
@@ -320,7 +321,7 @@ def _probit(log_intensity, exceeded, size):
 
 
 def _climbed(ab, x, exceeded, size):
-    """((a, b) of each sample, whether it settled): Newton on a concave likelihood; a step too far is halved."""
+    """((a, b) of each sample, whether it converged), by Newton's method on a concave likelihood with halved steps."""
     ab, rest, going = ab.copy(), size - exceeded, np.ones(len(size), dtype=bool)
     for _ in range(ITERATIONS):
         now, up, down = ab[going], exceeded[going], rest[going]
@@ -344,7 +345,7 @@ def _likelihood(ab, x, exceeded, rest):
 
 
 def _newton(ab, x, exceeded, rest):
-    """Newton's step of (a, b) from the observed information, shape (samples, 2)."""
+    """The Newton step of (a, b) from the observed information, shape (samples, 2)."""
     z = ab[:, :1] + ab[:, 1:] * x
     up, down = _hazard(z), _hazard(-z)
     slope = exceeded * up - rest * down
@@ -364,14 +365,14 @@ CLASSES = ("right", "differs", "failed", "left out")
 
 
 def class_of(comparable: str, quantities: Collection[str] | None, counted: Collection[str] | None = None) -> str:
-    """One of `CLASSES`.
+    """Return the class of a run, one of `CLASSES`.
 
     Parameters
     ----------
     comparable : str
-        Of the scene, by the model alone; a run of one that is not "yes" is left out, of all engines alike.
+        Whether the model can be compared with in the scene. Unless it is "yes", the runs of all engines are left out.
     quantities : collection of str or None
-        In what the run differs (`Response.differences`); None: it failed.
+        Quantities in which the run differs (`Response.differences`); None: the run failed.
     counted : collection of str or None
         The quantities that count; None: all.
     """
@@ -384,30 +385,32 @@ def class_of(comparable: str, quantities: Collection[str] | None, counted: Colle
 
 DRAWS = 2000
 HALF = 0.5
-STEPS, SMALL, SETTLED = 1000, 1e-8, 1e-6  # of the search; of the slope, at its end, a case
-RIDGE = 1e-6  # keeps the slope finite where outcomes are separated
+STEPS, SMALL, SETTLED = 1000, 1e-8, 1e-6  # of the search: most steps, its tolerance, largest slope for each case
+RIDGE = 1e-6  # keeps the slope finite if outcomes are separated
 
 
 def right(probability: npt.ArrayLike, happened: npt.ArrayLike) -> np.ndarray:
-    """Where the forecast is right, bool."""
+    """Return where the forecast is right, bool."""
     return (np.asarray(probability) >= HALF) == np.asarray(happened, dtype=bool)
 
 
 def brier(probability: npt.ArrayLike, happened: npt.ArrayLike) -> np.ndarray:
-    """Brier's score (1950) of each case, the square of its error; the score of a forecast is the mean. 0 is best, a
-    probability of one half throughout has 1/4."""
+    """Return Brier's score (1950) of each case, the squared error. The score of a forecast is the mean.
+
+    0 is best; a probability of one half in all cases gives 1/4.
+    """
     return (np.asarray(probability, dtype=float) - np.asarray(happened, dtype=float)) ** 2
 
 
 def folds(groups: Sequence[Any]) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """(the others, its own) of each group, bool arrays: no group is on both sides."""
+    """Yield for each group (the other cases, its own cases), bool arrays."""
     names = np.array([str(group) for group in groups])
     for name in dict.fromkeys(names.tolist()):
         yield names != name, names == name
 
 
 def halves(count: int) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Fitted to every other case and judged on the rest, and the other way."""
+    """Yield two sides: every other case and the rest, and the reverse."""
     even = np.arange(count) % 2 == 0
     yield even, ~even
     yield ~even, even
@@ -416,15 +419,15 @@ def halves(count: int) -> Iterator[tuple[np.ndarray, np.ndarray]]:
 def held_out(
     fit: Callable[[np.ndarray], np.ndarray], sides: Iterator[tuple[np.ndarray, np.ndarray]], count: int
 ) -> np.ndarray:
-    """Probabilities, shape (count,), each from a fit to others alone; ``fit(chosen)``: of all cases, fitted to some."""
-    found = np.full(count, np.nan)
-    for others, own in sides:
-        found[own] = fit(others)[own]
-    return found
+    """Return probabilities, shape (count,), each fitted to other cases. fit: (chosen cases) -> those of all cases."""
+    probabilities = np.full(count, np.nan)
+    for others, held in sides:
+        probabilities[held] = fit(others)[held]
+    return probabilities
 
 
 def threshold(values: npt.ArrayLike, happened: npt.ArrayLike) -> float:
-    """The value above which a yes is right most often; between two of the cases, of several the one in the middle."""
+    """Return the value, between two cases, above which a yes is right most often; the middle of equally good ones."""
     values, happened = np.asarray(values, dtype=float), np.asarray(happened, dtype=bool)
     order = np.argsort(values, kind="stable")
     values, happened = values[order], happened[order]
@@ -438,20 +441,20 @@ def threshold(values: npt.ArrayLike, happened: npt.ArrayLike) -> float:
 
 
 def middle(places: npt.ArrayLike) -> int:
-    """Of several places that are as good as each other the one in the middle."""
+    """Return the middle one of several equally good places."""
     places = np.asarray(places)
     return int(places[(len(places) - 1) // 2])
 
 
 def logistic(features: npt.ArrayLike, happened: npt.ArrayLike, chosen: np.ndarray) -> np.ndarray:
-    """Probabilities of all cases by logistic regression, the likeliest one, fitted to those chosen.
+    """Return probabilities of all cases by logistic regression, fitted to the chosen ones by maximum likelihood.
 
-    features : shape (cases, features), in their logarithms where that is meant.
+    features: shape (cases, features); the caller takes logarithms.
 
     Raises
     ------
     ArithmeticError
-        The search has not settled.
+        The search has not converged.
     """
     features, happened = np.asarray(features, dtype=float), np.asarray(happened, dtype=float)
     columns = np.column_stack([np.ones(len(features)), _standard(features, chosen)])
@@ -468,32 +471,32 @@ def logistic(features: npt.ArrayLike, happened: npt.ArrayLike, chosen: np.ndarra
         return (mine.T * (p * (1 - p))) @ mine + np.diag(ridge + RIDGE)
 
     start = np.zeros(columns.shape[1])
-    found = minimize(
+    fit = minimize(
         loss, start, jac=True, hess=curvature, method="trust-exact", options={"gtol": SMALL, "maxiter": STEPS}
     )
-    if np.abs(loss(found.x)[1]).max() > SETTLED * len(yes):
-        raise ArithmeticError(f"logistic regression of {len(yes)} cases has not settled: {found.message}")
-    return expit(columns @ found.x)
+    if np.abs(loss(fit.x)[1]).max() > SETTLED * len(yes):
+        raise ArithmeticError(f"logistic regression of {len(yes)} cases has not settled: {fit.message}")
+    return expit(columns @ fit.x)
 
 
 def bent(features: npt.ArrayLike) -> np.ndarray:
-    """Features, standardised, with their squares and products: a logistic curve of these may bend."""
+    """Return standardised features with their squares and products, for a logistic curve that may bend."""
     features = np.asarray(features, dtype=float)
     plain = _standard(features, np.ones(len(features), dtype=bool))
     pairs = combinations_with_replacement(range(plain.shape[1]), 2)
-    return np.column_stack([plain, *(plain[:, one] * plain[:, other] for one, other in pairs)])
+    return np.column_stack([plain, *(plain[:, first] * plain[:, second] for first, second in pairs)])
 
 
 def _standard(features, chosen):
-    """By the mean and the standard deviation of those chosen; what is alike in all of them is left as it is."""
+    """Features less the mean and over the standard deviation of the chosen cases; a constant one is only shifted."""
     centre, spread = features[chosen].mean(axis=0), features[chosen].std(axis=0)
     return (features - centre) / np.where(spread > 0, spread, 1)
 
 
 def clustered(values: npt.ArrayLike, groups: Sequence[Any], seed: int = 0) -> list[float]:
-    """The 95 % interval [low, high] of the mean of values: percentiles of a bootstrap over groups.
+    """Return the 95 % interval [low, high] of the mean of values: percentiles of a bootstrap over groups.
 
-    A draw takes as many groups as there are, with replacement, each with all of its cases.
+    A draw takes as many groups as there are, with replacement, each with all its cases.
     """
     values = np.asarray(values, dtype=float)
     _, places = np.unique([str(group) for group in groups], return_inverse=True)

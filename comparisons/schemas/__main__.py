@@ -1,4 +1,4 @@
-"""``python -m comparisons.schemas``: write the schemas down, after a change of the types."""
+"""The command ``python -m comparisons.schemas``, which writes the schemas after a change of the types."""
 
 import json
 from typing import Any
@@ -15,9 +15,9 @@ FORMS = (Choice, Comparison, Design, Margins, New, Record, Report, Run, Sheet, S
 
 
 def schemas() -> dict[str, dict[str, Any]]:
-    """{name of the file without ending: schema} of every form."""
-    found = [schema_of(form) for form in FORMS]
-    return {schema["properties"]["schema"]["default"].replace(" ", "-"): schema for schema in found}
+    """Return {file name without ending: schema} of every form."""
+    written = [schema_of(form) for form in FORMS]
+    return {schema["properties"]["schema"]["default"].replace(" ", "-"): schema for schema in written}
 
 
 if __name__ == "__main__":

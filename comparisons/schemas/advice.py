@@ -1,4 +1,4 @@
-"""What `rocking margin` and `rocking design` write."""
+"""Types of what `rocking margin` and `rocking design` write."""
 
 from collections.abc import Sequence
 from typing import Any, Literal, Self
@@ -16,9 +16,10 @@ LimitState = Literal[*margins.LIMIT_STATES]  # type: ignore[valid-type]  # the w
 
 
 class Band(Part):
-    """Relative changes from low to high. reached: the limit states there, of "slides", "lifts", "tilt" (the peak tilt
-    exceeds its share of the slenderness), "stroke" (the base goes beyond x_max) and "overturns"; holds: the contact
-    holds as the model has it."""
+    """A band of relative changes from low to high.
+
+    reached: the limit states there, of "slides", "lifts", "tilt" (the peak tilt exceeds its share of the slenderness),
+    "stroke" (the base goes beyond x_max) and "overturns". holds: the contact holds as the model assumes."""
 
     low: float
     high: float
@@ -28,11 +29,13 @@ class Band(Part):
 
 
 class Margin(Part):
-    """Of one quantity, `value` as the scene has it. changes: for each limit state of the scene the nearest change at
-    which it becomes reached, or where the scene reaches it now, is no longer; down, up: nearest change with another
-    outcome; leaves_model: nearest change at which the model no longer holds; null where there is none in the range
-    scanned. interleaved: the outcome changes and changes back within two steps of the scan: it may change nearer, in a
-    narrower band. ends_down, ends_up: why the bands end before the span, where no scene or no run lies beyond."""
+    """The margins of one quantity, whose value in the scene is `value`.
+
+    changes: for each limit state the nearest change at which it becomes reached or, if the scene reaches it, is no
+    longer reached. down, up: nearest changes with another outcome. leaves_model: nearest change at which the model no
+    longer holds. All are null if there is none in the range scanned. interleaved: the outcome changes and changes back
+    within two steps of the scan; it may change nearer, in a narrower band. ends_down, ends_up: why the bands end before
+    the span, if no scene or no run lies beyond."""
 
     quantity: str
     value: float
@@ -49,14 +52,14 @@ class Margin(Part):
 
     @classmethod
     def of(cls, margin: margins.Margin, states: Sequence[str]) -> Self:
-        """The part of an `analytic.margins.Margin` with its changes of these limit states."""
-        own = {name: getattr(margin, name) for name in cls.model_fields if name != "changes"}
+        """Return the part for an `analytic.margins.Margin`, with its changes for these limit states."""
+        fields = {name: getattr(margin, name) for name in cls.model_fields if name != "changes"}
         changes = {state: margin.change(state) for state in states}
-        return cls.model_validate({**own, "changes": changes}, from_attributes=True)
+        return cls.model_validate({**fields, "changes": changes}, from_attributes=True)
 
 
 class Contact(Part):
-    """What the contact has to spare: min N/(m g), the demand max |H|/N, the scene's coefficient; whether it slides."""
+    """Reserves of the contact: min N/(m g), friction demand max |H|/N, coefficient of the scene, whether it slides."""
 
     least_normal: float
     friction_demand: float
@@ -65,9 +68,10 @@ class Contact(Part):
 
 
 class MotionMargin(MotionRun):
-    """A scene under one of many motions, the limit states reached, and the nearest relative changes of the motion at
-    which each limit state becomes reached, or where it is, no longer is; none of a run that failed. interleaved: as of
-    a `Margin`."""
+    """A scene under one of many motions, with limit states.
+
+    reached: those reached. changes: the nearest relative change of the motion at which each limit state becomes
+    reached or, if it is reached, no longer is; none for a run that failed. interleaved: as in a `Margin`."""
 
     reached: list[LimitState] = []
     changes: dict[LimitState, float | None] = {}
@@ -75,9 +79,11 @@ class MotionMargin(MotionRun):
 
 
 class Margins(Form):
-    """How far a scene is from other limit states. reached: those it reaches now. tilt: the limit, a share of the
-    slenderness; span: largest relative change scanned, up and, above -1, down. warnings: of the unchanged scene.
-    headline: under how many motions what must be known happens."""
+    """How far a scene is from its limit states.
+
+    reached: the limit states that the scene reaches. tilt: the limit of the tilt, a share of the slenderness. span:
+    largest relative change scanned, up and (above -1) down. warnings: of the unchanged scene. headline: under how
+    many records runs fail or warn, and the block lifts or overturns."""
 
     schema_: str = Field(default="rocking margin 4", serialization_alias="schema")
     scene: str
@@ -108,11 +114,11 @@ _Keys: Any = create_model(
 
 
 class Constants(_Keys):
-    """Of one bearing, as a scene file has them."""
+    """Constants of one bearing, as in a scene file."""
 
 
 class Properties(Part):
-    """What the constants give back at the design displacement."""
+    """Properties of the bearings at the design displacement, computed back from the constants."""
 
     period: float = Field(description="s, of the secant")
     period_kb: float = Field(description="s")
@@ -132,8 +138,9 @@ class Design(Form):
 
 
 class BearingProposal(Part):
-    """Bearings that hold under all motions: period [s] and equivalent damping at the stroke, and what the worst motion
-    does."""
+    """Bearings that hold under all motions, and what the worst motion does.
+
+    period [s] and equivalent damping: at the stroke."""
 
     period: float = Field(description="s, secant at the stroke")
     damping: float = Field(description="share of critical at the stroke")
@@ -148,15 +155,14 @@ class BearingProposal(Part):
     )
     worst: str = Field(description="motion of the largest displacement")
     motions: list[MotionRun] = Field(description="what happens under each on these bearings")
-    headline: str = Field(description="under how many motions what must be known happens")
+    headline: str = Field(description="under how many records runs fail or warn, and the block lifts or overturns")
 
 
 class BearingSearch(Form):
-    """Which bearings keep a scene's block from lifting (or its tilt within a limit) and, where the scene gives a
-    friction, from sliding, and its base within a stroke.
+    """Bearings that keep a scene's block from lifting (or its tilt within a limit) and its base within a stroke.
 
-    holds: a row for each damping, a column for each period [s]. chosen: "least-stroke" and "softest", none where
-    nothing holds."""
+    If the scene gives a friction, the block must not slide either. holds: a row for each damping, a column for each
+    period [s]. chosen: "least-stroke" and "softest"; none if nothing holds."""
 
     schema_: str = Field(default="rocking bearings 2", serialization_alias="schema")
     scene: str

@@ -1,6 +1,6 @@
-"""What commands write of runs, records, scenes, tolerances, sheets and reports. Null: not known, or none.
+"""Types of what the commands write about runs, records, scenes, tolerances, sheets and reports, and of result files.
 
-What a study's result file holds; its columns are explained in `comparisons.studies.rows`.
+Null means not known, or none. `comparisons.studies.rows` explains the columns of a study's result.
 """
 
 from typing import Annotated, Any, Literal
@@ -13,7 +13,7 @@ from . import Form, Part
 
 
 class Impact(Part):
-    """Time [s], tilt rate before and after [rad/s], jump of the base velocity [m/s]."""
+    """An impact: time [s], tilt rate before and after [rad/s], jump of the base velocity [m/s]."""
 
     time: float | None
     rate_before: float | None
@@ -22,7 +22,7 @@ class Impact(Part):
 
 
 class State(Part):
-    """Time [s], tilt [rad], its rate [rad/s], base displacement [m] and velocity [m/s], force of all bearings [N]."""
+    """A state: time [s], tilt [rad], its rate [rad/s], base displacement [m] and velocity [m/s], bearing force [N]."""
 
     time: float | None
     tilt: float | None
@@ -33,7 +33,7 @@ class State(Part):
 
 
 class Energy(Part):
-    """Energy ledger [J] in the ground's frame: changes, what went in, and what left."""
+    """The energy balance [J] in the ground's frame: changes, input and losses."""
 
     kinetic: float | None
     potential: float | None
@@ -45,8 +45,9 @@ class Energy(Part):
 
 
 class Sliding(Part):
-    """Slip of a block that slides: largest and last [m], whole way [m], friction work [J], and (time [s], mode) of each
-    change: stick, slide, rock, slide-rock, flight."""
+    """Slip of a block that slides: largest and last [m], whole way [m] and friction work [J].
+
+    modes: (time [s], mode) of each change of mode: stick, slide, rock, slide-rock, flight."""
 
     peak: float | None
     end: float | None
@@ -56,7 +57,7 @@ class Sliding(Part):
 
 
 class Failure(Part):
-    """Why a run failed: in plain words, the engine's own message, the last finite state."""
+    """A failure of a run: the reason in plain words, the engine's own message, the last finite state."""
 
     reason: str
     message: str
@@ -64,7 +65,7 @@ class Failure(Part):
 
 
 class Warned(Part):
-    """A warning. kind: record, model, limit, motion or engine; quantity, value, limit: what is beyond which limit."""
+    """A warning. quantity, value, limit: what is beyond which limit."""
 
     kind: Literal[*KINDS]  # type: ignore[valid-type]  # the words of `Caution`
     text: str
@@ -76,15 +77,17 @@ class Warned(Part):
 class MotionRead(Part):
     """One of many motions, as it was read."""
 
-    record: str = Field(description="its motions count as one; of the scene's own outside the folder, words")
+    record: str = Field(description="its motions count as one; words for the scene's own motion")
     motion: str
     peak: float = Field(description="m/s2")
     warnings: list[Warned]
 
 
 class MotionRun(MotionRead):
-    """A scene under one of many motions: the outcome, why a run failed, and the peaks; tilt over slenderness, stroke
-    null without a base, slip null where none is modelled. The warnings are those of the run, too."""
+    """A scene under one of many motions: the outcome, the reason of a failure, and the peaks.
+
+    tilt: over the slenderness. stroke: null without a base. slip: null if none is modelled. warnings: on the motion and
+    on the run."""
 
     outcome: Literal[*OUTCOMES]  # type: ignore[valid-type]  # the words of `Response`
     failure: str | None
@@ -94,14 +97,15 @@ class MotionRun(MotionRead):
 
 
 class Difference(Part):
-    """What an engine's run has other than the analytic model, and the difference tolerated: of peaks and losses
-    relative, of the restitution, of times [s] and of numbers of impacts absolute."""
+    """A quantity in which an engine's run differs from the analytic model by more than the limit.
+
+    The limit is relative for peaks and losses; absolute for the restitution, times [s] and numbers of impacts."""
 
     quantity: Literal[*DIFFERENCES]  # type: ignore[valid-type]  # the words of `analytic.Difference`
     here: str | float | None
     model: str | float | None
     limit: float | None
-    near: tuple[float, float] | None = Field(description="ends of it in the model within 1e-4 of the scene")
+    near: tuple[float, float] | None = Field(description="its range in the model for scenes within 1e-4 of this one")
 
 
 COMPARABLE = 'compared with the analytic model: "yes", "no" (not asked for), "on an edge", else the reason why not'
@@ -138,28 +142,28 @@ class _Values(Form):
     energy: Energy | None
     sliding: Sliding | None = Field(
         default=None,
-        description="where the scene gives a friction that is used up; all 0 of an engine that does not slip",
+        description="if the scene gives a friction that is exhausted; all 0 for an engine that does not slip",
     )
 
 
 class Run(_Values):
-    """A scene in one solver. headline: under how many motions what must be known happens."""
+    """A scene in one solver. headline: under how many records runs fail or warn, and the block lifts or overturns."""
 
     schema_: str = Field(default="rocking run 4", serialization_alias="schema")
-    motions: list[MotionRun] = Field(default=[], description="where --records, --both-signs or --directions are given")
+    motions: list[MotionRun] = Field(default=[], description="if --records, --both-signs or --directions is given")
     left_out: list[str] = Field(default=[], description="files and channels of the folder, and why")
     headline: str | None = None
 
 
 class Sensitivity(Part):
-    """Of a solver: the change of the start that was followed, and the time [s] up to which it stays small."""
+    """Sensitivity of a solver: the change of the start, and the time [s] up to which its effect stays small."""
 
     perturbation: float | None
     horizon: float | None
 
 
 class Comparison(Form):
-    """A scene in all solvers. sensitivity_horizon: time [s] up to which point-wise agreement is asked for."""
+    """A scene in all solvers. sensitivity_horizon: time [s] up to which motions are compared point by point."""
 
     schema_: str = Field(default="rocking compare 4", serialization_alias="schema")
     scene: str
@@ -169,8 +173,10 @@ class Comparison(Form):
 
 
 class Tolerance(Part):
-    """A row of the tolerance table. bound, measured, holds: None of an engine that states no tolerances. found: None
-    where it could not be measured; failure: why, in words."""
+    """A row of the tolerance table.
+
+    bound, measured, holds: null for an engine that states no tolerances. found: null if it could not be measured;
+    failure: the reason in words."""
 
     quantity: str
     engine: str
@@ -186,7 +192,7 @@ class Tolerance(Part):
 
 
 class Verification(Form):
-    """Engines compared with the tolerance table. versions: {engine: its own}."""
+    """Engines compared with the tolerance table. versions: {engine: versions of its packages}."""
 
     schema_: str = Field(default="rocking verify 3", serialization_alias="schema")
     versions: dict[str, Any]
@@ -194,8 +200,9 @@ class Verification(Form):
 
 
 class Asked(Part):
-    """A quantity asked for, and the reference answer. tolerance: by how much another code's answer may differ, in the
-    unit; null for a word, which must be the same."""
+    """A quantity of a problem, and the reference answer.
+
+    tolerance: by how much the answer of another code may differ, in the unit; null for a word, which must be equal."""
 
     quantity: str
     unit: str
@@ -205,7 +212,7 @@ class Asked(Part):
 
 
 class Problem(Part):
-    """A page of the sheet."""
+    """A problem of the sheet."""
 
     scene: str
     title: str
@@ -213,7 +220,7 @@ class Problem(Part):
 
 
 class Sheet(Form):
-    """A problem sheet written. sheet: its version."""
+    """The problem sheet that was written. sheet: its version."""
 
     schema_: str = Field(default="rocking sheet 2", serialization_alias="schema")
     sheet: int
@@ -222,8 +229,10 @@ class Sheet(Form):
 
 
 class Reported(Part):
-    """A scene in one solver, as the page shows it; null: not known, as where a run failed. Errors against the analytic
-    model: overturning_time_error [s], peak errors relative, impact_time_error [s]."""
+    """A scene in one solver, as the page shows it; null: not known, for example because the run failed.
+
+    Errors are those against the analytic model: overturning_time_error [s], impact_time_error [s], peak errors
+    relative."""
 
     scene: str
     engine: str
@@ -246,9 +255,11 @@ class Reported(Part):
 
 
 class Report(Form):
-    """A page written, and the rows behind its first table. results: the result files it is made from. motions: of each
-    scene of one's own, what each of many motions does; left_out: files and channels of the folder, and why; headlines:
-    under how many of the motions what must be known happens."""
+    """The page that was written, and the rows behind its first table.
+
+    results: the result files it is made from. motions: {scene: a row for each of many motions}. left_out: files and
+    channels of the folder, and why. headlines: under how many records runs fail or warn, and the block lifts or
+    overturns."""
 
     schema_: str = Field(default="rocking report 5", serialization_alias="schema")
     page: str
@@ -261,7 +272,7 @@ class Report(Form):
 
 
 class Derived(Part):
-    """A number that follows from the scene; unit "-" where it has none. asked: what was asked for, in its sense."""
+    """A quantity derived from the scene; the unit is "-" if it has none. asked: the target, as the row defines it."""
 
     name: str
     value: float
@@ -270,7 +281,7 @@ class Derived(Part):
 
 
 class New(Form):
-    """A scene file written."""
+    """The scene file that was written."""
 
     schema_: str = Field(default="rocking new 1", serialization_alias="schema")
     file: str
@@ -279,12 +290,12 @@ class New(Form):
 
 
 class Channel(Part):
-    """A channel as it was read; its number and direction in the file's own words."""
+    """A channel as it was read. channel, direction: as the file names them."""
 
     channel: str | None
     direction: str | None
     units: str
-    units_from: str = Field(description="who said so")
+    units_from: str = Field(description="what states the units")
     dt: float = Field(description="s")
     samples: int
     duration: float = Field(description="s")
@@ -307,7 +318,7 @@ Digest = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
 
 
 class Machine(Part):
-    """Cores are physical ones; null: not known."""
+    """A machine. cores: physical ones; null: not known."""
 
     processor: str
     cores: int | None
@@ -317,7 +328,7 @@ class Machine(Part):
 
 
 class Checked(Part):
-    """Stored runs done again: when, with which commit, drawn with which seed, how many, and how many held."""
+    """A check that repeated stored runs: date, commit, seed of the random choice, number of runs, how many held."""
 
     date: str
     commit: str | None
@@ -328,8 +339,9 @@ class Checked(Part):
 
 
 class Origin(Part):
-    """Where numbers come from. commit, dirty: of the checkout, and whether tracked files differed from it; null outside
-    one."""
+    """Where numbers come from.
+
+    commit: of the checkout. dirty: whether tracked files differed from it. Both are null outside a checkout."""
 
     time: str = Field(description="UTC, ISO 8601")
     machine: Machine
@@ -337,33 +349,36 @@ class Origin(Part):
     packages: dict[str, str | None] = Field(description="versions; null: not installed")
     commit: str | None
     dirty: bool | None
-    sources: dict[str, str] = Field(description="digests of the definitions behind the numbers, by root: those it adds")
+    sources: dict[str, str] = Field(
+        description="digests of the definitions behind the numbers: for each root those that it adds"
+    )
 
 
 class Provenance(Origin):
     """Where a result comes from."""
 
-    seed: int | list[int] | None = Field(description="of the random numbers used; null where none are")
+    seed: int | list[int] | None = Field(description="of the random numbers used; null if none are")
     check: Checked | None = None
 
 
 class Arrays(Part):
-    """The file of arrays beside this one, and the SHA-256 of it."""
+    """The file of arrays beside this one, and its SHA-256."""
 
     file: str
     digest: Digest
 
 
 class Runs(Part):
-    """How many single runs there were, and how many, drawn at random, are stored among the arrays (`runs.json`). An
-    engine run again counts as when it was first run."""
+    """How many single runs there were, and how many, drawn at random, are stored among the arrays (`runs.json`).
+
+    An engine computed again counts as when it was first computed."""
 
     stored: int
     total: int | None = Field(description="null: counted with those of analytic.json")
 
 
 class StudyResult(Form):
-    """The result file of a study: a row is one object; equal columns mean the same in all rows of a study."""
+    """The result file of a study. A row is one object; a column means the same in all rows of a study."""
 
     schema_: Literal["rocking study 3"] = Field(default="rocking study 3", alias="schema")
     digest: Digest = Field(description="SHA-256 of all else in this file, as JSON with sorted keys and without spaces")

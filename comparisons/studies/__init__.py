@@ -48,28 +48,47 @@ if TYPE_CHECKING:  # loads engines: not where only the names are asked for
 
 GROUP = "rocking.studies"
 PACKAGE = "comparisons.studies"
-# name: its question; in the order of the report and of the rows of its first table
+# {name: its question}, in the order of the report and of its first table. The first sentence is the line of the study
+# in ``rocking study --help``: at most 60 characters.
 QUESTIONS = {
     "restitution": (
-        "Error of restitution and base velocity jump over slenderness, base mass and level; cost, and why engines err."
+        "Errors of the restitution at an impact, and their causes. How do they and the base velocity jump depend on "
+        "slenderness, base mass and level, and what does a run cost?"
     ),
-    "overturning": "Overturning boundaries under pulses, on rigid ground and isolated, solver by solver.",
-    "recorded": "Recorded motions: does an engine overturn the blocks that the analytic model overturns?",
-    "fragility": "Fragility over intensity: does a lognormal curve fit, and does the engine shift it?",
-    "shake-table": "Blocks that were really shaken: what do the model, the engines and simpler measures predict?",
+    "overturning": (
+        "Overturning boundaries under pulses. Where does each solver put them, on rigid ground and isolated?"
+    ),
+    "recorded": "Outcomes under recorded motions. Does an engine overturn the same blocks as the analytic model?",
+    "fragility": (
+        "Probability of overturning over intensity. Does a lognormal curve fit, and does the engine shift it?"
+    ),
+    "shake-table": (
+        "Predictions of shake-table tests. How often are the model, the engines and simpler measures right?"
+    ),
     "sensitivity": (
-        "What changes the outcome more often than the choice of the engine: vertical motion, a per cent of slenderness?"
+        "Effects that change the outcome more than engines do. How often does vertical motion change it, or one per "
+        "cent of slenderness?"
     ),
     "statues": (
-        "Statues drawn at random in the promised range, friction drawn or not: how often is an engine right, where are "
-        "its overturning boundaries, and is every wrong run reported?"
+        "Statues drawn at random in the promised range. How often is an engine right, with and without friction? "
+        "Where are its overturning boundaries, and is every wrong run reported?"
     ),
     "stability": (
-        "Named hard cases in every solver and variant: right, differs or failed, with measures, evidence, finer levels."
+        "Hard cases in every solver and variant. Is each right, different or failed, by which measures, and do finer "
+        "levels help?"
     ),
-    "speed-error": "Error and CPU time of the same runs: kernel, scipy, time stepping, Bouc-Wen, engines and variants.",
-    "caryatid": "The Caryatid paper: every equation, figure and table reproduced or corrected, and what it leaves out.",
-    "mistakes": "Scripts of a rocking block in an engine's plain calls, each with one mistake: what does it cost?",
+    "speed-error": (
+        "Error and CPU time of the same runs. They are compared for the kernel, scipy, time stepping, Bouc-Wen, and "
+        "the engines and their variants."
+    ),
+    "caryatid": (
+        "The Caryatid paper, reproduced or corrected. Every equation, figure and table is checked, and what the paper "
+        "leaves out."
+    ),
+    "mistakes": (
+        "The cost of typical mistakes in an engine's script. Each script models a rocking block in the engine's own "
+        "calls, with one mistake."
+    ),
 }
 BUILT_IN = tuple(QUESTIONS)
 TOLERANCES = "tolerances"  # a result that is shown as a study's, and computed by rocking verify

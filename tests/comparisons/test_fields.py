@@ -92,40 +92,40 @@ SPENT = approx(0.05, abs=0.04999)  # s, of a run of the model
 LATE, LATER = 0.002, 0.25  # s, of impacts and of overturning in a lie
 
 
-def leaves(part, found, wanted, field=None):
-    """((part, field), value in the document, value known) of what is known of `found`, which is, or holds, a part.
+def leaves(part, result, wanted, field=None):
+    """((part, field), value in the document, value known) of what is known of `result`, which is, or holds, a part.
 
     wanted : dict, or object with attributes, of some of the fields; of a list also {"of": its length, index: entry}.
     """
-    if part is None or found is None or wanted is None:
-        yield field, found, wanted
-    elif isinstance(found, list):
+    if part is None or result is None or wanted is None:
+        yield field, result, wanted
+    elif isinstance(result, list):
         known = wanted if isinstance(wanted, dict) else {"of": len(wanted), **dict(enumerate(wanted))}
-        yield field, [0] * len(found), [0] * known["of"]
-        for at, one in enumerate(found):
-            yield from leaves(part, one, known.get(at, {}), field)
-    elif found.keys() == PARTS[part]["properties"].keys():
+        yield field, [0] * len(result), [0] * known["of"]
+        for at, element in enumerate(result):
+            yield from leaves(part, element, known.get(at, {}), field)
+    elif result.keys() == PARTS[part]["properties"].keys():
         yield field, [part], [part]
         for name, kind in PARTS[part]["properties"].items():
             inner = re.search(r"#/\$defs/(\w+)", json.dumps(kind))
-            one = wanted.get(name, ...) if isinstance(wanted, dict) else getattr(wanted, name, ...)
-            if one is not ...:
-                yield from leaves(inner and inner[1], found[name], one, (part, name))
+            inner_wanted = wanted.get(name, ...) if isinstance(wanted, dict) else getattr(wanted, name, ...)
+            if inner_wanted is not ...:
+                yield from leaves(inner and inner[1], result[name], inner_wanted, (part, name))
     else:
-        yield field, sorted(found), sorted(wanted)
-        for name, one in found.items():
-            yield from leaves(part, one, wanted.get(name), field)
+        yield field, sorted(result), sorted(wanted)
+        for name, element in result.items():
+            yield from leaves(part, element, wanted.get(name), field)
 
 
-def agrees(found, wanted):
+def agrees(result, wanted):
     """Whether a value of a document is the one known: numbers within rounding; a function tells of what it is given."""
     if callable(wanted):
-        return wanted(found)
+        return wanted(result)
     if isinstance(wanted, dict):
-        return found.keys() == wanted.keys() and all(agrees(found[name], wanted[name]) for name in wanted)
-    if isinstance(wanted, list | tuple) and isinstance(found, list):
-        return len(found) == len(wanted) and all(map(agrees, found, wanted))
-    return found == (approx(wanted) if isinstance(wanted, float) else wanted)
+        return result.keys() == wanted.keys() and all(agrees(result[name], wanted[name]) for name in wanted)
+    if isinstance(wanted, list | tuple) and isinstance(result, list):
+        return len(result) == len(wanted) and all(map(agrees, result, wanted))
+    return result == (approx(wanted) if isinstance(wanted, float) else wanted)
 
 
 WRONG = {
@@ -146,7 +146,7 @@ REPLACED = {
     "comparisons.execution.cases.source_digests": lambda *_: {},
     "comparisons.execution.study.digests_of_all": lambda *_: {},
     "comparisons.execution.provenance.kept_digests": lambda *_: {},
-    "comparisons.execution.by_solver.kept_digests": lambda roots: {one: one[::-1] for one in roots},
+    "comparisons.execution.by_solver.kept_digests": lambda roots: {root: root[::-1] for root in roots},
     "comparisons.execution.cases.version_of": lambda _: "1",
     "comparisons.execution.study.SIZE": 1,
     "comparisons.report.write.write_page": lambda folder, *_: Path(folder) / "report.html",
@@ -164,7 +164,7 @@ LIARS = ("coarse", "off", "loss", "restitution", "honest", "fails")
 
 def off(scene, run):
     """Peaks too large, impacts and the end too late."""
-    late = tuple(replace(one, time=one.time + LATE) for one in run.impacts)
+    late = tuple(replace(impact, time=impact.time + LATE) for impact in run.impacts)
     peaks = {"peak_tilt": 1.05, "peak_tilt_ratio": 1.05, "peak_base_displacement": 1.07}
     known = {name: factor * getattr(run, name) for name, factor in peaks.items()}
     return replace(run, impacts=late, overturning_time=run.overturning_time and run.overturning_time + LATER, **known)
@@ -199,7 +199,7 @@ def ask(tmp_path_factory):
         patch.setattr(lying_engine, "VARIANTS", levels)
         absent = Engine("absent", "no_such_package", "buy it", "black", "o", adapter="")
         ENGINES.clear()
-        ENGINES.update({name: one for name, one in liars().items() if name in LIARS}, absent=Liar.of(absent))
+        ENGINES.update({name: liar for name, liar in liars().items() if name in LIARS}, absent=Liar.of(absent))
         yield call
         ENGINES.clear()
         ENGINES.update(known)
@@ -221,7 +221,8 @@ def under(what, label):
             "record": "quake.csv" if at else "the scene's own motion",
             "motion": name,
             "peak": peak,
-            "warnings": [Caution("record", CUT)] * bool(at) + [one for one in run.warnings if one.kind != "record"],
+            "warnings": [Caution("record", CUT)] * bool(at)
+            + [warning for warning in run.warnings if warning.kind != "record"],
             "outcome": run.outcome,
             "failure": None,
             "tilt": run.peak_tilt_ratio,
@@ -300,7 +301,7 @@ def runs(ask):
 def compared(ask):
     """Lies by known factors, and an engine that fails."""
     what, run = model("rocks")
-    ends = [horizon.sensitivity_horizon(what, perturbation=one).horizon for one in (0.004, 0.02)]
+    ends = [horizon.sensitivity_horizon(what, perturbation=size).horizon for size in (0.004, 0.02)]
     peaks = [simulate(copy, history=False).peak_tilt for copy in near_copies(what)] + [run.peak_tilt]
     engines = [word for name in ("loss", "restitution", "off", "fails") for word in ("--engine", name)]
     yield (
@@ -355,8 +356,13 @@ def changed(ask):
     documents = {name: ask("margin", f"{name}.toml", "--tilt", 0.4, *MANY) for name in labels}
     for name, label in labels.items():
         what, run = model(name, duration=None)
-        found = margins.margins(what, tilt=0.4, step=0.01)
-        known = {"margins": found, "outcome": run.outcome, "warnings": run.warnings, "motions": [*under(what, label)]}
+        margins_ = margins.margins(what, tilt=0.4, step=0.01)
+        known = {
+            "margins": margins_,
+            "outcome": run.outcome,
+            "warnings": run.warnings,
+            "motions": [*under(what, label)],
+        }
         yield "Margins", documents[name], known
     slower, rougher = approx(0.15 * G / 1.6 - 1, rel=1e-4), approx(1.6 / (0.15 * G) - 1, rel=1e-4)
     changes = {"slides": slower, "lifts": None, "tilt": None, "overturns": None}
@@ -425,14 +431,14 @@ def designed(ask):
 def searched(ask):
     """The scan that Python returns; and runs on the bearings chosen."""
     what = model("quiet")[0]
-    told = [what.motion, *(read_record("records/quake.csv", channel=number) for number in (1, 2))]
-    scan = scan_bearings(what, told, 0.3, tilt=0.4)
+    motions = [what.motion, *(read_record("records/quake.csv", channel=number) for number in (1, 2))]
+    scan = scan_bearings(what, motions, 0.3, tilt=0.4)
     period, damping = scan.least_stroke
     exact = design_bearings(600.0, period, damping, 0.3)
     rounded = {name: float(f"{getattr(exact, name):.6g}") for name in ("ka", "kb", "alpha")}
     on = what.with_(bearings=exact.model_copy(update=rounded))
     rows = [*under(on, "one-sine pulse, 0.1 m/s2, 6 rad/s")]
-    demand = simulate(on.with_(friction=None, motion=told[2]), history=False).friction_demand
+    demand = simulate(on.with_(friction=None, motion=motions[2]), history=False).friction_demand
     yield (
         "BearingSearch",
         ask("design", "quiet.toml", "--stroke", 0.3, "--tilt", 0.4, *MANY),
@@ -553,7 +559,7 @@ def chosen(ask):
 
 def reported(ask):
     """Two scenes in the model, in an engine that lies by known factors, and in one that fails."""
-    (_, one), (falls, other) = model("bears"), model("falls")
+    (_, bears), (falls, other) = model("bears"), model("falls")
     late = {"quantity": "overturning_time", "here": other.overturning_time + LATER, "model": other.overturning_time}
     yield (
         "Report",
@@ -570,11 +576,11 @@ def reported(ask):
                     "variant": "kernel",
                     "outcome": "rocks",
                     "decided": True,
-                    "peak_tilt_ratio": one.peak_tilt_ratio,
-                    "peak_base_displacement": one.peak_base_displacement,
-                    "impact_count": one.impact_count,
+                    "peak_tilt_ratio": bears.peak_tilt_ratio,
+                    "peak_base_displacement": bears.peak_base_displacement,
+                    "impact_count": bears.impact_count,
                     "same_outcome": None,
-                    "warnings": one.warnings,
+                    "warnings": bears.warnings,
                     "comparable": "no",
                 },
                 {
@@ -582,7 +588,7 @@ def reported(ask):
                     "variant": "lies",
                     "same_outcome": True,
                     "overturning_time_error": None,
-                    "peak_tilt_error": 0.05 * one.peak_tilt_ratio,
+                    "peak_tilt_error": 0.05 * bears.peak_tilt_ratio,
                     "peak_displacement_error": 0.07,
                     "impact_time_error": LATE,
                     "cpu_seconds": 0.01,
@@ -644,7 +650,7 @@ def verified(ask):
         )
 
 
-def told(ask):
+def sheet_written(ask):
     """A record, a new scene and the sheet: what went in, and the geometry and the equations that follow from it."""
     channel = {
         "units": "gal",
@@ -702,7 +708,7 @@ def told(ask):
             "schema": "rocking sheet 2",
             "sheet": 1,
             "files": lambda files: (
-                sorted(files) == sorted(str(one) for one in Path("sheet").rglob("*") if one.is_file())
+                sorted(files) == sorted(str(path) for path in Path("sheet").rglob("*") if path.is_file())
             ),
             "problems": {
                 "of": 8,
@@ -740,8 +746,8 @@ def studied(ask):
         "commit": subprocess.check_output([*git, "rev-parse", "HEAD"], text=True).strip(),
         "dirty": bool(subprocess.check_output([*git, "status", "--porcelain", "-uno"])),
     }
-    times = [(began + timedelta(seconds=one)).isoformat() for one in range(100)]
-    told = Path("/proc/cpuinfo").read_text() if Path("/proc/cpuinfo").exists() else platform.processor()
+    times = [(began + timedelta(seconds=second)).isoformat() for second in range(100)]
+    cpu_info = Path("/proc/cpuinfo").read_text() if Path("/proc/cpuinfo").exists() else platform.processor()
     swing = {"part": "swing", "engine": "analytic", "cpu_seconds": SPENT}
     yield (
         "StudyResult",
@@ -753,21 +759,21 @@ def studied(ask):
             "provenance": {
                 "time": times.__contains__,
                 "machine": {
-                    "processor": {line.partition(": ")[2] or line for line in told.splitlines()}.__contains__,
+                    "processor": {line.partition(": ")[2] or line for line in cpu_info.splitlines()}.__contains__,
                     "cores": 3,
                     "logical_cores": 6,
                     "memory_gib": 48.0,
                     "system": f"{platform.system()} {platform.machine()}",
                 },
                 "packages": {
-                    **dict.fromkeys(PACKAGES, lambda one: one is None or one[0].isdigit()),
+                    **dict.fromkeys(PACKAGES, lambda version: version is None or version[0].isdigit()),
                     **{name: version(name) for name in ("numpy", "scipy", "numba", "exudyn")},
                 },
                 "python": platform.python_version(),
-                "sources": {one: one[::-1] for one in ("fake_study:plan", "analytic:simulate")},
+                "sources": {root: root[::-1] for root in ("fake_study:plan", "analytic:simulate")},
                 "seed": 3,
                 "check": {
-                    "date": {one[:10] for one in times}.__contains__,
+                    "date": {time_[:10] for time_ in times}.__contains__,
                     **checkout,
                     "seed": 11,
                     "runs": 1,
@@ -790,13 +796,13 @@ def studied(ask):
             "runs": {"stored": 1, "total": 2},
             "rows": [
                 {"part": "starts", "starts": [*STARTS]},
-                *({**swing, "start": one, "tilt": one} for one in STARTS),
+                *({**swing, "start": each, "tilt": each} for each in STARTS),
             ],
         },
     )
 
 
-DOCUMENTS = (runs, compared, changed, designed, searched, chosen, reported, verified, told, studied)
+DOCUMENTS = (runs, compared, changed, designed, searched, chosen, reported, verified, sheet_written, studied)
 EMPTY = (None, "", [], {})  # what shows nothing of a field
 
 
@@ -817,4 +823,4 @@ def test_a_wrong_value_is_seen(known):
 def test_each_field_of_each_form_is_looked_at(known):
     fields = {(name, field) for name, part in PARTS.items() for field in part["properties"]}
     never = {("Constants", "yield_force")}  # as bearings are designed of the algebraic law
-    assert fields - {pair for pair, found, _ in known if found not in EMPTY} == never
+    assert fields - {pair for pair, result, _ in known if result not in EMPTY} == never

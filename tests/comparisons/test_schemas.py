@@ -15,15 +15,15 @@ from comparisons.schemas.__main__ import FOLDER, FORMS, schemas
 
 
 def test_every_form_has_its_schema_written_down_under_its_version_and_every_schema_its_form():
-    found = {file.stem: json.loads(file.read_text()) for file in FOLDER.glob("*.json")}
-    assert found == schemas(), "python -m comparisons.schemas writes them"
+    by_name = {file.stem: json.loads(file.read_text()) for file in FOLDER.glob("*.json")}
+    assert by_name == schemas(), "python -m comparisons.schemas writes them"
 
 
 def sample(kind, number):
     """A value of a type, in which every number that is no whole one is `number`, and every list has one entry."""
     origin, parts = typing.get_origin(kind), typing.get_args(kind)
     if origin in (typing.Union, types.UnionType):
-        kinds = [one for one in parts if one is not type(None)]
+        kinds = [part for part in parts if part is not type(None)]
         return sample(float if float in kinds else kinds[0], number)
     if origin is typing.Annotated:
         return sample(parts[0], number)
@@ -32,11 +32,11 @@ def sample(kind, number):
     if origin is list:
         return [sample(parts[0], number)]
     if origin is tuple:
-        return tuple(sample(one, number) for one in parts)
+        return tuple(sample(part, number) for part in parts)
     if origin is dict:
         return {sample(parts[0], number): sample(parts[1], number)}
     if isinstance(kind, type) and issubclass(kind, BaseModel):
-        known = {one.alias or name: sample(one.annotation, number) for name, one in kind.model_fields.items()}
+        known = {info.alias or name: sample(info.annotation, number) for name, info in kind.model_fields.items()}
         return kind(**{name: value for name, value in known.items() if name != "schema_" and name != "schema"})
     return {float: number, int: 3, str: "0" * 64, bool: True, Any: [number, {"deeper": number}]}[kind]
 

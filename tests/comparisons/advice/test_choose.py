@@ -18,7 +18,7 @@ from engines import ENGINES, get_engine
 
 RIGID = load_scene("free-rocking-rigid")
 GIVEN = RIGID.with_(block={"restitution": 0.7})
-STANDING = next(one.scene for one in PROBLEMS if one.name == "isolated-standing")
+STANDING = next(each.scene for each in PROBLEMS if each.name == "isolated-standing")
 ENGINE, VARIANT = "pybullet", "fixed-step"
 
 
@@ -89,8 +89,8 @@ def test_errors_are_those_of_the_criterion():
         ("restitution", {"impacts": (hits[0], *hits[2:4])}, None),  # one is missed
         ("restitution", {"impacts": hits[1:4]}, None),
     ):
-        found = criteria.error(criterion, scene, replace(model, **changes), model)
-        assert found == (None if error is None else pytest.approx(error, rel=1e-6)), (criterion, changes)
+        result = criteria.error(criterion, scene, replace(model, **changes), model)
+        assert result == (None if error is None else pytest.approx(error, rel=1e-6)), (criterion, changes)
 
 
 def test_no_variant_is_chosen_by_a_restitution_that_the_scene_gives():
@@ -105,7 +105,7 @@ def test_the_cost_of_a_third_dimension_is_known_where_the_restitution_is_given(e
 
 
 @pytest.mark.parametrize(
-    "rows, asked, error, why",
+    "rows, permitted, error, why",
     [
         ((row(4e-4), row(4.9e-4)), (1e-3, "tilt"), 4.9e-4, None),
         ((row(4e-4), row(6e-4)), (1e-3, "tilt"), 6e-4, "less than 2 times below"),
@@ -117,9 +117,9 @@ def test_the_cost_of_a_third_dimension_is_known_where_the_restitution_is_given(e
         ((*[row(0.0)] * 7, row(1.0)), (0.12, "outcome"), 0.125, "error"),
     ],
 )
-def test_what_keeps_a_setting_from_passing(rows, asked, error, why):
-    found, words = problem(dict(enumerate(rows)), *asked)
-    assert found == error and (words is None if why is None else why in words)
+def test_what_keeps_a_setting_from_passing(rows, permitted, error, why):
+    result, words = problem(dict(enumerate(rows)), *permitted)
+    assert result == error and (words is None if why is None else why in words)
 
 
 class Made(Search):
@@ -143,7 +143,7 @@ FALLS = {"reason": "it fell"}
 
 
 @pytest.mark.parametrize(
-    "errors, whole, chosen, asked",
+    "errors, whole, chosen, run_there",
     [
         ((GOOD, GOOD, GOOD), None, 0, {0, 1, 2}),
         ((BAD, GOOD, GOOD), None, 1, {1, 2}),
@@ -155,11 +155,11 @@ FALLS = {"reason": "it fell"}
         ((GOOD, GOOD, GOOD), FALLS, None, {0, 1, 2}),
     ],
 )
-def test_the_cheapest_is_chosen_whose_finer_ones_pass_everywhere(errors, whole, chosen, asked):
+def test_the_cheapest_is_chosen_whose_finer_ones_pass_everywhere(errors, whole, chosen, run_there):
     made = Made(errors, whole)
     level, spent = made.cheapest(list(made.rows))
     assert (level, spent) == ((None, None) if chosen is None else ((ENGINE, VARIANT, made.levels[chosen]), 1.0))
-    assert made.asked == {made.levels[place] for place in asked}  # neighbours are run of hopeful levels only
+    assert made.asked == {made.levels[place] for place in run_there}  # neighbours are run of hopeful levels only
 
 
 @pytest.mark.slow
@@ -171,12 +171,12 @@ def test_a_choice_from_python_runs_what_it_names():
         duration=2.0,
         block={"slenderness": 0.2},
     )
-    found = choose(pulse, criterion="outcome", error=0.3, engines=[ENGINE], source="pulse.toml")
-    assert found.chosen is not None and found.chosen.error <= 0.3 and found.chosen.passes
-    assert found.command.startswith(f"rocking run pulse.toml --engine {ENGINE} --variant {found.chosen.variant}")
-    assert f'get_engine("{ENGINE}")' in found.snippet
-    assert {part.part: part.needed for part in found.parts}["base"] is False
-    assert found.model_dump(by_alias=True)["schema"] == "rocking choose 4"
+    choice = choose(pulse, criterion="outcome", error=0.3, engines=[ENGINE], source="pulse.toml")
+    assert choice.chosen is not None and choice.chosen.error <= 0.3 and choice.chosen.passes
+    assert choice.command.startswith(f"rocking run pulse.toml --engine {ENGINE} --variant {choice.chosen.variant}")
+    assert f'get_engine("{ENGINE}")' in choice.snippet
+    assert {part.part: part.needed for part in choice.parts}["base"] is False
+    assert choice.model_dump(by_alias=True)["schema"] == "rocking choose 4"
 
 
 @pytest.mark.parametrize(
@@ -214,8 +214,8 @@ def test_slip_is_compared_over_its_peak_and_its_restitution_is_not_that_of_eq_7(
 def test_whether_friction_is_needed_is_said_where_it_is_given():
     parts = {}
     for name, scene in {"slides": SLIDES, "holds": RIGID.with_(friction=0.9), "none": RIGID}.items():
-        found = criteria.model_parts(scene, {1.0: scene}, 1e-3, None, [], 1e-3)
-        parts[name] = {one.part: one for one in found}
+        result = criteria.model_parts(scene, {1.0: scene}, 1e-3, None, [], 1e-3)
+        parts[name] = {piece.part: piece for piece in result}
     assert parts["slides"]["sliding"].needed and "does not lift" in parts["slides"]["rocking"].why
     assert not parts["holds"]["sliding"].needed and "the friction 0.9" in parts["holds"]["sliding"].why
     assert "sliding" not in parts["none"]
@@ -231,5 +231,5 @@ def test_each_criterion_applies_or_is_refused_with_others_that_do(tmp_path, kind
             assert criteria.until(scene, criterion) > 0
         except SettingError as error:
             refused[criterion] = str(error).split("; choose one of ")[1].split(", ")
-    applies = [one for one in criteria.CRITERIA if one not in refused]
+    applies = [each for each in criteria.CRITERIA if each not in refused]
     assert criteria.fitting(scene) in applies and all(others == applies for others in refused.values())

@@ -51,11 +51,7 @@ def test_run_writes_csv_and_a_plot(rocking, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "engine",
-    [
-        pytest.param(name, marks=pytest.mark.slow if name == "exudyn" else pytest.mark.long)
-        for name, one in ENGINES.items()
-    ],
+    "engine", [pytest.param(name, marks=pytest.mark.slow if name == "exudyn" else pytest.mark.long) for name in ENGINES]
 )
 def test_json_of_an_engine_is_alone_too(engine):
     """In a new process: an engine may greet when it is loaded, or when C flushes its buffers at exit."""
@@ -67,8 +63,8 @@ def test_the_variant_that_tables_name_may_be_given(rocking):
     (status, out, _), (_, plain, _) = (
         rocking("run", "free-rocking-rigid", *more, "--json", "-") for more in (("--variant", "kernel"), ())
     )
-    given, own = (json.loads(text) for text in (out, plain))
-    assert (status, given["variant"], given["peak_tilt"]) == (0, "kernel", own["peak_tilt"])
+    given, default = (json.loads(text) for text in (out, plain))
+    assert (status, given["variant"], given["peak_tilt"]) == (0, "kernel", default["peak_tilt"])
 
 
 @pytest.mark.slow
@@ -141,17 +137,17 @@ def test_an_outcome_that_hangs_on_the_last_digits_is_said(rocking, tmp_path):
     block = "[block]\nmass = 3172.05\nradius = 1.0884\nslenderness = 0.2\n[start]\ntilt = "
     for tilt, hangs in (("0.1999999999", True), ("0.199", False)):
         _, out, _ = rocking("run", write_scene(tmp_path, block + tilt), "--json", "-")
-        assert hangs == any(one["quantity"] == "outcome" for one in json.loads(out)["warnings"])
+        assert hangs == any(warning["quantity"] == "outcome" for warning in json.loads(out)["warnings"])
 
 
-@pytest.mark.parametrize("variant, said", [("first-script", True), ("impact-aware", False)])
-def test_a_run_that_is_off_the_analytic_model_says_so(rocking, tmp_path, variant, said):
+@pytest.mark.parametrize("variant, differs", [("first-script", True), ("impact-aware", False)])
+def test_a_run_that_is_off_the_analytic_model_says_so(rocking, tmp_path, variant, differs):
     file = tmp_path / "run.json"
     _, out, _ = rocking("run", "free-rocking-rigid", "--engine", "pybullet", "--variant", variant, "--json", file)
-    told = json.loads(file.read_text())
-    assert told["comparable"] == "yes" and ("pybullet differs from the analytic model" in out) == said
-    found = {one["quantity"] for one in told["differences"]}
-    assert bool(found) == bool(found & {"restitution", "missing_impacts"}) == said
+    content = json.loads(file.read_text())
+    assert content["comparable"] == "yes" and ("pybullet differs from the analytic model" in out) == differs
+    quantities = {difference["quantity"] for difference in content["differences"]}
+    assert bool(quantities) == bool(quantities & {"restitution", "missing_impacts"}) == differs
 
 
 def test_failed_run_is_told_and_has_a_status_of_its_own(rocking, monkeypatch, tmp_path):
@@ -159,7 +155,7 @@ def test_failed_run_is_told_and_has_a_status_of_its_own(rocking, monkeypatch, tm
     failed = dataclasses.replace(
         simulate(load_scene("free-rocking-rigid"), history=False), engine="exudyn", outcome="failed", failure=failure
     )
-    monkeypatch.setattr("engines.get_engine", lambda name: SimpleNamespace(simulate=lambda scene, **_: failed))
+    monkeypatch.setattr(solving, "get_engine", lambda name: SimpleNamespace(simulate=lambda scene, **_: failed))
     picture = tmp_path / "x.png"
     status, out, err = rocking("run", "free-rocking-rigid", "--engine", "exudyn", "--json", "-", "--plot", picture)
     assert status == 1 and json.loads(out)["failure"]["reason"] == "Newton gave up"
@@ -172,7 +168,7 @@ def test_other_errors_are_not_hidden(monkeypatch):
     monkeypatch.setattr("analytic.simulate", lambda scene, *, history: 1 / 0)
     with pytest.raises(RuntimeError, match="the analytic model raised ZeroDivisionError: division by zero\nTraceback"):
         cli.main(["run", "free-rocking-rigid"])
-    monkeypatch.setattr("analytic.scene_file.load_scene", lambda path: 1 / 0)
+    monkeypatch.setattr("comparisons.commands.runs.load_scene", lambda path: 1 / 0)
     with pytest.raises(ZeroDivisionError):  # in the command: as it is
         cli.main(["run", "free-rocking-rigid"])
 
@@ -192,8 +188,8 @@ ODD_NAMES = ("$\\frac{1$", "[/red]", "a\nb\x1b[31mc", "é 石 \udcff", "x" * 500
 
 def named(folder, name):
     block = "[block]\nmass = 3172.05\nradius = 1.0884\nslenderness = 0.28\n[start]\ntilt = 0.1\n[run]\nduration = 0.5\n"
-    said = f"name = {json.dumps(name, ensure_ascii=False)}\n".encode(errors="replace").decode()
-    return write_scene(folder, said + block)
+    head = f"name = {json.dumps(name, ensure_ascii=False)}\n".encode(errors="replace").decode()
+    return write_scene(folder, head + block)
 
 
 @pytest.mark.parametrize("name", ODD_NAMES)
@@ -225,7 +221,7 @@ def test_warnings_and_undecided_outcomes_are_shown(rocking, monkeypatch, tmp_pat
         _, out, _ = rocking(*command, "free-rocking-rigid", "--json", tmp_path / "r.json")
         assert "undecided" in out and "(rocks so far)" in out and "Warning, analytic: N <= 0 [at 1 s]." in out
     result = json.loads((tmp_path / "r.json").read_text())
-    assert [one["text"] for one in result["warnings"]] == ["N <= 0 [at 1 s]."] and result["decided"] is False
+    assert [warning["text"] for warning in result["warnings"]] == ["N <= 0 [at 1 s]."] and result["decided"] is False
 
 
 FREE_BASE = "Warning: No friction is modelled under the base, and it has no bearings"
@@ -244,9 +240,9 @@ tilt = 0.1
 @pytest.mark.parametrize("bearings", ["", "[bearings]\nlaw = 'linear'\nka = 2e4\n"], ids=["free", "borne"])
 @pytest.mark.parametrize("command", [("run",), ("compare", "--engine", "pybullet"), ("margin",)], ids=" ".join)
 def test_a_base_that_nothing_holds_is_said_first_and_once(rocking, tmp_path, command, bearings):
-    file, said = write_scene(tmp_path, ON_BASE + bearings), not bearings
+    file, is_free = write_scene(tmp_path, ON_BASE + bearings), not bearings
     status, out, err = rocking(command[0], file, *command[1:])
-    assert status == 0 and out.startswith(FREE_BASE) == said and out.count("No friction is modelled") == said, err
+    assert status == 0 and out.startswith(FREE_BASE) == is_free and out.count("No friction is modelled") == is_free, err
 
 
 CALM = 0.27  # scale at which it peaks at six tenths of uplift
@@ -259,14 +255,16 @@ SENTENCE = "The outcome is sensitive to changes of the motion below 5%: the bloc
 def test_what_little_of_the_motion_changes_is_said_last_and_once_and_only_where_it_is_so(
     rocking, tmp_path, command, scale
 ):
-    file, found = write_scene(tmp_path, BRONZE.format(scale=scale)), tmp_path / "found.json"
-    status, out, err = rocking(command[0], file, *command[1:], "--json", found)
+    file, json_file = write_scene(tmp_path, BRONZE.format(scale=scale)), tmp_path / "found.json"
+    status, out, err = rocking(command[0], file, *command[1:], "--json", json_file)
     assert status == 0, err
     *_, last = (line for line in out.splitlines() if line.strip())
     assert (SENSITIVE in out) == (last == SENTENCE) == (scale == CLIFF) and out.count(SENSITIVE) < 2
-    told = json.loads(found.read_text())
-    warnings = [one for one in told.get("responses", [told])[0]["warnings"] if one["kind"] == "motion"]
-    assert [(one["quantity"], one["limit"]) for one in warnings] == [("outcome", 0.05)] * (scale == CLIFF)
+    content = json.loads(json_file.read_text())
+    warnings = [
+        warning for warning in content.get("responses", [content])[0]["warnings"] if warning["kind"] == "motion"
+    ]
+    assert [(warning["quantity"], warning["limit"]) for warning in warnings] == [("outcome", 0.05)] * (scale == CLIFF)
 
 
 def test_help_shows_every_command_in_one_group_with_a_line_and_an_example(rocking):
@@ -277,7 +275,19 @@ def test_help_shows_every_command_in_one_group_with_a_line_and_an_example(rockin
     for name in group.list_commands(None):
         status, out, _ = rocking(name, "--help")
         assert status == 0 and f"Example: rocking {name}" in " ".join(out.split())
-        assert len(group.get_command(None, name).get_short_help_str(200).split()) >= 2
+
+
+@pytest.mark.parametrize("words", [(), ("study",), ("lessons",)], ids=" ".join)
+def test_no_line_of_a_list_of_commands_is_cut_at_80_columns(rocking, monkeypatch, words):
+    monkeypatch.setenv("COLUMNS", "80")
+    group, out = typer.main.get_command(app), rocking(*words, "--help")[1]
+    for word in words:
+        group = group.get_command(None, word)
+    for name in group.list_commands(None):
+        line = group.get_command(None, name).get_short_help_str(1000)
+        assert 8 < len(line) <= commands.SHORT and line.endswith("."), (name, line)
+        assert any(shown.split() == [name, *line.split()] for shown in out.splitlines()), (name, out)
+    assert "..." not in out.partition(":\n")[2]
 
 
 BUST = ("--height", 1.9, "--width", 0.55, "--material", "marble")
@@ -329,21 +339,23 @@ def test_a_restitution_that_is_given_is_kept_by_the_engine_or_costs_its_row(
     block = f"[block]\nmass = 100.0\nradius = 1.0\nslenderness = 0.25\nrestitution = {given}\n"
     file.write_text(block + ground + "[start]\ntilt = 0.1\n[run]\nduration = 2.0\n")
     status, out, err = rocking("compare", file, "--engine", engine, "--json", "-", "--plot", tmp_path / "c.png")
-    model, found = json.loads(out)["responses"]
+    model, result = json.loads(out)["responses"]
     assert status == 0 and model["outcome"] == "rocks" and (tmp_path / "c.png").read_bytes().startswith(PNG)
-    ratios = [impact["rate_after"] / impact["rate_before"] for impact in found["impacts"][:2]]
+    ratios = [impact["rate_after"] / impact["rate_before"] for impact in result["impacts"][:2]]
     if kept:
         assert ratios == pytest.approx([given] * 2, rel=1e-3)
-        assert not found["differences"] and "restitution given" in found["warnings"][-1]["text"]
+        assert not result["differences"] and "restitution given" in result["warnings"][-1]["text"]
     else:
-        assert f"block.restitution = {given}" in found["failure"]["message"] and f"{engine} failed" in err
+        assert f"block.restitution = {given}" in result["failure"]["message"] and f"{engine} failed" in err
 
 
-@pytest.mark.parametrize("start, said", [("", []), ("base_velocity = 0.2\n", ["model"])])
-def test_a_base_that_nothing_moves_slides_nowhere(rocking, tmp_path, start, said):
+@pytest.mark.parametrize("start, kinds", [("", []), ("base_velocity = 0.2\n", ["model"])])
+def test_a_base_that_nothing_moves_slides_nowhere(rocking, tmp_path, start, kinds):
     """Review A12: it was said to slide on at -4e-15 m/s."""
     block = "[block]\nmass = 100.0\nradius = 1.0\nslenderness = 0.25\n[base]\nmass = 50.0\n[start]\ntilt = 0.1\n"
     (tmp_path / "base.toml").write_text(block + start)
     base, *warnings = json.loads(rocking("run", tmp_path / "base.toml", "--json", "-")[1])["warnings"]
     assert base["text"].startswith("No friction is modelled under the base")
-    assert [one["kind"] for one in warnings] == said and all("slides on at" in one["text"] for one in warnings)
+    assert [warning["kind"] for warning in warnings] == kinds and all(
+        "slides on at" in warning["text"] for warning in warnings
+    )

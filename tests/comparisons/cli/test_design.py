@@ -41,12 +41,12 @@ synthetic = "duzce-like"
     ],
 )
 def test_the_scene_it_writes_does_not_lift_and_stays_within_the_stroke(rocking, tmp_path, text, name, added):
-    file, found = tmp_path / "a bust.toml", tmp_path / "found.json"
+    file, json_file = tmp_path / "a bust.toml", tmp_path / "found.json"
     file.write_text(text, encoding="utf-8")
-    options = ("--write", name, "--json", found, "--plot", tmp_path / "b.svg")
+    options = ("--write", name, "--json", json_file, "--plot", tmp_path / "b.svg")
     status, out, err = rocking("design", file, "--stroke", "0.2", *added, *options)
     assert status == 0 and f"written into {file}" in out and (tmp_path / "b.svg").stat().st_size > 1000, err
-    scene, form = load_scene(file), json.loads(found.read_text())
+    scene, form = load_scene(file), json.loads(json_file.read_text())
     response, chosen = simulate(scene, history=False), form["chosen"][name]
     assert response.outcome == "stands" and chosen["lifts"] == 0
     assert chosen["stroke"] == response.peak_base_displacement <= scene.bearings.x_max == 0.2
@@ -98,12 +98,12 @@ def test_of_the_nearest_bearings_it_says_which_limit_is_exceeded_and_under_which
     scan = BearingScan(periods, dampings, np.array([[3.0, 3.0], [3.0, 2.0]]), np.full((2, 2), 0.1), designs)
     words = nothing_holds(scene, scan, stroke, tilt, motions)
     held = scene.with_(bearings=scan.bearings(2.0, 0.2), duration=None, friction=None)  # it does not slide
-    found = {
+    by_name = {
         (name, motion.label): over(scene, simulate(held.with_(motion=motion), history=False), stroke, tilt)
         for motion in motions
         for name, over in LIMITS.items()
     }
-    (name, label), most = max(found.items(), key=lambda one: one[1])
+    (name, label), most = max(by_name.items(), key=lambda pair: pair[1])
     assert name == limit and f"Nearest: 2 s with 0.2 of critical damping: {limit} by {percent(most - 1)} " in words
     assert f" under {label}. The base moves by up to 0.1 m of {stroke:g}." in words
 

@@ -145,11 +145,11 @@ def test_an_interrupted_study_or_report_says_what_is_kept_and_goes_on_from_there
 
 
 def test_nothing_is_said_of_runs_that_are_gone_or_not_yet_there(tmp_path, monkeypatch):
-    store, said = tmp_path / "runs.jsonl", []
+    store, messages = tmp_path / "runs.jsonl", []
     monkeypatch.setattr(study, "_stored", store)
     for text in ("", "{", "{}\n{", "{}\n{}\n"):  # a line that is not whole is no run
         store.write_text(text)
-        said.append(study.kept())
-    assert said == ["", "", *(kept(store, count).removeprefix("Interrupted. ").rstrip() for count in (1, 2))]
+        messages.append(study.kept())
+    assert messages == ["", "", *(kept(store, count).removeprefix("Interrupted. ").rstrip() for count in (1, 2))]
     store.unlink()
     assert study.kept() == ""

@@ -47,9 +47,9 @@ def test_pages_lead_to_nothing_outside(rocking, tmp_path, monkeypatch):
     status, out, err = rocking("lessons", "export", "--output", tmp_path / "pages")
     assert status == 0 and out.strip() == str(tmp_path / "pages" / "index.html")
     assert err.startswith("8 lessons\n")  # said as it begins, as it takes long
-    found = list((tmp_path / "pages").glob("*.html"))
-    assert len(found) == 5
-    for file in found:
+    pages = list((tmp_path / "pages").glob("*.html"))
+    assert len(pages) == 5
+    for file in pages:
         leads = re.findall(r"""(?:src|href)=["']([^"']+)""", file.read_text(encoding="utf-8"))
         beside = [lead.split("#")[0] for lead in leads if not lead.startswith(("data:", "#"))]
         assert [lead for lead in beside if not (tmp_path / "pages" / lead).exists()] == []

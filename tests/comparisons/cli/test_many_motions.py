@@ -79,8 +79,10 @@ def test_every_motion_has_its_row_as_a_run_of_its_own_finds_it_and_each_record_c
     assert status == 0 and [row["record"] for row in rows] == records and f"of {count} (" in answer["headline"]
     assert ("mirrored the same" in err) == (options == SIGNS) and len(answer["left_out"]) == 1 + left
     assert "notes.txt: left out" in err and all(line in err for line in answer["left_out"])
-    own, *_ = rows
-    assert own["outcome"] == simulate(scene, history=False).outcome and own["peak"] == pytest.approx(scene.motion.peak)
+    own_row, *_ = rows
+    assert own_row["outcome"] == simulate(scene, history=False).outcome and own_row["peak"] == pytest.approx(
+        scene.motion.peak
+    )
     for row in rows[1:]:
         if row["motion"] in PEAKS:
             samples = np.round(PEAKS[row["motion"]] * np.sin(6 * TIME), 8)
@@ -91,14 +93,14 @@ def test_every_motion_has_its_row_as_a_run_of_its_own_finds_it_and_each_record_c
 
 def test_the_page_reads_a_folder_by_the_unit_given(rocking, folder, monkeypatch):
     """It was said to belong to a record of its own."""
-    found = {}
-    monkeypatch.setattr("comparisons.report.runs.make_own_results", lambda *_, motions, **__: found.update(motions))
+    by_name = {}
+    monkeypatch.setattr("comparisons.report.runs.make_own_results", lambda *_, motions, **__: by_name.update(motions))
     monkeypatch.setattr("comparisons.report.write.write_page", lambda *_: 1 / 0)
     for file in folder.glob("*.csv"):
         file.write_text(file.read_text().replace("a [m/s2]", "a"))
     with pytest.raises(ZeroDivisionError):
         rocking("report", "caryatid-rigid", "--records", folder, "--units", "g", "--output", folder.parent / "page")
-    weak = found["caryatid-rigid"]["weak.csv"][0]
+    weak = by_name["caryatid-rigid"]["weak.csv"][0]
     assert weak.peak == pytest.approx(0.1 * 9.80665, rel=1e-3)
 
 
@@ -143,10 +145,10 @@ def test_ten_times_a_weak_motion_does_not_lift_the_block(rocking, folder):
 
 def test_margin_tells_what_is_reached_now_from_what_a_change_reaches(rocking, folder):
     _, out, _ = rocking("margin", "caryatid-rigid", "--records", folder, "--json", folder.parent / "found.json")
-    told = json.loads((folder.parent / "found.json").read_text())["motions"]
-    strong = next(row for row in told if row["motion"] == "A000.csv")
+    shown = json.loads((folder.parent / "found.json").read_text())["motions"]
+    strong = next(row for row in shown if row["motion"] == "A000.csv")
     assert strong["outcome"] == "overturns" and strong["reached"] == ["lifts", "tilt", "overturns"]
-    table, kept = out[out.index("[g]") :], [row["changes"][state] for row in told for state in row["reached"]]
+    table, kept = out[out.index("[g]") :], [row["changes"][state] for row in shown for state in row["reached"]]
     assert (table.count("no longer"), table.count(" now ")) == (len(kept) - kept.count(None), kept.count(None))
     assert 0 < kept.count(None) < len(kept)
 
@@ -215,7 +217,7 @@ def test_margin_of_a_friction_says_where_the_block_slides(rocking, tmp_path):
     assert "Nearest change of the outcome: friction -1.98 %, the block then slides." in words
     assert "quantity value slides lifts > 0.5 γ" in words and "friction 0.26 -1.98 %" in words
     assert "The friction demand is 0.255, the scene's coefficient 0.26." in words
-    nearest = next(one for one in content["margins"] if one["quantity"] == "friction")
+    nearest = next(each for each in content["margins"] if each["quantity"] == "friction")
     assert nearest["nearest"] == pytest.approx(2.5 / 9.81 / 0.26 - 1, abs=1e-7)
     assert [band["outcome"] for band in nearest["bands"]] == ["slides", "stands"]
 
@@ -249,7 +251,7 @@ def test_margin_says_what_changes_a_limit_state_and_when_nothing_does(rocking, t
 def test_every_limit_state_has_its_column_and_the_widest_numbers_fit(capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "80")
     scene = load_scene("caryatid-isolated")
-    found = Margin(
+    result = Margin(
         "yield force",
         1.2345e-11,
         "kg",
@@ -260,7 +262,7 @@ def test_every_limit_state_has_its_column_and_the_widest_numbers_fit(capsys, mon
             Band(1.2345, 9.0, ("lifts", "tilt", "stroke", "overturns"), True),
         ),
     )
-    print_margins(scene, [found], Contact.of(scene, simulate(scene.with_(duration=None), history=False)), 900.0, 0.25)
+    print_margins(scene, [result], Contact.of(scene, simulate(scene.with_(duration=None), history=False)), 900.0, 0.25)
     shown = capsys.readouterr().out
     assert max(map(len, shown.splitlines())) <= 80 and "…" not in shown and "now: lifts\n" in shown
     words = " ".join(shown.split())
@@ -268,18 +270,18 @@ def test_every_limit_state_has_its_column_and_the_widest_numbers_fit(capsys, mon
     assert "yield force 1.2345e-11 kg -0.123 % -0.123 % -0.123 % +123 % -12.3 %" in words
 
 
-@pytest.mark.parametrize("least, said", [(0.9996, False), (0.98, True)])
-def test_a_normal_force_that_does_not_fall_is_not_said_to(least, said, capsys):
+@pytest.mark.parametrize("least, is_shown", [(0.9996, False), (0.98, True)])
+def test_a_normal_force_that_does_not_fall_is_not_said_to(least, is_shown, capsys):
     scene = Scene(block=BLOCK, motion=PulseMotion("one-sine", 0.5 * THRESHOLD, 7.8))
     print_margins(scene, margins(scene, span=0.01, step=0.01), Contact(least, 0.1, None), 1.0, 0.5)
-    assert ("The normal force falls to" in " ".join(capsys.readouterr().out.split())) == said
+    assert ("The normal force falls to" in " ".join(capsys.readouterr().out.split())) == is_shown
 
 
 def test_interleaved_outcomes_are_said(capsys):
     scene = Scene(block=BLOCK, motion=PulseMotion("one-sine", 1.1 * GAP * THRESHOLD, 7.8))
     for step, interleaved in ((0.04, True), (0.01, False)):
-        found = [margin for margin in margins(scene, span=0.16, step=step) if margin.quantity == "motion"]
-        print_margins(scene, found, Contact.of(scene, simulate(scene.with_(duration=None), history=False)), 16.0, 0.5)
+        results = [margin for margin in margins(scene, span=0.16, step=step) if margin.quantity == "motion"]
+        print_margins(scene, results, Contact.of(scene, simulate(scene.with_(duration=None), history=False)), 16.0, 0.5)
         words = " ".join(capsys.readouterr().out.split())
         assert ("The outcomes are interleaved in motion: bands narrower than 8 % alternate" in words) == interleaved
 

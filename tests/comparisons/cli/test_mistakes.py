@@ -204,25 +204,25 @@ def ended(rocking, arguments):
     return status, out + err
 
 
-def told(status, text):
+def one_message(status, text):
     """Answered, or refused by one message without a traceback; two numbers of a block or bearings take a line each."""
     lines = [line for line in text.splitlines() if line.strip() and not line.startswith(("Usage:", "Try '"))]
     return status in (0, 1) or status == 2 and len(lines) in (1, 2) and max(map(len, lines)) < 800
 
 
-@pytest.mark.parametrize("base, option", CASES, ids=lambda one: one if isinstance(one, str) else " ".join(one)[:40])
+@pytest.mark.parametrize("base, option", CASES, ids=lambda case: case if isinstance(case, str) else " ".join(case)[:40])
 def test_an_odd_number_is_taken_or_refused_in_one_message(rocking, place, base, option):
     for number, value in enumerate(VALUES):
         arguments = [f"new{number}.toml" if word == "NEW" else word for word in base]
         status, text = ended(rocking, [*arguments, option, value])
-        assert "Traceback" not in text and told(status, text), (option, value, status, text)
+        assert "Traceback" not in text and one_message(status, text), (option, value, status, text)
 
 
 @pytest.mark.parametrize("command, words", MISTAKES.items())
 def test_a_mistake_is_one_message_that_names_it(rocking, place, command, words):
     before = sorted(place.iterdir())
     status, out, err = rocking(*command.replace("NEW", "new.toml").split())
-    assert (status, out) == (2, "") and told(status, err) and "Traceback" not in err
+    assert (status, out) == (2, "") and one_message(status, err) and "Traceback" not in err
     assert words in " ".join(err.split())
     assert sorted(place.iterdir()) == before
 
@@ -234,7 +234,7 @@ def test_absurd_settings_are_refused(rocking, solver, value):
     if solver != "analytic":
         name = get_engine(solver).variants[get_engine(solver).default_variant].accuracy_parameter
     status, out, err = rocking(*RIGID.split(), "--engine", solver, "--set", f"{name}={value}")
-    assert (status, out) == (2, "") and told(status, err) and name in err
+    assert (status, out) == (2, "") and one_message(status, err) and name in err
 
 
 @pytest.mark.parametrize("kind", ["pipe", "/dev/zero", "folder"])
@@ -243,7 +243,7 @@ def test_a_pipe_a_device_and_a_folder_are_refused(rocking, place, arguments, kin
     os.mkfifo(place / "pipe")
     (place / "folder").mkdir()
     status, text = ended(rocking, [{"FILE": kind, "NEW": "new.toml"}.get(word, word) for word in arguments])
-    assert status == 2 and told(status, text), text
+    assert status == 2 and one_message(status, text), text
 
 
 WORDS = (

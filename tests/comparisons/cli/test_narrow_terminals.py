@@ -66,13 +66,13 @@ def printed(table, width):
     console = Console(file=io.StringIO(), width=width, highlight=False)
     console.print(table)
     text, _, more = console.file.getvalue().partition("A terminal of")
-    found = MORE.match(" ".join(f"A terminal of{more}".split())) if more else None
-    assert bool(found) == bool(more)
-    return text.splitlines(), found and (int(found[1]), found[2].split(", "))
+    result = MORE.match(" ".join(f"A terminal of{more}".split())) if more else None
+    assert bool(result) == bool(more)
+    return text.splitlines(), result and (int(result[1]), result[2].split(", "))
 
 
 @pytest.mark.parametrize(
-    "command", [pytest.param(one, marks=getattr(pytest.mark, DEAR[one]) if one in DEAR else ()) for one in COMMANDS]
+    "command", [pytest.param(each, marks=getattr(pytest.mark, DEAR[each]) if each in DEAR else ()) for each in COMMANDS]
 )
 def test_numbers_are_whole_and_what_is_left_out_is_named(rocking, place, monkeypatch, command):
     shown = []

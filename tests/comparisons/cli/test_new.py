@@ -124,16 +124,18 @@ def test_new_overwrites_nothing(rocking, tmp_path):
     assert status == 2 and "exists" in err and file.read_text() == "mine"
 
 
-@pytest.mark.parametrize("asked", ["--damping 0.15", "--damping 0.3 --definition paper"])
-def test_what_was_asked_for_is_in_the_json_in_the_sense_of_its_row(rocking, tmp_path, asked):
-    design = f"--base-mass 400 --period 2 --xmax 0.2 --ratio 20 {asked}".split()
-    told = json.loads(rocking("new", tmp_path / "bust.toml", *BUST, *design, "--json", "-")[1])
-    scene, rows = load_scene(tmp_path / "bust.toml"), told["derived"]
+@pytest.mark.parametrize("design_options", ["--damping 0.15", "--damping 0.3 --definition paper"])
+def test_what_was_asked_for_is_in_the_json_in_the_sense_of_its_row(rocking, tmp_path, design_options):
+    design = f"--base-mass 400 --period 2 --xmax 0.2 --ratio 20 {design_options}".split()
+    content = json.loads(rocking("new", tmp_path / "bust.toml", *BUST, *design, "--json", "-")[1])
+    scene, rows = load_scene(tmp_path / "bust.toml"), content["derived"]
     assert scene.bearings.ka / scene.bearings.kb == pytest.approx(20, rel=1e-5)
-    asked = {row["name"]: (row["asked"], row["value"]) for row in rows if row["asked"] is not None}
-    assert set(asked) == {"secant period at x_max", "equivalent damping at x_max"}
-    assert asked["equivalent damping at x_max"][0] == 0.15
-    assert [value for _, value in asked.values()] == pytest.approx([wanted for wanted, _ in asked.values()], rel=1e-3)
+    targets = {row["name"]: (row["asked"], row["value"]) for row in rows if row["asked"] is not None}
+    assert set(targets) == {"secant period at x_max", "equivalent damping at x_max"}
+    assert targets["equivalent damping at x_max"][0] == 0.15
+    assert [value for _, value in targets.values()] == pytest.approx(
+        [wanted for wanted, _ in targets.values()], rel=1e-3
+    )
 
 
 def test_the_script_and_its_record_are_written(rocking, tmp_path):
@@ -182,5 +184,10 @@ def test_the_sheet_and_its_answers_are_written(rocking, tmp_path):
         status == 0 and content["files"] == out.splitlines() and all(Path(file).exists() for file in content["files"])
     )
     for written, problem in zip(content["problems"], PROBLEMS, strict=True):
-        asked = [(one["quantity"], one["answer"], one["tolerance"]) for one in written["quantities"]]
-        assert asked == [(one.name, problem.answers[one.name], problem.tolerance(one)) for one in problem.quantities]
+        questions = [
+            (quantity["quantity"], quantity["answer"], quantity["tolerance"]) for quantity in written["quantities"]
+        ]
+        assert questions == [
+            (quantity.name, problem.answers[quantity.name], problem.tolerance(quantity))
+            for quantity in problem.quantities
+        ]

@@ -25,8 +25,8 @@ def test_every_channel_is_shown_drawn_and_written(rocking, tmp_path, three_chann
     assert status == 0 and "made-up.v2: CSMIP volume 2" in out and picture.stat().st_size > 10_000
     rows = [line.split() for line in out.splitlines() if "(" in line]
     assert [row[:3] for row in rows] == [["1", "(90", "Deg)"], ["2", "(Up)", "cm/sec2"], ["3", "(H1)", "cm/sec2"]]
-    found = json.loads(file.read_text())["channels"][1]
-    assert (found["peak"], found["peak_time"], found["duration"]) == pytest.approx((3.0, 0.02, 0.055))
+    result = json.loads(file.read_text())["channels"][1]
+    assert (result["peak"], result["peak_time"], result["duration"]) == pytest.approx((3.0, 0.02, 0.055))
 
 
 def test_one_channel_is_written_as_columns_that_are_read_back(rocking, tmp_path, three_channels):
@@ -61,11 +61,11 @@ def test_a_record_is_read_in_its_unit_and_the_value_of_g_is_said(rocking, tmp_pa
     path = tmp_path / "own.csv"
     path.write_text(f"t [s],a [{unit}]\n" + "".join(f"{0.01 * i:.2f},{a}\n" for i, a in enumerate(VALUES)))
     status, out, _ = rocking("record", path, "--json", tmp_path / "found.json")
-    (found,) = json.loads((tmp_path / "found.json").read_text())["channels"]
+    (result,) = json.loads((tmp_path / "found.json").read_text())["channels"]
     assert status == 0 and ("with g = 9.81 m/s2; other programs take 9.80665" in " ".join(out.split())) == (
         unit in ("g", "mg", "%g")
     )
-    assert found["peak"] == pytest.approx(IN_UNITS[unit] * np.abs(VALUES).max())
+    assert result["peak"] == pytest.approx(IN_UNITS[unit] * np.abs(VALUES).max())
 
 
 def test_what_the_file_does_not_say_is_asked_for_and_taken(rocking, tmp_path):
@@ -83,6 +83,6 @@ def test_spectrum_is_that_of_the_equation_of_motion():
     """A long harmonic motion makes an oscillator in resonance swing 1/(2 zeta) times as far as a force at rest."""
     period = PERIODS[70]
     dt = period / 100
-    found = spectrum(SampledMotion(dt, np.sin(2 * np.pi * dt / period * np.arange(6000))))
-    assert found[70] == pytest.approx(1 / (2 * DAMPING), rel=2e-3)
-    assert 1 < found[0] < 1 + PERIODS[0] / period  # a stiff one moves with the ground, but for its own start
+    result = spectrum(SampledMotion(dt, np.sin(2 * np.pi * dt / period * np.arange(6000))))
+    assert result[70] == pytest.approx(1 / (2 * DAMPING), rel=2e-3)
+    assert 1 < result[0] < 1 + PERIODS[0] / period  # a stiff one moves with the ground, but for its own start

@@ -125,18 +125,20 @@ def shown(words, out):
 
 def all_is_told(warnings, out):
     """Of each quantity that is warned of, one sentence is printed."""
-    told = {}
-    for one in warnings:
-        about = one["kind"], one["quantity"] or one["text"]
-        told[about] = told.get(about, False) or shown(one["text"], out)
-    assert all(told.values()), told
+    by_name = {}
+    for warning in warnings:
+        about = warning["kind"], warning["quantity"] or warning["text"]
+        by_name[about] = by_name.get(about, False) or shown(warning["text"], out)
+    assert all(by_name.values()), by_name
 
 
 def differences_are_told(response, out):
-    assert all(shown(str(Difference(**one)), out) for one in response["differences"]), response["differences"]
+    assert all(shown(str(Difference(**difference)), out) for difference in response["differences"]), response[
+        "differences"
+    ]
 
 
-def asked(names):
+def engine_options(names):
     return [word for name in names for word in ("--engine", name)]
 
 
@@ -144,10 +146,14 @@ def motions_are_told(answer, out, count):
     """Each motion has its row, its warnings, and the headline what they come to."""
     rows = answer["motions"]
     assert len({row["record"] for row in rows}) == count
-    all_is_told([one for row in rows for one in row["warnings"]], out)
+    all_is_told([warning for row in rows for warning in row["warnings"]], out)
     assert shown(answer["headline"], out)
     assert (f"Left out of the folder: {LEFT} files or channels." in out) == bool(LEFT)
-    beyond = {row["record"] for row in rows if "peak_base_displacement" in [one["quantity"] for one in row["warnings"]]}
+    beyond = {
+        row["record"]
+        for row in rows
+        if "peak_base_displacement" in [warning["quantity"] for warning in row["warnings"]]
+    }
     unit = "motion" if OWN in {row["record"] for row in rows} else "record"
     assert (f"the base exceeds x_max under {len(beyond)} of {count} {unit}" in answer["headline"]) == bool(beyond)
     for row in rows:
@@ -178,13 +184,15 @@ def test_run(road, kind):
 @pytest.mark.parametrize("kind", KINDS)
 def test_compare(road, kind):
     """Each lie is found wherever the scene lets it show, and printed."""
-    status, answer, out, _ = road("compare", kind, *asked([*LIES, "close"]))
+    status, answer, out, _ = road("compare", kind, *engine_options([*LIES, "close"]))
     assert status == 0
-    assert [one["engine"] for one in answer["responses"]] == ["analytic", *LIES, "close"]
+    assert [response["engine"] for response in answer["responses"]] == ["analytic", *LIES, "close"]
     for response in answer["responses"]:
         all_is_told(response["warnings"], out)
         differences_are_told(response, out)
-    found = {one["engine"]: {each["quantity"] for each in one["differences"]} for one in answer["responses"]}
+    by_name = {
+        response["engine"]: {each["quantity"] for each in response["differences"]} for response in answer["responses"]
+    }
     model = answer["responses"][0]
     judged = answer["responses"][1]["comparable"] in JUDGED
     falls = KINDS[kind][1] == "overturns"
@@ -199,21 +207,23 @@ def test_compare(road, kind):
         "lying": falls,
         "restitution": model["impact_count"] > 0,
     }
-    assert {name: bool(found[name]) for name in where} == {name: judged and shows for name, shows in where.items()}
+    assert {name: bool(by_name[name]) for name in where} == {name: judged and shows for name, shows in where.items()}
 
 
 @pytest.mark.parametrize("kind", [pytest.param("overturns", marks=pytest.mark.slow), "slides on bearings"])
 def test_compare_with_engines_that_fail(road, monkeypatch, kind):
     """Each failure costs its row: the others stand, and the reason is said."""
     monkeypatch.setattr(guard, "run_apart", APART)
-    status, answer, out, err = road("compare", kind, *asked(FAULTS), "--time-limit", 3)
+    status, answer, out, err = road("compare", kind, *engine_options(FAULTS), "--time-limit", 3)
     assert status == 0
-    found = {one["engine"]: one for one in answer["responses"]}
-    assert [name for name, one in found.items() if one["failure"]] == [name for name in FAULTS if name not in SOUND]
-    for name, one in found.items():
-        assert not one["failure"] or f"{name} failed: {one['failure']['reason']}" in err
-        differences_are_told(one, out)
-    assert not found["honest"]["differences"] and found["nan"]["differences"]
+    by_name = {response["engine"]: response for response in answer["responses"]}
+    assert [name for name, response in by_name.items() if response["failure"]] == [
+        name for name in FAULTS if name not in SOUND
+    ]
+    for name, response in by_name.items():
+        assert not response["failure"] or f"{name} failed: {response['failure']['reason']}" in err
+        differences_are_told(response, out)
+    assert not by_name["honest"]["differences"] and by_name["nan"]["differences"]
     assert "Newton did not converge" in err and "--time-limit allows more" in err and "not in this engine" in err
 
 
@@ -225,8 +235,11 @@ def test_the_status_of_compare_is_that_of_the_model(road, monkeypatch, fails, en
             replace, outcome="failed", decided=False, failure=Failure("it gave up", "at 1 s"), history=None
         )
         monkeypatch.setattr(solving, "_analytic", lambda scene, *_: failed(simulate(scene, history=False)))
-    status, answer, _, err = road("compare", "rocks", *asked([engine]))
-    assert status == int(fails) and [bool(one["failure"]) for one in answer["responses"]] == [fails, engine != "honest"]
+    status, answer, _, err = road("compare", "rocks", *engine_options([engine]))
+    assert status == int(fails) and [bool(response["failure"]) for response in answer["responses"]] == [
+        fails,
+        engine != "honest",
+    ]
     assert ("analytic failed: it gave up" in err) == fails
 
 
@@ -234,16 +247,18 @@ def test_the_status_of_compare_is_that_of_the_model(road, monkeypatch, fails, en
 def test_compare_runs_the_model_first_and_each_engine_once_or_all_that_are_installed(road, words, compared):
     del ENGINES["hangs"]
     ENGINES["raises"] = replace(ENGINES["raises"], package="no_such_package", adapter="no_such_package")
-    status, answer, _, _ = road("compare", "stands", *asked(words))
-    assert status == 0 and [one["engine"] for one in answer["responses"]] == ["analytic", *compared]
+    status, answer, _, _ = road("compare", "stands", *engine_options(words))
+    assert status == 0 and [response["engine"] for response in answer["responses"]] == ["analytic", *compared]
 
 
 def test_every_kind_of_difference_occurs(road):
-    found = set()
+    names = set()
     for kind in ("slender", "slides", "overturns after an impact"):
-        _, answer, _, _ = road("compare", kind, *asked(LIES))
-        found.update(one["quantity"] for response in answer["responses"] for one in response["differences"])
-    assert found == set(DIFFERENCES)
+        _, answer, _, _ = road("compare", kind, *engine_options(LIES))
+        names.update(
+            difference["quantity"] for response in answer["responses"] for difference in response["differences"]
+        )
+    assert names == set(DIFFERENCES)
 
 
 @pytest.mark.parametrize("kind", half(1))
@@ -251,10 +266,10 @@ def test_margin(road, kind):
     status, answer, out, _ = road("margin", kind, "--records", "records", "--units", "m/s2")
     assert status == some_failed(answer["motions"])
     assert answer["outcome"] == KINDS[kind][1] or kind == "undecided"
-    for one in answer["margins"]:
+    for each in answer["margins"]:
         for way in ("ends_down", "ends_up"):
-            assert shown(one[way], out)
-        lows, highs = [band["low"] for band in one["bands"]], [band["high"] for band in one["bands"]]
+            assert shown(each[way], out)
+        lows, highs = [band["low"] for band in each["bands"]], [band["high"] for band in each["bands"]]
         assert lows[1:] == highs[:-1] and (lows[0] <= 0 <= highs[-1])
     all_is_told(answer["warnings"], out)
     motions_are_told(answer, out, counted(kind))
@@ -264,18 +279,18 @@ def design(road, kind, *words):
     """The answer of the command and what it prints, the same in JSON."""
     added = () if "[base]" in KINDS[kind][0] else ("--base-mass", 200)
     status, answer, out, _ = road("design", kind, "--stroke", 0.3, *added, *words)
-    assert status == some_failed(row for one in answer["chosen"].values() for row in one["motions"])
-    all_is_told([one for row in answer["motions"] for one in row["warnings"]] + answer["warnings"], out)
-    held = [one for row in answer["holds"] for one in row]
+    assert status == some_failed(row for proposal in answer["chosen"].values() for row in proposal["motions"])
+    all_is_told([warning for row in answer["motions"] for warning in row["warnings"]] + answer["warnings"], out)
+    held = [cell for row in answer["holds"] for cell in row]
     assert bool(answer["chosen"]) == any(held) and ("bearings of" in out)
     assert any(held) or "no bearings" in out
     scene = load_scene("scene.toml")
     for proposal in answer["chosen"].values():
         bearings = Bearings(**{name: value for name, value in proposal["bearings"].items() if value is not None})
         isolated = scene.with_(base=Base(mass=answer["base_mass"]), bearings=bearings)
-        found = properties(bearings, isolated.total_mass, answer["stroke"])
+        result = properties(bearings, isolated.total_mass, answer["stroke"])
         wanted = [proposal["period"], proposal["damping"]]
-        assert [found.period, found.damping_equivalent] == pytest.approx(wanted, rel=1e-3)
+        assert [result.period, result.damping_equivalent] == pytest.approx(wanted, rel=1e-3)
         if scene.motion:  # as a run on these bearings has it
             moved = simulate(isolated, history=False).peak_base_displacement
             assert min(abs(row["stroke"] / moved - 1) for row in proposal["motions"]) < 1e-9
@@ -317,16 +332,17 @@ CHOSEN = {
 def test_choose(road, kind):
     """The honest engine has no error and is chosen; the error of the other is that of its lie."""
     criterion, liar = CHOSEN[kind]
-    status, answer, out, _ = road("choose", kind, *asked(["honest", liar]))
+    status, answer, out, _ = road("choose", kind, *engine_options(["honest", liar]))
     assert status == 0 and answer["criterion"] == criterion
     all_is_told(answer["warnings"], out)
     assert (answer["chosen"]["engine"], answer["chosen"]["value"]) == ("honest", 1e-2)  # its coarsest level
     assert answer["command"] in out and answer["command"].endswith("--variant lies --set step=0.01")
     honest, lying = answer["variants"]
     assert all(
-        one["error"] < 1e-12 and one["passes"] and one["runs"] == len(answer["neighbours"]) for one in honest["levels"]
+        level["error"] < 1e-12 and level["passes"] and level["runs"] == len(answer["neighbours"])
+        for level in honest["levels"]
     )
-    assert not any(one["passes"] for one in lying["levels"]) and [one["value"] for one in lying["levels"]] == [
+    assert not any(level["passes"] for level in lying["levels"]) and [level["value"] for level in lying["levels"]] == [
         1e-2,
         1e-3,
     ]
@@ -335,14 +351,14 @@ def test_choose(road, kind):
     assert set(answer["neighbours"]) == factors - refused and bool(refused) == (kind == "a copy is refused")
     assert answer["neighbours"][0] == 1.0
     scene = load_scene("scene.toml")
-    found, model = lying["levels"][0]["error"], simulate(scene, history=False)
+    result, model = lying["levels"][0]["error"], simulate(scene, history=False)
     if criterion == "restitution":
-        assert found == pytest.approx(0.02 * restitution(scene), rel=1e-6)
+        assert result == pytest.approx(0.02 * restitution(scene), rel=1e-6)
     elif criterion == "tilt":
-        assert 0 < found <= SHARE * model.peak_tilt_ratio * (1 + 1e-9)
-        assert KINDS[kind][1] == "overturns" or found > 0.99 * SHARE * model.peak_tilt_ratio
+        assert 0 < result <= SHARE * model.peak_tilt_ratio * (1 + 1e-9)
+        assert KINDS[kind][1] == "overturns" or result > 0.99 * SHARE * model.peak_tilt_ratio
     else:
-        assert found == pytest.approx(SHARE, rel=1e-5)  # the peak lies between two samples of the history
+        assert result == pytest.approx(SHARE, rel=1e-5)  # the peak lies between two samples of the history
     needed = {part["part"]: part["needed"] for part in answer["parts"]}
     assert needed["base"] == ("[base]" in KINDS[kind][0]) and not needed["third dimension"]
     assert needed["rocking"] == (criterion not in ("slip", "displacement"))
@@ -350,11 +366,13 @@ def test_choose(road, kind):
 
 
 def test_choose_by_outcomes_counts_the_neighbours_that_differ(road):
-    status, answer, _, _ = road("choose", "rocks", "--for", "outcome", "--error", 0.3, *asked(["honest", "outcome"]))
+    status, answer, _, _ = road(
+        "choose", "rocks", "--for", "outcome", "--error", 0.3, *engine_options(["honest", "outcome"])
+    )
     assert status == 0 and answer["chosen"]["engine"] == "honest" and len(answer["neighbours"]) == 9
     honest, lying = answer["variants"]
-    assert [one["error"] for one in honest["levels"]] == [0.0, 0.0] and lying["levels"][0]["error"] == 1.0
-    status, answer, out, _ = road("choose", "rocks", "--for", "outcome", *asked(["outcome"]))
+    assert [level["error"] for level in honest["levels"]] == [0.0, 0.0] and lying["levels"][0]["error"] == 1.0
+    status, answer, out, _ = road("choose", "rocks", "--for", "outcome", *engine_options(["outcome"]))
     assert status == 1 and answer["chosen"] is None and "No level passes 0.001 for outcome" in out
 
 
@@ -365,11 +383,11 @@ def test_choose_names_the_model_where_the_block_never_lifts(road):
 
 
 @pytest.mark.parametrize(
-    "words, said", [(("--error", 2), "below 1"), (("--for", "speed"), "choose one of restitution")]
+    "words, message", [(("--error", 2), "below 1"), (("--for", "speed"), "choose one of restitution")]
 )
-def test_choose_refuses_what_it_cannot_choose_by(road, words, said):
+def test_choose_refuses_what_it_cannot_choose_by(road, words, message):
     status, answer, _, err = road("choose", "rocks", *words)
-    assert status == 2 and answer is None and said in err
+    assert status == 2 and answer is None and message in err
 
 
 @pytest.mark.parametrize(
@@ -385,7 +403,7 @@ def test_report(road, rocking, tmp_path, first, step):
         files[-1].write_text(KINDS[kind][0])
     words = "--records records --units m/s2 --studies studies --output page --json page.json".split()
     engines = ("lying", "fails", "nan")
-    status, out, err = rocking("report", *files, *words, *asked(engines))
+    status, out, err = rocking("report", *files, *words, *engine_options(engines))
     assert status == 0 and "Traceback" not in out + err
     answer = checked(tmp_path / "page.json")
     assert len(answer["rows"]) == len(kinds) * (1 + len(engines))
@@ -433,9 +451,9 @@ def test_script(rocking, tmp_path, monkeypatch, kind):
 def test_a_scene_that_the_model_refuses_is_named_with_its_remedy(road, kind, command):
     status, answer, _, err = road(command, kind)
     assert status == 2 and answer is None
-    said = ERROR.match(err.strip().splitlines()[-1])
-    assert said and said["file"] == "scene.toml" and said["field"] == REFUSED[kind][1], err
-    assert float(said["value"]) and said["remedy"].startswith(("give", "leave"))
+    match = ERROR.match(err.strip().splitlines()[-1])
+    assert match and match["file"] == "scene.toml" and match["field"] == REFUSED[kind][1], err
+    assert float(match["value"]) and match["remedy"].startswith(("give", "leave"))
 
 
 def test_the_scans_of_a_user_are_fine():

@@ -44,8 +44,8 @@ def test_results_lie_side_by_side_and_a_second_call_keeps_them(rocking, monkeypa
     for _ in range(2):
         status, out, _ = rocking("study", "all", "--quick", "--engine", "exudyn", "--output", tmp_path)
         assert status == 0 and [Path(line).name for line in out.split()] == ["first", "second"]
-    found = {file.relative_to(tmp_path).as_posix() for file in tmp_path.rglob("*.json")}
-    assert found == {f"{name}/{solver}.json" for name in ("first", "second") for solver in ("analytic", "exudyn")}
+    names = {file.relative_to(tmp_path).as_posix() for file in tmp_path.rglob("*.json")}
+    assert names == {f"{name}/{solver}.json" for name in ("first", "second") for solver in ("analytic", "exudyn")}
 
 
 @pytest.mark.parametrize("differences, status", [((), 0), (("exudyn: peak: stored 1, now 2",), 1)])
@@ -53,21 +53,21 @@ def test_status_is_whether_all_hold_and_a_seed_repeats_the_draw(rocking, monkeyp
     check_all = Mock(return_value=[Check("restitution", 1, 4, 60, 1408, differences)])
     monkeypatch.setattr(module, "check_all", check_all)
     for words in ([], [], ["--seed", "7", "--write"]):
-        found, out, _ = rocking("study", "restitution", "--check", "4", "--output", "mine", *words)
-        assert found == status and check_all.call_args.args[:3] == ("restitution", "mine", 4)
-        assert f"{4 - len(differences)} of 4 runs hold" in out and all(one in out for one in differences)
+        result, out, _ = rocking("study", "restitution", "--check", "4", "--output", "mine", *words)
+        assert result == status and check_all.call_args.args[:3] == ("restitution", "mine", 4)
+        assert f"{4 - len(differences)} of 4 runs hold" in out and all(difference in out for difference in differences)
     seeds, records = zip(*((call.args[3], call.kwargs["record"]) for call in check_all.call_args_list), strict=True)
     assert seeds[0] != seeds[1] and seeds[2] == 7 and records == (False, False, True)
 
 
 def test_a_seed_is_the_plans_where_it_takes_one_and_else_belongs_to_a_check(rocking, monkeypatch, tmp_path):
-    for name, plan, found in (
+    for name, plan, result in (
         ("draws", _drawing, (0, "")),
         ("draws-nothing", _plan, (2, "Error: --seed 3: belongs to --check; this study draws nothing by a seed\n")),
     ):
         monkeypatch.setattr(command, "get_study", lambda name, plan=plan: Study(name, "Asks?", plan, __name__))
         status, _, err = rocking("study", name, "--seed", "3", "--output", tmp_path / name)
-        assert status == found[0] and (not status or err == found[1])
+        assert status == result[0] and (not status or err == result[1])
     assert read(tmp_path / "draws" / "draws").settings["seed"] == 3
     assert rocking("study", "stability", "--write")[::2] == (2, "Error: --write: belongs to --check\n")
 
@@ -165,7 +165,7 @@ def test_without_a_bound_nothing_holds_or_fails_and_what_was_found_is_said(rocki
         ended, out, _ = rocking(*words, "--json", tmp_path / "verify.json", "--output", tmp_path)
         assert ended == status and " hold." not in out and "FAILS" not in out
         assert f"no bound stated, so nothing holds or fails; 1 of {len(rows)} quantities measured." in out
-        told = json.loads((tmp_path / "verify.json").read_text())["rows"]
-        assert [row["holds"] for row in told] == [None] * len(rows) and told[0]["found"] > 0
+        shown = json.loads((tmp_path / "verify.json").read_text())["rows"]
+        assert [row["holds"] for row in shown] == [None] * len(rows) and shown[0]["found"] > 0
         assert [row["holds"] for row in read_study(tmp_path / "tolerances").rows] == [None] * len(rows)
-    assert free.check({}) == told[0]["found"]
+    assert free.check({}) == shown[0]["found"]

@@ -46,15 +46,15 @@ def computed(folder, *engines, **options):
 
 
 @pytest.fixture(scope="module")
-def one(tmp_path_factory):
+def single(tmp_path_factory):
     """The result of the first engine alone, of blocks of 2 kg; its folder keeps the runs."""
-    return computed(tmp_path_factory.mktemp("one") / "runs", FIRST, mass=2.0)
+    return computed(tmp_path_factory.mktemp("single") / "runs", FIRST, mass=2.0)
 
 
 @pytest.fixture
-def copy(one, tmp_path):
+def copy(single, tmp_path):
     """A copy of it, and of its runs."""
-    return shutil.copytree(one.parent, tmp_path / "runs") / one.name
+    return shutil.copytree(single.parent, tmp_path / "runs") / single.name
 
 
 @pytest.fixture
@@ -67,14 +67,14 @@ def both(copy):
 def test_one_engine_then_another_is_both_at_once(both, tmp_path):
     (tmp_path / "whole").mkdir()
     shutil.copy(both.with_name(RUNS), tmp_path / "whole")  # runs of both by now
-    whole, found = read(computed(tmp_path / "whole", FIRST, SECOND, mass=2.0)), read(both)
+    whole, result = read(computed(tmp_path / "whole", FIRST, SECOND, mass=2.0)), read(both)
     assert {file.name for file in both.glob("*.json")} == {"analytic.json", f"{FIRST}.json", f"{SECOND}.json"}
-    assert not list(differences("rows", whole.rows, found.rows))
-    assert whole.settings == found.settings and set(whole.settings["engines"]) == {FIRST, SECOND}
-    assert whole.arrays.keys() == found.arrays.keys()
+    assert not list(differences("rows", whole.rows, result.rows))
+    assert whole.settings == result.settings and set(whole.settings["engines"]) == {FIRST, SECOND}
+    assert whole.arrays.keys() == result.arrays.keys()
     for name, array in whole.arrays.items():
-        np.testing.assert_array_equal(array, found.arrays[name])
-    assert (found.run_count, len(found.runs)) == (whole.run_count, len(whole.runs)) == (6, 6)
+        np.testing.assert_array_equal(array, result.arrays[name])
+    assert (result.run_count, len(result.runs)) == (whole.run_count, len(whole.runs)) == (6, 6)
     assert check(both, 30, 1, workers=1, progress=False).held == 6
 
 
@@ -101,36 +101,40 @@ def test_without_engines_all_is_computed_and_files_of_others_go(both):
 
 @MADE_ONCE
 def test_each_file_says_where_it_comes_from_and_is_judged_by_that(both):
-    found = read(both)
+    result = read(both)
     plan, first, second = name_of(MADE.plan), ENGINES[FIRST].adapter, ENGINES[SECOND].adapter
-    own, other = (found.provenance["engines"][name] for name in (SECOND, FIRST))
-    assert [*own["sources"]] == [plan, second] and [*other["sources"]] == [plan, first] and age(found) is None
-    assert not {first, second} & found.provenance["sources"].keys()
-    assert own["packages"].keys() == {"numpy", "scipy", "numba", SECOND}
-    assert found.provenance["packages"].keys() == {"numpy", "scipy", "numba"}
-    own |= {"time": "2030-02-03T00:00:00+00:00", "commit": "f" * 40, "dirty": False}
-    assert f"; {SECOND}: 2030-02-03, commit ffffffffffff, " in origin_of(found)
-    assert f"; {SECOND}: 2030-02-03 | " in origins({"made": found})
+    second_origin, first_origin = (result.provenance["engines"][name] for name in (SECOND, FIRST))
+    assert (
+        [*second_origin["sources"]] == [plan, second]
+        and [*first_origin["sources"]] == [plan, first]
+        and age(result) is None
+    )
+    assert not {first, second} & result.provenance["sources"].keys()
+    assert second_origin["packages"].keys() == {"numpy", "scipy", "numba", SECOND}
+    assert result.provenance["packages"].keys() == {"numpy", "scipy", "numba"}
+    second_origin |= {"time": "2030-02-03T00:00:00+00:00", "commit": "f" * 40, "dirty": False}
+    assert f"; {SECOND}: 2030-02-03, commit ffffffffffff, " in origin_of(result)
+    assert f"; {SECOND}: 2030-02-03 | " in origins({"made": result})
     variants = source_digests([second])[f"{second}.VARIANTS"]
-    own["sources"][second] = own["sources"][second].replace(variants, "")
-    assert age(found) == (
+    second_origin["sources"][second] = second_origin["sources"][second].replace(variants, "")
+    assert age(result) == (
         f"in the rows of {SECOND} older than the code: computed on 2030-02-03 at commit fffffff; since then changed: "
         f"{second}.VARIANTS"
     )
-    found.provenance["packages"]["numpy"] = "1.0"
-    assert "; computed with other versions than those here: numpy" in age(found)
+    result.provenance["packages"]["numpy"] = "1.0"
+    assert "; computed with other versions than those here: numpy" in age(result)
 
 
 @MADE_ONCE
 @pytest.mark.parametrize(
     "spoil, words",
     [
-        (lambda found: found["rows"][1].update(tilt=9.0), r"rows\[1\]\.tilt: stored 9, now 0\.05"),
-        (lambda found: found["rows"][0].update(starts=[1.0]), r"rows\[0\]\.starts\[0\]: stored 1, now 0\.05"),
-        (lambda found: found["rows"].pop(0), r"rows\[0\]"),
-        (lambda found: found["settings"].update(note=1), "settings.note: stored 1, now None"),
-        (lambda found: found["settings"]["variants"].pop(), r"settings.variants\[0\]: stored None"),
-        (lambda found: found["provenance"].update(seed=4), "seed: stored 4, now 3"),
+        (lambda result: result["rows"][1].update(tilt=9.0), r"rows\[1\]\.tilt: stored 9, now 0\.05"),
+        (lambda result: result["rows"][0].update(starts=[1.0]), r"rows\[0\]\.starts\[0\]: stored 1, now 0\.05"),
+        (lambda result: result["rows"].pop(0), r"rows\[0\]"),
+        (lambda result: result["settings"].update(note=1), "settings.note: stored 1, now None"),
+        (lambda result: result["settings"]["variants"].pop(), r"settings.variants\[0\]: stored None"),
+        (lambda result: result["provenance"].update(seed=4), "seed: stored 4, now 3"),
     ],
 )
 def test_where_anything_of_the_model_has_changed_nothing_is_written(copy, spoil, words):
@@ -154,18 +158,18 @@ def test_an_array_of_the_model_that_has_changed_is_named(copy):
     "spoil, words",
     [
         (
-            lambda found: found["settings"].update(mass=3.0),
+            lambda result: result["settings"].update(mass=3.0),
             r"asked otherwise than analytic.json \(mass: 2 there, 3 here",
         ),
         (
-            lambda found: found["settings"].update(note=1),
+            lambda result: result["settings"].update(note=1),
             r"asked otherwise than analytic.json \(note: None there, 1 here",
         ),
-        (lambda found: found["settings"].pop("quick"), "asked otherwise than analytic.json .quick"),
-        (lambda found: found["settings"].update(engines=["another"]), "asked otherwise .*engines"),
-        (lambda found: found["provenance"].update(seed=4), r"asked otherwise than analytic.json \(seed: 3 there, 4"),
-        (lambda found: found.update(kind="other"), "a result of other, beside one of made"),
-        (lambda found: found["rows"][0].update(variant="more"), "has rows of a variant .*: more"),
+        (lambda result: result["settings"].pop("quick"), "asked otherwise than analytic.json .quick"),
+        (lambda result: result["settings"].update(engines=["another"]), "asked otherwise .*engines"),
+        (lambda result: result["provenance"].update(seed=4), r"asked otherwise than analytic.json \(seed: 3 there, 4"),
+        (lambda result: result.update(kind="other"), "a result of other, beside one of made"),
+        (lambda result: result["rows"][0].update(variant="more"), "has rows of a variant .*: more"),
     ],
 )
 def test_a_file_that_does_not_belong_to_the_others_is_refused(both, spoil, words):
@@ -211,22 +215,22 @@ def test_a_check_that_is_recorded_takes_the_place_of_all_before(both):
                 check={"runs": held, "held": held, "date": "2020-01-01", "commit": None, "dirty": False, "seed": 1}
             ),
         )
-    found = check(both, 2, 1, record=True, workers=1, progress=False)
-    assert checked(read(both)).items() >= {"runs": 2, "held": found.held, "seed": 1}.items()
+    outcome = check(both, 2, 1, record=True, workers=1, progress=False)
+    assert checked(read(both)).items() >= {"runs": 2, "held": outcome.held, "seed": 1}.items()
     assert "2020" not in last_check(read(both))
 
 
 @MADE_ONCE
-def test_a_result_is_asked_what_it_was_asked(one):
+def test_a_result_is_asked_what_it_was_asked(single):
     for options in ({}, {"mass": 2.0}):
-        assert opened(MADE, one, False, options)[1:] == (False, {"mass": 2.0})
+        assert opened(MADE, single, False, options)[1:] == (False, {"mass": 2.0})
     for study, quick, options, error, words in (
         (MADE, False, {"mass": 3.0}, SettingError, "--mass 3.0: .* was computed with 2.0; leave it out"),
         (MADE, True, {}, SettingError, "--quick: .* was computed in full; leave it out"),
         (Study("other", "", MADE.plan), False, {}, ResultError, "holds a result of made; give another --output"),
     ):
         with pytest.raises(error, match=words):
-            opened(study, one, quick, options)
+            opened(study, single, quick, options)
     assert opened(get_study("recorded"), RESULTS / "recorded", False, {"records": "mine"})[2] == {"records": "mine"}
 
 
@@ -237,9 +241,9 @@ def test_every_stored_result_is_the_sum_of_its_files(path):
     again = joined(parts | split(whole, parts.keys() - {MODEL}) | {MODEL: parts[MODEL]})
     assert again.rows == whole.rows and again.settings == whole.settings and again.arrays.keys() == whole.arrays.keys()
     for solver, part in split(whole, parts.keys() - {MODEL}).items():
-        own = parts[solver]
-        assert (part.rows, part.settings, part.runs) == (own.rows, own.settings, own.runs)
-        assert part.arrays.keys() == own.arrays.keys()
+        own_part = parts[solver]
+        assert (part.rows, part.settings, part.runs) == (own_part.rows, own_part.settings, own_part.runs)
+        assert part.arrays.keys() == own_part.arrays.keys()
 
 
 FALLEN = {"kind": "crash", "reason": "fell over", "message": ""}
@@ -272,16 +276,16 @@ def test_no_row_of_a_study_that_takes_one_engine_hangs_on_another(name, monkeypa
     # of the stability of engines other measures are taken
     run = by_model(history=True, failure=lambda case: None if case.solver == "analytic" else FALLEN)
 
-    def found(*engines):
+    def result_of(*engines):
         plan = study.plan(Request(engines, True), **SMALL[name])
         answer = answered(plan, run if name == "stability" else by_model())[-1]
-        own = ["analytic", name_of(study.plan), *(ENGINES[one].adapter for one in engines)]
-        return made_here(name, answer.settings, answer.rows, answer.arrays, modules=own, seed=answer.seed)
+        roots = ["analytic", name_of(study.plan), *(ENGINES[engine].adapter for engine in engines)]
+        return made_here(name, answer.settings, answer.rows, answer.arrays, modules=roots, seed=answer.seed)
 
-    def alike(one, other):
-        assert sorted(map(json.dumps, one)) == sorted(map(json.dumps, other))
+    def alike(rows, other_rows):
+        assert sorted(map(json.dumps, rows)) == sorted(map(json.dumps, other_rows))
 
-    whole, old, new = found(FIRST, SECOND), found(FIRST), found(SECOND)
+    whole, old, new = result_of(FIRST, SECOND), result_of(FIRST), result_of(SECOND)
     parts = split(old, [FIRST]) | {SECOND: split(new, [SECOND])[SECOND]}
     check_same(study, parts[MODEL], new, [SECOND])
     together = joined(parts)

@@ -53,8 +53,8 @@ def changed(path, change):
 
 
 def test_unchanged_code_holds_and_the_result_says_when_it_was_checked(result):
-    found = check(result, 30, 1, record=True, workers=1, progress=False)
-    assert (found.runs, found.held, found.stored, found.total) == (12, 12, 12, 12)  # failed runs among them
+    outcome = check(result, 30, 1, record=True, workers=1, progress=False)
+    assert (outcome.runs, outcome.held, outcome.stored, outcome.total) == (12, 12, 12, 12)  # failed runs among them
     read = by_solver.read(result)
     last = read.provenance["check"]
     assert (last["runs"], last["held"], last["seed"]) == (12, 12, 1)
@@ -72,9 +72,9 @@ def test_a_run_that_differs_is_named_with_both_numbers(result):
             run["values"]["peak"] *= 1 + 1e-8  # ten times what rounding is allowed
 
     changed(result, change)
-    found = check(result, 30, 1, record=True, workers=1, progress=False)
-    assert found.held == by_solver.read(result).provenance["check"]["held"] == 11
-    assert found.differences == ("fake_solvers:sound, i = 2: peak: stored 0.000400000004, now 0.0004",)
+    outcome = check(result, 30, 1, record=True, workers=1, progress=False)
+    assert outcome.held == by_solver.read(result).provenance["check"]["held"] == 11
+    assert outcome.differences == ("fake_solvers:sound, i = 2: peak: stored 0.000400000004, now 0.0004",)
 
 
 @pytest.mark.parametrize(
@@ -94,8 +94,8 @@ def test_what_is_gone_or_fails_otherwise_does_not_hold(result, part, value, word
             run[part] = value
 
     changed(result, change)
-    found = check(result, 30, 1, workers=1, progress=False)
-    assert found.held == 9 and all(words in each for each in found.differences), found.differences
+    outcome = check(result, 30, 1, workers=1, progress=False)
+    assert outcome.held == 9 and all(words in each for each in outcome.differences), outcome.differences
 
 
 def test_results_without_stored_runs_say_what_to_do(tmp_path):
@@ -165,9 +165,9 @@ def test_runs_of_an_engine_that_is_not_installed_are_left_out_and_named(result, 
     runs = by_solver.read(result).runs
     kept = sum(run["engine"] != "mujoco" for run in runs)
     monkeypatch.setitem(sys.modules, "mujoco", None)
-    found = check(result, 30, 1, workers=1, progress=False)
-    assert kept < len(runs) and (found.runs, found.held, found.missing) == (kept, kept, ("mujoco",))
-    assert "not installed: mujoco" in found.words()
+    outcome = check(result, 30, 1, workers=1, progress=False)
+    assert kept < len(runs) and (outcome.runs, outcome.held, outcome.missing) == (kept, kept, ("mujoco",))
+    assert "not installed: mujoco" in outcome.words()
 
 
 GIVEN = load_scene("free-rocking-rigid").with_(block={"restitution": 0.8})

@@ -115,7 +115,7 @@ def free_port():
     [
         ("local:many", "give local:N"),
         ("local:0", "give 1 to"),
-        *((one, "no scheduler answers there .*; give host:port") for one in ("nowhere", "127.0.0.1:{}")),
+        *((address, "no scheduler answers there .*; give host:port") for address in ("nowhere", "127.0.0.1:{}")),
     ],
 )
 def test_an_address_that_is_none_is_one_message(address, words):

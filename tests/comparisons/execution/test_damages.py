@@ -81,7 +81,7 @@ def exported(*words):
     return export
 
 
-WRITERS = {one.__name__: one for one in (page, result, check, several, runs, scene, run)}
+WRITERS = {writer.__name__: writer for writer in (page, result, check, several, runs, scene, run)}
 WRITERS |= {"sheet": exported("sheet"), "lesson": exported("lessons", "export")}
 DEAR = ("sheet", "lesson")
 SLOW = (*DEAR, "run", "scene", "check", "several")
@@ -134,8 +134,8 @@ def damaged(call, met, number, work):
             sys.stderr.flush()
             os._exit(status or 0)
     os.close(tells)
-    with open(reads) as told:
-        words = told.read()
+    with open(reads) as stderr:
+        words = stderr.read()
     return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), words
 
 
@@ -146,17 +146,17 @@ def content(file):
             return store.rows
     if file.suffix != ".json":
         return file.read_bytes()
-    found = json.loads(file.read_text())
-    if "provenance" not in found:
-        return found | {"cpu_seconds": None}
-    found = read_result(file)
-    assert not found.arrays or set(found.arrays["a"]) == {found.rows[0]["value"]}
-    return found.rows, found.provenance.get("check")
+    actual = json.loads(file.read_text())
+    if "provenance" not in actual:
+        return actual | {"cpu_seconds": None}
+    actual = read_result(file)
+    assert not actual.arrays or set(actual.arrays["a"]) == {actual.rows[0]["value"]}
+    return actual.rows, actual.provenance.get("check")
 
 
 def contents(folder):
-    found = [file for file in folder.rglob("*") if file.is_file() and file.suffix != ".npz" and file.name[0] != "."]
-    return {file.relative_to(folder).as_posix(): content(file) for file in found}
+    files = [file for file in folder.rglob("*") if file.is_file() and file.suffix != ".npz" and file.name[0] != "."]
+    return {file.relative_to(folder).as_posix(): content(file) for file in files}
 
 
 NAMED = re.compile(
@@ -195,13 +195,13 @@ NONE_SUCH = [("runs", "replace"), ("runs", "access"), ("scene", "access")]
 TABLE = [
     pytest.param(
         writer,
-        *one,
-        marks=[pytest.mark.slow] * (writer in SLOW and (writer, *one) != ("run", "replace", full)),  # what is kept
-        id=f"{writer}-{one[0]}-{one[1].__name__}",
+        *damage,
+        marks=[pytest.mark.slow] * (writer in SLOW and (writer, *damage) != ("run", "replace", full)),  # what is kept
+        id=f"{writer}-{damage[0]}-{damage[1].__name__}",
     )
     for writer in WRITERS
-    for one in (DAMAGES[1::3] if writer in DEAR else DAMAGES)
-    if (writer, one[0]) not in NONE_SUCH
+    for damage in (DAMAGES[1::3] if writer in DEAR else DAMAGES)
+    if (writer, damage[0]) not in NONE_SUCH
 ]
 
 
@@ -214,12 +214,12 @@ def test_each_file_is_the_old_or_the_new_one_and_the_message_names_it(here, tmp_
         after = contents(here)
         if status == 0:
             break
-        found = NAMED.search(words)
-        assert bool(found) == (met in (full, read_only)) and (status == -9) == (met is killed), words
+        match = NAMED.search(words)
+        assert bool(match) == (met in (full, read_only)) and (status == -9) == (met is killed), words
         for name in new:
             assert after.get(name) in (before.get(name), new[name]) or (name, after.get(name)) == ("bust.toml", None)
-        if found:
-            name = Path(found[1]).relative_to(here).as_posix()
+        if match:
+            name = Path(match[1]).relative_to(here).as_posix()
             assert after.get(name) in (before.get(name), None)
         elsewhere = [*(tmp_path / "else").iterdir()]
         assert len(elsewhere) == (writer in KEEPS and call != "write" and "could not be written" in words)
@@ -302,7 +302,7 @@ def test_a_link_is_followed_a_mode_kept_and_a_result_without_arrays_is_one_file(
     assert content(tmp_path / "there" / "alone.json") == ([], None)
 
 
-def told(status, out, err):
+def one_message(status, out, err):
     """One message of a mistake and nothing else."""
     return status == 2 and out == "" and err.startswith("Error: ") and err.count("\n") == 1 and len(err) < 800
 
@@ -325,14 +325,14 @@ def test_places_where_nothing_can_be_written_are_refused_before_the_work(rocking
     os.mkfifo("fifo")
     Path("file").touch()
     for place in (*PLACES, *WORDS[words]):
-        assert told(*rocking(*words, place)), place
+        assert one_message(*rocking(*words, place)), place
     assert sorted(os.listdir()) == ["fifo", "file"]  # nothing left of the trials
 
 
 def test_a_result_does_not_overwrite_what_is_read_nor_another_result(rocking, tmp_path):
     scene = write_scene(tmp_path, SCENE)
-    assert told(*rocking("run", scene, "--json", scene))
-    assert told(*rocking("run", scene, "--json", tmp_path / "a", "--csv", tmp_path / "." / "a"))
+    assert one_message(*rocking("run", scene, "--json", scene))
+    assert one_message(*rocking("run", scene, "--json", tmp_path / "a", "--csv", tmp_path / "." / "a"))
     assert scene.read_text() == SCENE
 
 
@@ -341,15 +341,15 @@ def test_runs_that_are_damaged_in_use_or_no_file_are_told_before_the_work(rockin
     with Store(path):
         with pytest.raises(StoreError, match="another sweep is writing to it"):
             Store(path)
-        assert told(*rocking(*study))
+        assert one_message(*rocking(*study))
     path.write_bytes(b"not json\n")
-    assert told(*rocking(*study))
+    assert one_message(*rocking(*study))
     for make in (Path.mkdir, os.mkfifo):
         path.rmdir() if path.is_dir() else path.unlink()
         make(path)
-        assert told(*rocking(*study))
+        assert one_message(*rocking(*study))
     for wrong in (["--workers", "1000000"], ["--engine", "nope"], ["--engine", "analytic"]):
-        assert told(*rocking(*study[:-1], tmp_path / "new", *wrong)), wrong
+        assert one_message(*rocking(*study[:-1], tmp_path / "new", *wrong)), wrong
     assert not (tmp_path / "new").exists()
 
 

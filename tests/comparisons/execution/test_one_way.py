@@ -18,7 +18,7 @@ ELSEWHERE = {
     ("comparisons/plotting/plots.py", "picture", "savefig"): "into memory",
     ("comparisons/lessons/lesson.py", "svg", "savefig"): "into memory",
     ("comparisons/lessons/lesson.py", "downloads", "savefig"): "into memory",
-    ("comparisons/commands/runs.py", "run", "to_csv"): "into memory",
+    ("comparisons/commands/runs.py", "_history_text", "to_csv"): "into memory",
     ("comparisons/cli/__init__.py", "open_streams", "open"): "a standard stream",
     ("comparisons/cli/__init__.py", "open_streams", "os.open"): "no file: os.devnull",
     ("comparisons/cli/__init__.py", "_silence", "os.open"): "no file: os.devnull",
@@ -87,13 +87,13 @@ def _mode(call, place):
 
 
 def test_the_code_has_one_way_to_write_a_file():
-    found = {
-        (file.relative_to(PROJECT).as_posix(), *one)
+    calls = {
+        (file.relative_to(PROJECT).as_posix(), *call)
         for package in ("analytic", "engines", "comparisons")
         for file in (PROJECT / package).rglob("*.py")
-        for one in writing(ast.parse(file.read_text(encoding="utf-8")))
+        for call in writing(ast.parse(file.read_text(encoding="utf-8")))
     }
-    assert {function for file, function, _ in found if file == WAY} >= {"_put", "write_pair"}
-    others = {one for one in found if one[0] != WAY}
+    assert {function for file, function, _ in calls if file == WAY} >= {"_put", "write_pair"}
+    others = {call for call in calls if call[0] != WAY}
     assert not others - ELSEWHERE.keys(), "write by comparisons.execution.files"
     assert not ELSEWHERE.keys() - others, "no longer there: take it off the list"

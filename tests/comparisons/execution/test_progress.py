@@ -29,23 +29,23 @@ def compiled(name, module):
 
 
 def test_functions_of_the_model_are_counted_as_they_are_compiled(monkeypatch):
-    told, known = [], Counted().known
+    shown, known = [], Counted().known
 
     @contextlib.contextmanager
     def bar(text, functions):
-        told.append((text, functions))
-        yield lambda done, known: told.append((done, known))
+        shown.append((text, functions))
+        yield lambda done, known: shown.append((done, known))
 
     monkeypatch.setattr(progress, "PATIENCE", 0.0)
     monkeypatch.setattr(progress, "bar", bar)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     with progress.compiling():
-        while not told:
+        while not shown:
             time.sleep(0.01)  # the bar is shown from another thread
         for name, module in (("first", "analytic.made"), ("other", "somewhere.analytic"), ("second", "analytic.made")):
             compiled(name, module)
     compiled("third", "analytic.made")  # nobody listens any more
-    assert told == [(progress.COMPILING, known), (0, known), *((k, max(k, known)) for k in (1, 2))]
+    assert shown == [(progress.COMPILING, known), (0, known), *((k, max(k, known)) for k in (1, 2))]
 
 
 def test_the_bar_shows_the_count_and_goes_beyond_what_was_known(capsys, monkeypatch):
@@ -67,13 +67,13 @@ def test_a_bar_where_no_terminal_is_is_a_line_and_one_at_its_end_if_that_takes_l
     assert capsys.readouterr().err == "records\n"  # it is not done
 
 
-@pytest.mark.parametrize("patience, said", [(0.0, "one scene\n"), (100.0, "")])
-def test_a_spinner_where_no_terminal_is_is_a_line_if_it_takes_long(capsys, monkeypatch, patience, said):
+@pytest.mark.parametrize("patience, line", [(0.0, "one scene\n"), (100.0, "")])
+def test_a_spinner_where_no_terminal_is_is_a_line_if_it_takes_long(capsys, monkeypatch, patience, line):
     monkeypatch.setattr(progress, "PATIENCE", patience)
     with progress.spinner("one scene") as tell:
         tell("its margin")
         time.sleep(0.2)  # the line is said from another thread
-    assert capsys.readouterr().err == said
+    assert capsys.readouterr().err == line
 
 
 @pytest.mark.long
@@ -90,7 +90,7 @@ def test_the_first_run_on_a_machine_counts_what_it_compiles(tmp_path):
             while data := os.read(whole, 65536):
                 text += data.decode(errors="replace")
     assert run.returncode == 0
-    found = [(int(done), int(known)) for done, known in COUNTED.findall(re.sub(r"\x1b\[[0-9;?]*[a-zA-Z]", "", text))]
-    counts = [done for done, _ in found]
+    results = [(int(done), int(known)) for done, known in COUNTED.findall(re.sub(r"\x1b\[[0-9;?]*[a-zA-Z]", "", text))]
+    counts = [done for done, _ in results]
     assert len(set(counts)) > 20 and counts == sorted(counts)
-    assert abs(found[0][1] / counts[-1] - 1) < 0.1  # about
+    assert abs(results[0][1] / counts[-1] - 1) < 0.1  # about

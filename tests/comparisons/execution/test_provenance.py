@@ -91,8 +91,8 @@ def test_a_shipped_scene_counts_where_a_module_names_it_but_its_comments_do_not(
     monkeypatch.setattr(sources, "SHIPPED", file.parent)
     for words in (text, "# another comment\n" + text, text.replace("slenderness = 0.28", "slenderness = 0.29")):
         file.write_text(words)
-        found = sources.source_digests(["comparisons.studies.caryatid.study:plan"])
-        digests.append(found["analytic.scenes.caryatid-rigid"])
+        result = sources.source_digests(["comparisons.studies.caryatid.study:plan"])
+        digests.append(result["analytic.scenes.caryatid-rigid"])
     assert digests[0] == digests[1] != digests[2] and digests[2] in sources.digests_of_all(["analytic"])
 
 

@@ -31,7 +31,7 @@ def along(*searches_outcomes, seen=None):
 
 
 def positions(column):
-    return [one.position for one in column.transitions]
+    return [transition.position for transition in column.transitions]
 
 
 # What a column of a pulse's map can look like: safe, overturns after one impact, safe gap, overturns without impact
@@ -44,9 +44,9 @@ def test_all_transitions_of_columns_are_found_in_common_rounds():
     columns = along(*((boundaries(0.5, 20.5, 41, 1e-5), outcome) for outcome in outcomes), seen=seen)
     for edges, column in zip(COLUMNS, columns, strict=True):
         assert positions(column) == pytest.approx(edges, abs=1e-5)
-        assert all(one.high - one.low <= 1e-5 for one in column.transitions)
-        assert [one.before for one in column.transitions] == labels[: len(edges)]
-        assert [one.after for one in column.transitions] == labels[1 : len(edges) + 1]
+        assert all(transition.high - transition.low <= 1e-5 for transition in column.transitions)
+        assert [transition.before for transition in column.transitions] == labels[: len(edges)]
+        assert [transition.after for transition in column.transitions] == labels[1 : len(edges) + 1]
     assert len(seen) == 2 + 14  # rounds: scan, near, bisection of 0.125 to below 1e-5
     for edges, column, close in zip(
         COLUMNS, columns, (5, 8, 3, 0), strict=True

@@ -127,7 +127,7 @@ def test_a_change_ages_what_reaches_it_and_is_named(package, module, old, new, c
     kept = kept_digests([ROOT])
     assert not changes(kept) and FILES[module].count(old) == 1
     package(module, FILES[module].replace(old, new))
-    assert [one.removeprefix("some_package.") for one in changes(kept)] == ([changed] if changed else [])
+    assert [change.removeprefix("some_package.") for change in changes(kept)] == ([changed] if changed else [])
 
 
 MOVED = "def g():\n    return [late for late in range(2)]\n"
@@ -180,10 +180,10 @@ def test_the_reference_does_not_depend_on_engines_nor_studies():
 
 def test_what_carries_runs_out_ages_nothing_and_what_measures_them_does():
     """A progress bar, the store or a schema may change; the measure, the study and what a case runs may not."""
-    found = source_digests(["comparisons.studies.restitution.study:plan"])
-    assert {"comparisons.metrics.errors.impact_errors", "comparisons.execution.cases.Case"} <= found.keys()
-    modules = {name.rpartition(".")[0] for name in found}
-    assert {one for one in modules if not one.startswith(("analytic", "engines", "comparisons.metrics"))} == {
+    result = source_digests(["comparisons.studies.restitution.study:plan"])
+    assert {"comparisons.metrics.errors.impact_errors", "comparisons.execution.cases.Case"} <= result.keys()
+    modules = {name.rpartition(".")[0] for name in result}
+    assert {module for module in modules if not module.startswith(("analytic", "engines", "comparisons.metrics"))} == {
         "comparisons.execution.cases",
         "comparisons.studies.restitution.study",
     }

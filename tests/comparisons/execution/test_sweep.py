@@ -26,9 +26,9 @@ def test_one_and_two_workers_and_this_process_agree_in_any_order(tmp_path):
     # Of the analytic model, too: compiling takes longer than this limit; compile_kernels has left a cache.
     which = [*cases(count=60), *(Case(scene(0.05 * i), settings={"history": False}) for i in range(1, 6))]
     here = sweep(which, tmp_path / "0.jsonl", executor=Here())
-    one = sweep(which, tmp_path / "1.jsonl", workers=1, time_limit=20.0)
+    once = sweep(which, tmp_path / "1.jsonl", workers=1, time_limit=20.0)
     two = sweep(which[::-1], tmp_path / "2.jsonl", workers=2, time_limit=20.0)
-    assert results(one) == results(two)[::-1] == results(here) and not any(row.failed for row in here)
+    assert results(once) == results(two)[::-1] == results(here) and not any(row.failed for row in here)
     assert [row.values for row in here[:60]] == [
         {"outcome": "stands", "peak": round(0.01 * i, 6) ** 2} for i in range(60)
     ]
@@ -77,7 +77,10 @@ def test_a_key_follows_versions_and_source_code(tmp_path, monkeypatch):
         ("exits", {}, "crash", "exit code 3", "engine: assertion failed in contact", False),
         ("segfaults", {}, "crash", "SIGSEGV", "in segfaults", False),
         ("hangs", {"seconds": 2.0}, "time limit", "0.5 s", "in hangs", False),
-        *(("killed", {"number": int(one)}, "crash", one.name, "", True) for one in (signal.SIGKILL, signal.SIGHUP)),
+        *(
+            ("killed", {"number": int(number)}, "crash", number.name, "", True)
+            for number in (signal.SIGKILL, signal.SIGHUP)
+        ),
     ],
 )
 def test_what_ends_a_worker_costs_one_row_with_evidence(tmp_path, solver, settings, kind, reason, message, again):
@@ -101,8 +104,8 @@ def test_exceptions_and_failed_responses_become_failed_rows(tmp_path):
     *raised, failed, unstepped = sweep(which, tmp_path / "s.jsonl", executor=Here())
     assert [row.case.tag["i"] for row in raised if row.failed] == [5]
     assert raised[5].failure["reason"] == "ValueError: Newton did not converge"
-    told = json.dumps(raised[5].failure)
-    assert "fake_solvers.py" in told and not any(folder in told for folder in OURS)
+    shown = json.dumps(raised[5].failure)
+    assert "fake_solvers.py" in shown and not any(folder in shown for folder in OURS)
     assert failed.failure["kind"] == "solver" and failed.failure["reason"] == "energy gain"
     assert failed.failure["last_state"]["time"] == 0.5 and failed.values["outcome"] == "failed"
     assert unstepped.failure["reason"] == "too many steps" and "cpu_seconds" not in unstepped.cost

@@ -109,11 +109,11 @@ def test_a_sliding_corner_keeps_the_ratio_of_its_friction():
 
 def test_frames_show_the_fall_the_step_that_is_struck_and_the_energy_that_is_lost():
     contact = contact_of(released(None), fixed_steps(released(None), 1e-4))
-    told = json.loads(json.dumps(frames(contact), allow_nan=False))
-    assert sorted(told) == ["energy", "penetration", "rebound", "straddle"]
-    near, speed = told["straddle"], told["rebound"]["speed"]
+    content = json.loads(json.dumps(frames(contact), allow_nan=False))
+    assert sorted(content) == ["energy", "penetration", "rebound", "straddle"]
+    near, speed = content["straddle"], content["rebound"]["speed"]
     assert near["time"][0] < -2e-4 and near["time"][-1] > 2e-4 and near["landing"][0] > 0 and contact.deepest < 2e-5
-    ends = [speed[0], speed[-1], told["energy"]["energy"][-1]]
+    ends = [speed[0], speed[-1], content["energy"]["energy"][-1]]
     assert ends == pytest.approx([-1.0, 0.0, restitution(released(None)) ** 2], abs=2e-3)
 
 
@@ -154,24 +154,24 @@ def first_swing(name, step=1e-3):
 @pytest.mark.parametrize("name", ["rigid ground", "isolated"])
 def test_the_pivot_stands_on_its_base_and_the_other_corner_moves_as_its_speeds_say(name):
     scene, trace = first_swing(name)
-    told = corner_motion(scene, trace, 1.0)
-    np.testing.assert_allclose([told[part][:, 1] for part in ("height", "sinking", "slip")], 0.0, atol=1e-12)
+    shown = corner_motion(scene, trace, 1.0)
+    np.testing.assert_allclose([shown[part][:, 1] for part in ("height", "sinking", "slip")], 0.0, atol=1e-12)
     lifted = 2 * scene.block.half_width * np.sin(trace.tilt)
-    np.testing.assert_allclose(told["height"][:, 0], lifted, atol=1e-12)
+    np.testing.assert_allclose(shown["height"][:, 0], lifted, atol=1e-12)
     sunk = np.gradient(-lifted, trace.time)
-    np.testing.assert_allclose(told["sinking"][2:-2, 0], sunk[2:-2], atol=2e-5)
+    np.testing.assert_allclose(shown["sinking"][2:-2, 0], sunk[2:-2], atol=2e-5)
 
 
 @pytest.mark.parametrize("name", ["rigid ground", "sliding base", "isolated"])
 def test_a_pivoting_block_is_borne_by_its_pivot_alone(name):
     scene, trace = first_swing(name)
-    told, step = corner_impulses(scene, trace, 1.0), np.diff(trace.time)
+    shown, step = corner_impulses(scene, trace, 1.0), np.diff(trace.time)
     weight = scene.block.mass * scene.gravity * step
-    assert np.abs(told["impulse"][:, 0] / weight).max() < 1e-5
+    assert np.abs(shown["impulse"][:, 0] / weight).max() < 1e-5
     demand, normal, _ = contact_measures(scene, trace)
-    found = np.abs(told["friction"]) / told["impulse"][:, 1]
-    assert found.max() == pytest.approx(demand, rel=1e-2)
-    assert (told["impulse"][:, 1] / weight).min() == pytest.approx(normal, rel=1e-2)
+    result = np.abs(shown["friction"]) / shown["impulse"][:, 1]
+    assert result.max() == pytest.approx(demand, rel=1e-2)
+    assert (shown["impulse"][:, 1] / weight).min() == pytest.approx(normal, rel=1e-2)
 
 
 # Causes named from the trace of runs that are misconfigured in one way, at three sizes, and of clean ones.
@@ -234,10 +234,10 @@ def traced(engine, variant, scene, which=0, **settings):
     return contact_of(scene, get_engine(engine).traced(scene, variant=variant, history=False, **settings)[1], which)
 
 
-def named(found, cause):
+def named(result, cause):
     """Whether the cause, and no other, is named from the size on at which it matters."""
-    matters = max(abs(found.error), abs(found.parts["flight"])) >= LEAST
-    assert cause_of(found) == (cause if matters else None), (found.error, found.parts, found.steps)
+    matters = max(abs(result.error), abs(result.parts["flight"])) >= LEAST
+    assert cause_of(result) == (cause if matters else None), (result.error, result.parts, result.steps)
     return matters
 
 
@@ -277,8 +277,8 @@ def test_a_wrong_setting_is_seen_through(cause, base):
 @pytest.mark.parametrize("step", [2e-3, 1e-3, 5e-4])
 def test_a_soft_contact_is_not_taken_for_a_coarse_step(step):
     """Even where only the tilt is known: the strike lasts, however many steps that takes."""
-    found = traced("mujoco", "first-script", released(BASE), step=step)
-    assert not found.placed and named(found, "compliance")
+    result = traced("mujoco", "first-script", released(BASE), step=step)
+    assert not result.placed and named(result, "compliance")
 
 
 @pytest.mark.parametrize("base, coefficients", [(None, (0.1, 0.13, 0.3)), (BASE, (0.02, 0.025, 0.1))])
@@ -307,14 +307,14 @@ CLEAN = {"exudyn": "compliant-corners"} | dict.fromkeys(("mujoco", "pymunk", "da
 def test_no_clean_run_is_accused(engine, variant, count):
     for scene in random_scenes(count):
         for which in (0, 1):
-            found = traced(engine, variant, scene, which)
-            assert cause_of(found) is None, (scene, found.error, found.parts)
+            result = traced(engine, variant, scene, which)
+            assert cause_of(result) is None, (scene, result.error, result.parts)
 
 
 def test_diagnosis_is_ready_for_a_page_or_says_why_not():
-    told = diagnosis("mujoco", "fixed-step", released(None), step=4e-3)
-    assert (told["tier"], told["best"], told["cause"], told["words"]) == ("tuned", False, "step", CAUSES["step"])
-    assert told["steps"] == 2 and told["deepest"] < 1e-3 and set(told["frames"]) >= {"straddle", "energy"}
+    shown = diagnosis("mujoco", "fixed-step", released(None), step=4e-3)
+    assert (shown["tier"], shown["best"], shown["cause"], shown["words"]) == ("tuned", False, "step", CAUSES["step"])
+    assert shown["steps"] == 2 and shown["deepest"] < 1e-3 and set(shown["frames"]) >= {"straddle", "energy"}
     blind = diagnosis("pymunk", "first-script", released(BASE))
     assert not blind["placed"] and blind["words"] in CAUSES.values() and "deepest" not in blind
     assert (

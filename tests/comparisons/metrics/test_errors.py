@@ -67,7 +67,7 @@ def test_swing_energies_need_free_rocking_and_a_history():
 
 def test_impact_times_match_by_side_and_a_lost_one_is_nan():
     response = simulate(free())
-    late = [dataclasses.replace(one, time=one.time + 1e-3) for k, one in enumerate(response.impacts) if k != 3]
+    late = [dataclasses.replace(impact, time=impact.time + 1e-3) for k, impact in enumerate(response.impacts) if k != 3]
     errors = impact_time_errors(dataclasses.replace(response, impacts=late), response)[:8]
     np.testing.assert_allclose(errors, [1e-3] * 3 + [np.nan] + [1e-3] * 4, atol=1e-12)
 
@@ -216,8 +216,8 @@ def test_the_first_boundary_is_the_published_one(monkeypatch, frequency, amplitu
     """Published over g slenderness, and for a restitution of 0.9; what falls 6 s after the pulse counts as standing."""
     scene = agreement.boundary_scene
     monkeypatch.setattr(agreement, "boundary_scene", lambda *given: scene(*given).with_(block={"restitution": 0.9}))
-    found = agreement.first_boundary(0.25, "one-sine", frequency)
-    assert found * math.tan(0.25) / 0.25 == pytest.approx(amplitude, rel=1e-5)
+    result = agreement.first_boundary(0.25, "one-sine", frequency)
+    assert result * math.tan(0.25) / 0.25 == pytest.approx(amplitude, rel=1e-5)
 
 
 def test_a_row_checks_itself_in_the_tests_of_others():

@@ -52,19 +52,23 @@ def test_free_rocking_is_never_parted():
 def test_an_outcome_that_a_small_change_turns_is_said(short, sizes):
     """Let go just short of balance, where a block on rigid ground begins to fall outward."""
     scene = Scene(block=BLOCK, start=Start(tilt=BLOCK.slenderness * (1 - short)))
-    said = {size: unsure_outcome(scene, "rocks", size) for size in (1e-6, 1e-4)}
-    assert {size for size, warning in said.items() if warning} == sizes
+    warnings = {size: unsure_outcome(scene, "rocks", size) for size in (1e-6, 1e-4)}
+    assert {size for size, warning in warnings.items() if warning} == sizes
     for size in sizes:
-        assert (said[size].kind, said[size].quantity, said[size].value) == ("model", "outcome", size)
-        assert "with start up by" in said[size].text and "the block overturns, without it rocks" in said[size].text
+        assert (warnings[size].kind, warnings[size].quantity, warnings[size].value) == ("model", "outcome", size)
+        assert (
+            "with start up by" in warnings[size].text and "the block overturns, without it rocks" in warnings[size].text
+        )
 
 
 def test_an_independent_copy_parts_where_it_is_said_and_the_horizon_is_that_of_the_first_one(shaken):
     scene, _ = shaken
     horizon = sensitivity_horizon(scene)
-    one, other = (simulate(scene.with_(motion=scene.motion.scaled(by)), output_step=1e-3).history for by in (1, 1.0001))
-    apart = np.abs(np.interp(one.time, other.time, other.tilt) - one.tilt) / 0.2
-    assert horizon.copies["motion up"] == pytest.approx(one.time[apart > SPREAD][0], abs=0.01)
+    plain, changed = (
+        simulate(scene.with_(motion=scene.motion.scaled(by)), output_step=1e-3).history for by in (1, 1.0001)
+    )
+    apart = np.abs(np.interp(plain.time, changed.time, changed.tilt) - plain.tilt) / 0.2
+    assert horizon.copies["motion up"] == pytest.approx(plain.time[apart > SPREAD][0], abs=0.01)
     first = np.flatnonzero(horizon.spread > SPREAD)[0]
     assert horizon.time[first - 1] == horizon.horizon == min(t for t in horizon.copies.values() if t is not None)
     assert horizon.parts and horizon.horizon < scene.duration
@@ -80,8 +84,8 @@ def solver(scene, size):
 @pytest.mark.parametrize("size", [1e-5, 1e-4, 1e-3, -1e-3, 1e-2])
 def test_the_perturbation_of_a_solver_is_the_error_it_was_given(shaken, size):
     scene, reference = shaken
-    found = perturbation_of(scene, solver(scene, size), reference)
-    assert abs(size) * 0.99 <= found <= LADDER * abs(size)
+    result = perturbation_of(scene, solver(scene, size), reference)
+    assert abs(size) * 0.99 <= result <= LADDER * abs(size)
 
 
 def test_a_perfect_solver_has_the_least_perturbation_and_the_longest_horizon(shaken):
@@ -126,12 +130,12 @@ def test_no_engine_parts_before_its_own_horizon(engine, seed):
     """Small rocking under long shaking, where exudyn's corners were off before the horizon of 1e-4."""
     scene = long_shaking(0.15, seed).with_(duration=12.0)
     reference, response = simulate(scene, output_step=2e-3), get_engine(engine).simulate(scene)
-    own = solver_horizon(scene, response, reference)
-    end = min(own.horizon, reference.unstable_time or np.inf, response.history.time[-1])
+    own_horizon = solver_horizon(scene, response, reference)
+    end = min(own_horizon.horizon, reference.unstable_time or np.inf, response.history.time[-1])
     time = reference.history.time[reference.history.time < end]
     apart = np.interp(time, response.history.time, response.history.tilt) - reference.history.tilt[: len(time)]
     # By the spread: 1.2 for the sampling of the copies, whose tilt changes fast at an impact.
-    assert np.abs(apart).max() / scene.block.slenderness < 1.2 * SPREAD, (own.horizon, own.perturbation)
+    assert np.abs(apart).max() / scene.block.slenderness < 1.2 * SPREAD, (own_horizon.horizon, own_horizon.perturbation)
 
 
 # Overturning boundaries of the analytic model, and a search beside one of them.
@@ -143,16 +147,16 @@ EDGE = Edge("rigid ground", "one-sine", 4.0, 5.0, True, 0, 4.9, 6.0, 0.1)
 
 
 def test_edges_are_the_published_boundaries_and_the_safe_gap():
-    found = edges(SCENE, "rigid", "one-sine", (2.0, 4.0, 8.0))
+    model_edges = edges(SCENE, "rigid", "one-sine", (2.0, 4.0, 8.0))
     for frequency in (2.0, 4.0, 8.0):
-        column, amplitudes = [edge for edge in found if edge.frequency == frequency], ONE_SINE[frequency]
+        column, amplitudes = [edge for edge in model_edges if edge.frequency == frequency], ONE_SINE[frequency]
         # published over g gamma, here over g tan(gamma)
         mine = [edge.amplitude * np.tan(0.25) / 0.25 for edge in column]
         assert mine == pytest.approx(amplitudes, rel=2e-5)
         assert [(edge.rises, edge.mode) for edge in column] == [(True, 1), (False, 1), (True, 0)][-len(amplitudes) :]
-        for one, other in zip(column, column[1:], strict=False):
-            assert one.high == other.low == pytest.approx(np.sqrt(one.amplitude * other.amplitude))
-    for edge in found:
+        for edge, next_edge in zip(column, column[1:], strict=False):
+            assert edge.high == next_edge.low == pytest.approx(np.sqrt(edge.amplitude * next_edge.amplitude))
+    for edge in model_edges:
         beside = [pulse(SCENE, edge.shape, edge.frequency, edge.amplitude * side) for side in (1 - 1e-4, 1 + 1e-4)]
         runs = [simulate(SCENE.with_(motion=motion)) for motion in beside]
         assert [run.outcome == "overturns" for run in runs] == [not edge.rises, edge.rises]
@@ -162,15 +166,15 @@ def test_edges_are_the_published_boundaries_and_the_safe_gap():
 
 
 def search(edge, outcome, distances=((2e-4, 1.2e-2), (0.1,)), tolerance=2e-5):
-    (found,) = drive([locate(edge, distances, tolerance)], lambda batch: [outcome(a) for _, a in batch])
-    return found
+    (result,) = drive([locate(edge, distances, tolerance)], lambda batch: [outcome(a) for _, a in batch])
+    return result
 
 
 @pytest.mark.parametrize("shift", [0.0, 3e-5, -1e-4, 4e-3, -0.015, 0.08])
 def test_a_shifted_boundary_is_found_to_its_tolerance(shift):
     for edge in (EDGE, dataclasses.replace(EDGE, rises=False)):
-        found = search(edge, lambda amplitude, rises=edge.rises: (amplitude > 5.0 * (1 + shift)) == rises)
-        assert found.half_width <= 1e-5 and abs(found.shift - shift) <= found.half_width * (1 + 1e-9)
+        located = search(edge, lambda amplitude, rises=edge.rises: (amplitude > 5.0 * (1 + shift)) == rises)
+        assert located.half_width <= 1e-5 and abs(located.shift - shift) <= located.half_width * (1 + 1e-9)
 
 
 @pytest.mark.parametrize(
@@ -188,18 +192,18 @@ def test_a_shifted_boundary_is_found_to_its_tolerance(shift):
     ],
 )
 def test_a_boundary_that_is_not_there_is_said_to_be_missing(outcome, reason):
-    found = search(EDGE, outcome)
-    assert found.shift is None and found.half_width is None and found.reason.startswith(reason)
+    located = search(EDGE, outcome)
+    assert located.shift is None and located.half_width is None and located.reason.startswith(reason)
 
 
 def test_the_search_stays_on_its_side_of_the_middle_between_two_boundaries():
-    asked = []
-    search(EDGE, lambda amplitude: asked.append(amplitude) or False)
-    assert 4.9 < min(asked) and max(asked) < 6.0
-    assert min(asked) == pytest.approx(5.0 - 0.9 * 0.1)
+    questions = []
+    search(EDGE, lambda amplitude: questions.append(amplitude) or False)
+    assert 4.9 < min(questions) and max(questions) < 6.0
+    assert min(questions) == pytest.approx(5.0 - 0.9 * 0.1)
     assert search(EDGE, lambda amplitude: bool(amplitude > 5.0)).runs <= 4 + 7
 
 
 def test_an_undecided_run_widens_the_bracket_instead_of_taking_a_side():
-    found = search(EDGE, lambda amplitude: None if abs(amplitude / 5.0 - 1) < 1e-4 else bool(amplitude > 5.0))
-    assert abs(found.shift) <= found.half_width and 1e-4 <= found.half_width <= 2e-4
+    located = search(EDGE, lambda amplitude: None if abs(amplitude / 5.0 - 1) < 1e-4 else bool(amplitude > 5.0))
+    assert abs(located.shift) <= located.half_width and 1e-4 <= located.half_width <= 2e-4

@@ -93,7 +93,7 @@ def test_a_detectable_difference_is_detected_as_often_as_it_says(size, discordan
     random = np.random.default_rng(2)
     draws = random.multinomial(size, [(rate + difference) / 2, max(rate - difference, 0) / 2, 1 - rate], 4000)
     kinds, counts = np.unique(draws, axis=0, return_counts=True)
-    seen = [mcnemar(Confusion(int(rest), 0, int(one), int(other))) <= 0.05 for one, other, rest in kinds]
+    seen = [mcnemar(Confusion(int(rest), 0, int(only_a), int(only_b))) <= 0.05 for only_a, only_b, rest in kinds]
     assert np.average(seen, weights=counts) == pytest.approx(0.8, abs=0.02)  # 3 standard errors of 4000 draws
 
 
@@ -112,10 +112,10 @@ def test_holm_adjusts_step_by_step():
 
 def test_a_comparison_is_of_paired_outcomes():
     motion = np.arange(200)
-    found = compare_outcomes(motion < 80, (motion < 80) & (motion >= 2))
-    assert (found["only_a"], found["only_b"], found["both_overturn"], found["both_stand"]) == (2, 0, 78, 120)
-    assert found["difference"] == -0.01 and found["p_value"] == 0.5
-    assert found["detectable_difference"] == detectable_difference(200, 0.01)
+    result = compare_outcomes(motion < 80, (motion < 80) & (motion >= 2))
+    assert (result["only_a"], result["only_b"], result["both_overturn"], result["both_stand"]) == (2, 0, 78, 120)
+    assert result["difference"] == -0.01 and result["p_value"] == 0.5
+    assert result["detectable_difference"] == detectable_difference(200, 0.01)
 
 
 def test_wilson_takes_sizes_that_are_not_whole():
@@ -129,10 +129,10 @@ def test_runs_of_one_record_count_as_one():
     word, (low, high) = equality(np.zeros(187, dtype=bool), records)
     assert word == "inconclusive (too few runs)" and low == 0.0
     assert high == pytest.approx(1.959964**2 / (50 + 1.959964**2)) == pytest.approx(0.0713, abs=1e-4)
-    one = np.arange(187) == 3
-    assert equality(one, records)[1] == wilson(50 / 187, 50)  # the share of runs, known as well as that of 50
-    assert equality(one, records)[1][1] > high  # a run that differs never makes it surer
-    assert equality(one, range(187)) == equality(one)
+    differs = np.arange(187) == 3
+    assert equality(differs, records)[1] == wilson(50 / 187, 50)  # the share of runs, known as well as that of 50
+    assert equality(differs, records)[1][1] > high  # a run that differs never makes it surer
+    assert equality(differs, range(187)) == equality(differs)
     assert equality([True] * 40 + [False] * 147, records)[0] == "no"
 
 
@@ -145,8 +145,8 @@ FEW = "inconclusive (too few runs)"
     [(0, 100, "yes"), (0, 73, "yes"), (0, 72, FEW), (3, 200, "yes"), (4, 200, "no"), (1, 40, FEW), (20, 40, "no")],
 )
 def test_equal_means_that_the_upper_limit_is_below_five_per_cent(differ, size, word):
-    found, limits = equality(np.arange(size) < differ)
-    assert found == word and limits == wilson(differ, size)
+    result, limits = equality(np.arange(size) < differ)
+    assert result == word and limits == wilson(differ, size)
 
 
 # The class of a run: by what counts, and left out by the model's word alone.
@@ -205,12 +205,12 @@ def test_bootstrap_has_the_published_standard_errors_of_bliss():
 
 
 def test_fragility_does_not_depend_on_the_unit_of_intensity():
-    one, other = (fit_fragility(unit * np.array([1, 2, 4]), [2, 9, 17], [20, 20, 20]) for unit in (1.0, 9.81))
-    assert (other.median, other.dispersion) == pytest.approx((9.81 * one.median, one.dispersion), rel=1e-6)
+    plain, scaled = (fit_fragility(unit * np.array([1, 2, 4]), [2, 9, 17], [20, 20, 20]) for unit in (1.0, 9.81))
+    assert (scaled.median, scaled.dispersion) == pytest.approx((9.81 * plain.median, plain.dispersion), rel=1e-6)
 
 
 @pytest.mark.parametrize(
-    "overturned, said",
+    "overturned, message",
     [
         ([0, 0, 20], "do not overlap"),
         ([0, 7, 20], "do not overlap"),
@@ -219,8 +219,8 @@ def test_fragility_does_not_depend_on_the_unit_of_intensity():
         ([15, 10, 5], "does not become likelier"),
     ],
 )
-def test_counts_that_determine_no_curve_are_an_error(overturned, said):
-    with pytest.raises(ValueError, match=said):
+def test_counts_that_determine_no_curve_are_an_error(overturned, message):
+    with pytest.raises(ValueError, match=message):
         fit_fragility([1.0, 2.0, 3.0], overturned, [20, 20, 20])
 
 
@@ -243,7 +243,7 @@ def test_intervals_cover_a_known_curve_as_often_as_they_say():
 
 def test_the_test_of_fit_rejects_a_true_curve_as_often_as_it_says_and_a_wrong_one_always():
     clouds = [cloud(400, 0.6, seed) for seed in range(300)]
-    p_values = [goodness(*one, fit_fragility(*one)) for one in clouds]
+    p_values = [goodness(*each, fit_fragility(*each)) for each in clouds]
     assert np.mean(np.array(p_values) < 0.1) == pytest.approx(0.1, abs=0.055)  # 3 standard errors of 300
     assert np.mean(p_values) == pytest.approx(0.5, abs=0.055)
     intensity, exceeded = cloud(2000, 0.4, 1)
@@ -291,8 +291,8 @@ def test_points_are_shares_of_equally_many_runs():
     intensity, exceeded = cloud(100, 0.4, 4)
     order, begin = np.argsort(intensity), 0
     for point, size in zip(points(intensity, exceeded, 7), (15, 15, 14, 14, 14, 14, 14), strict=True):
-        own = order[begin : begin + size]
-        count, middle = int(exceeded[own].sum()), np.exp(np.log(intensity[own]).mean())
+        members = order[begin : begin + size]
+        count, middle = int(exceeded[members].sum()), np.exp(np.log(intensity[members]).mean())
         assert (point["size"], point["share"], point["intensity"]) == (size, count / size, pytest.approx(middle))
         assert (point["low"], point["high"]) == wilson(count, size)
         begin += size
@@ -311,13 +311,13 @@ def test_the_score_of_a_forecast_by_hand():
 def test_no_group_is_on_both_sides_and_each_is_judged_once():
     groups = ["a", "b", "a", "c", "b", "a"]
     seen = np.zeros(6, dtype=int)
-    for others, own in folds(groups):
-        assert not (others & own).any() and (others | own).all()
-        assert not {groups[k] for k in np.flatnonzero(others)} & {groups[k] for k in np.flatnonzero(own)}
-        seen += own
+    for others, held in folds(groups):
+        assert not (others & held).any() and (others | held).all()
+        assert not {groups[k] for k in np.flatnonzero(others)} & {groups[k] for k in np.flatnonzero(held)}
+        seen += held
     assert seen.tolist() == [1] * 6
-    assert sum(own for _, own in halves(5)).tolist() == [1] * 5
-    assert not any((others & own).any() for others, own in halves(5))
+    assert sum(held for _, held in halves(5)).tolist() == [1] * 5
+    assert not any((others & held).any() for others, held in halves(5))
 
 
 def test_what_is_held_out_is_not_fitted_to():
@@ -368,18 +368,18 @@ def test_logistic_regression_of_collinear_features_and_their_squares_settles(see
     raw = np.column_stack([plain, plain**2, plain.prod(axis=1)])
     happened = rng.random(300) < 1 / (1 + np.exp(-6 * (pga + 2 + 0.3 * (pga + 2) ** 2)))
     every = np.ones(300, dtype=bool)
-    found = [logistic(features, happened, every) for features in (bent(plain), raw)]
-    for probability in found:
+    results = [logistic(features, happened, every) for features in (bent(plain), raw)]
+    for probability in results:
         assert np.abs(bent(plain).T @ (probability - happened)).max() < 0.01  # of 300 cases
-    one, other = (np.log(np.where(happened, probability, 1 - probability)).sum() for probability in found)
-    assert one == pytest.approx(other, abs=0.01)
+    first, second = (np.log(np.where(happened, probability, 1 - probability)).sum() for probability in results)
+    assert first == pytest.approx(second, abs=0.01)
     assert bent(plain).shape == (300, 5)
 
 
 def test_separated_outcomes_give_a_steep_curve_and_no_overflow():
     x, happened = np.arange(10.0)[:, None], np.arange(10) >= 5
-    found = logistic(x, happened, np.ones(10, dtype=bool))
-    assert np.isfinite(found).all() and (np.diff(found) >= 0).all() and right(found, happened).all()
+    result = logistic(x, happened, np.ones(10, dtype=bool))
+    assert np.isfinite(result).all() and (np.diff(result) >= 0).all() and right(result, happened).all()
 
 
 def test_an_interval_by_groups_is_that_of_every_draw():
