@@ -54,9 +54,8 @@ its impacts do not slip; and no friction may be so large that a sliding block ha
 ``rocking run`` also runs the analytic model with start, motion and restitution (or friction) changed by a millionth. It
 warns if the outcome changes: so near an outcome boundary no solver can be trusted.
 
-A file is written from the height, width and mass of a block, with its base, bearings and motion::
-
-    text = scene_text("bust", block_from(1.9, 0.55, density=MATERIALS["marble"]))
+A file is written from the height, width and mass of a block, with its base, bearings and motion:
+``scene_text("bust", block_from(1.9, 0.55, density=MATERIALS["marble"]))``.
 """
 
 import json

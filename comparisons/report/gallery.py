@@ -15,6 +15,7 @@ from ..execution.by_solver import by_engine, checked, date_of, held, results_in
 from ..execution.files import write, write_all
 from ..execution.provenance import PROJECT_FOLDER, RESULTS, Result
 from ..plotting.charts import alone
+from ..schemas.columns import spelled
 from ..studies.rows import read_study
 from .answer import Stored, commit_of, judgements_of, screen, setups_of, stored_studies, variants_of
 
@@ -29,7 +30,7 @@ def gallery(first: Mapping[str, Any]) -> dict[str, str]:
     charts = {name: first[name] for name in ("costs", "endings") if first[name]}
     files = {}
     for name, picture in charts.items():
-        wide, *_ = ElementTree.fromstring(f"<both>{picture.svg.decode()}</both>")
+        wide, *_ = ElementTree.fromstring(f"<both>{picture.element}</both>")
         files[f"{name}.svg"] = alone(ElementTree.tostring(wide[0], encoding="unicode"))
     return files
 
@@ -45,7 +46,9 @@ def headlines(first: Mapping[str, Any]) -> str:
     """Return the first screen as Markdown: its lines, its charts, and the recommendation."""
     charts = " ".join(f"![{ALT[name]}](comparisons/report/gallery/{name}.svg)" for name in ALT if first[name])
     paragraphs = [line for about, words in first["lines"] for line in (*wrap(f"**{about}:** {words}", 120), "")]
-    return "\n".join((*paragraphs, charts, *(line for advised in first["advice"] for line in _markdown(advised))))
+    return spelled(
+        "\n".join((*paragraphs, charts, *(line for advised in first["advice"] for line in _markdown(advised))))
+    )
 
 
 def _markdown(shown):
