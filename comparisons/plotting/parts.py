@@ -15,9 +15,7 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup
 
-from ..schemas.columns import Column, Key, Row, short, spelled, value_of
-
-READ = re.compile(r'>[^<>]+<|(?:aria-label|data-says)="[^"]*"')  # what is read of an SVG
+from ..schemas.columns import Column, Key, Row, short, value_of
 
 
 @dataclass(frozen=True)
@@ -46,8 +44,8 @@ class Figure:
 
     @property
     def element(self) -> Markup:
-        """The picture as an element, its words `spelled`."""
-        return Markup(READ.sub(lambda words: spelled(words[0]), self.svg.decode()))
+        """The picture as an element."""
+        return Markup(self.svg.decode())
 
     @property
     def panels(self) -> int:

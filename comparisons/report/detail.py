@@ -29,7 +29,7 @@ from ..plotting.charts import STYLE, colour, key_of
 from ..plotting.diagrams import Drawing, mathml
 from ..plotting.parts import Section, templates
 from ..plotting.wording import indexed
-from ..schemas.columns import number, signed, unbroken
+from ..schemas.columns import number, signed, spelled_page, unbroken
 from ..studies.rows import read_study
 from .answer import origin_of
 
@@ -253,7 +253,7 @@ def detail(
     """
     template = environment().get_template("detail.html")
     shown = {"title": title, "sections": sections, "origin": origin}
-    return template.render(**shown, pages=pages, home=home, file=file, **assets())
+    return spelled_page(template.render(**shown, pages=pages, home=home, file=file, **assets()))
 
 
 @cache

@@ -15,7 +15,7 @@ from ..execution.by_solver import by_engine, checked, date_of, held, results_in
 from ..execution.files import write, write_all
 from ..execution.provenance import PROJECT_FOLDER, RESULTS, Result
 from ..plotting.charts import alone
-from ..schemas.columns import spelled
+from ..schemas.columns import spelled, spelled_page
 from ..studies.rows import read_study
 from .answer import Stored, commit_of, judgements_of, screen, setups_of, stored_studies, variants_of
 
@@ -30,7 +30,7 @@ def gallery(first: Mapping[str, Any]) -> dict[str, str]:
     charts = {name: first[name] for name in ("costs", "endings") if first[name]}
     files = {}
     for name, picture in charts.items():
-        wide, *_ = ElementTree.fromstring(f"<both>{picture.element}</both>")
+        wide, *_ = ElementTree.fromstring(f"<both>{spelled_page(picture.element)}</both>")
         files[f"{name}.svg"] = alone(ElementTree.tostring(wide[0], encoding="unicode"))
     return files
 

@@ -19,7 +19,7 @@ from ..metrics.statistics import wilson
 from ..plotting import diagrams
 from ..plotting.parts import SIGNS, Section, Table
 from ..plotting.wording import TRUSTED, USABLE
-from ..schemas.columns import NAME, percent
+from ..schemas.columns import NAME, percent, spelled_page
 from .answer import (
     Stored,
     commit_of,
@@ -131,7 +131,9 @@ def write_page(
     ):
         file = f"{PAGES}/{name}.html"
         files[file] = detail(title, sections, origin, pages=listed, home=PAGE, file=file)
-    return write_all(folder, {**files, PAGE: first})[-1]  # each page is there before the one that leads to it
+    return write_all(folder, {**files, PAGE: spelled_page(first)})[
+        -1
+    ]  # each page is there before the one that leads to it
 
 
 def _cards(scenes, calls):

@@ -25,7 +25,9 @@ Key = str | Callable[[Any], Any]
 
 
 # An engine's name, unless it is an argument of a command, a part of a longer name or of a list without blanks.
-TYPED = r"(?<!engine )(?<!engines )(?<!script )(?<![\w/=.,\[-])(?:{})(?![\w/=\]-]|[.,]\S)"
+TYPED = r"(?<!engine )(?<!engines )(?<!script )(?<!package )(?<!['\w/=.,;\[-])(?:{})(?!['&\w/=\]-]|[.,]\w)"
+CODE = re.compile(r"(<(?:script|style|code|pre)\b.*?</(?:script|style|code|pre)>)", re.DOTALL)  # of a page
+READ = re.compile(r'>[^<>]+<|(?:aria-label|alt|data-says)="[^"]*"')  # what is read of it
 MINUS_DIGITS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 UNIT = re.compile(r"(?<=[\d⁰¹²³⁴⁵⁶⁷⁸⁹]) (?=(?:ms|s|m|N/m|kg|rad|deg|Hz|g|of)\b|[%×])|(?<=\bof) (?=\d)")
 
@@ -70,15 +72,22 @@ def typeset(text: str) -> str:
 
 
 def unbroken(text: str) -> str:
-    """The text with no line break between a number and its unit, or the count that it is of, and `spelled`."""
-    return UNIT.sub("\u00a0", spelled(text))
+    """The text with no line break between a number and its unit, or the count that it is of."""
+    return UNIT.sub("\u00a0", text)
 
 
 def spelled(text: str) -> str:
     """The text with engines called as their makers write them, but in commands and lists of names to be typed."""
     titles = {name: engine.title for name, engine in ENGINES.items() if engine.title}
     names = "|".join(map(re.escape, titles))
-    return re.sub(TYPED.format(names), lambda found: titles[found[0]], text) if titles else text
+    return re.sub(TYPED.format(names), lambda name: titles[name[0]], text) if titles else text
+
+
+def spelled_page(html: str) -> str:
+    """HTML, or SVG, whose words are `spelled`; code, scripts and what scripts read stay."""
+    parts = CODE.split(html)
+    parts[::2] = (READ.sub(lambda words: spelled(words[0]), part) for part in parts[::2])
+    return "".join(parts)
 
 
 def power_of_ten(value: float) -> str:

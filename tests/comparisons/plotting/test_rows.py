@@ -20,7 +20,7 @@ from comparisons.plotting.wording import (
     listed,
     tally,
 )
-from comparisons.schemas.columns import NAME, Column, number, percent, short, spelled
+from comparisons.schemas.columns import NAME, Column, number, percent, short, spelled, spelled_page
 
 ROWS = [
     {"part": "cell", "engine": "one", "variant": "fine", "ratio": None, "rms": 1.234e-5, "failed": 0, "runs": 4},
@@ -230,3 +230,6 @@ def test_no_mark_is_told_by_its_colour_alone():
 )
 def test_engines_are_called_as_their_makers_write_them_but_where_a_name_is_typed(text, shown):
     assert spelled(text) == shown
+    assert spelled_page(f'<p title="{text}" data-who="pybullet">{text}</p><code>pybullet</code>') == (
+        f'<p title="{text}" data-who="pybullet">{shown}</p><code>pybullet</code>'
+    )
