@@ -27,21 +27,9 @@ from ..execution.files import TemporaryFolder
 from ..execution.progress import spinner
 from ..execution.solving import ANALYTIC, named_engines
 from ..execution.sweep import Processes, Row, run_sweep
+from ..schemas.advice import Choice, Level, VariantLevels
 from ..schemas.runs import Warned
-from .criteria import (
-    CRITERIA,
-    SAFETY,
-    Choice,
-    Level,
-    Measure,
-    VariantLevels,
-    cpu_seconds,
-    fitting,
-    model_parts,
-    neighbours,
-    safety,
-    until,
-)
+from .criteria import CRITERIA, SAFETY, Measure, cpu_seconds, fitting, model_parts, neighbours, safety, until
 
 LevelKey = tuple[str, str, float]  # engine, variant, value of its accuracy parameter
 

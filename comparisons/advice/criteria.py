@@ -1,7 +1,6 @@
-"""Criteria of a choice: the error of a run and the time up to which it counts, parts of a model, and the answer.
+"""Criteria of a choice: the error of a run, the time up to which it counts, and the parts of a model.
 
-`model_parts` tells what need not be modelled, and what it would cost. `Choice` is the answer of `choose`, as typed
-values that become JSON.
+`model_parts` tells what need not be modelled, and what it would cost.
 """
 
 import dataclasses
@@ -10,7 +9,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from pydantic import Field
 
 from analytic import Response, Scene, SceneError, SettingError, simulate
 from analytic.response import LEVEL
@@ -28,91 +26,7 @@ from ..metrics.errors import (
     sensitivity_horizon,
     strong_impacts,
 )
-from ..schemas import Form, Part
-from ..schemas.runs import Warned
-
-
-class Level(Part):
-    """A value of a variant's accuracy parameter.
-
-    error: the worst over the scene and its neighbours, for outcomes the share that differs; None if unknown. untried:
-    the level passes on the scene and was not run on the neighbours, because a cheaper one passes there. why: the reason
-    why it does not pass. cpu_per_second: CPU seconds per simulated second."""
-
-    engine: str
-    variant: str
-    parameter: str
-    value: float
-    default: bool
-    runs: int
-    error: float | None
-    cpu_per_second: float | None
-    passes: bool
-    untried: bool
-    why: str | None
-
-
-class VariantLevels(Part):
-    """The levels of a variant from coarse to fine.
-
-    `tier`: the kind of the variant. order: the error is proportional to the parameter to this power, if it can be
-    determined. applies_impact: the adapter, not the engine, applies eqs (7) and (8)."""
-
-    engine: str
-    variant: str
-    tier: str
-    applies_impact: bool
-    order: float | None
-    levels: list[Level]
-
-    def cheapest(self) -> Level:
-        """Return the cheapest level that passes; without one the cheapest untried level; without one the finest."""
-        for kind in ("passes", "untried"):
-            if candidates := [level for level in self.levels if getattr(level, kind)]:
-                return min(candidates, key=lambda level: level.cpu_per_second or 0.0)
-        return self.levels[-1]
-
-
-class ModelPart(Part):
-    """A part of a model.
-
-    needed: whether this scene needs it. cost: factor on the CPU time if it is modelled nevertheless, measured on this
-    scene; None if not measured."""
-
-    part: str
-    needed: bool
-    why: str
-    cost: float | None
-
-
-class Choice(Form):
-    """The answer of `choose`.
-
-    chosen: the cheapest level that passes with all finer ones; None if there is none, and `best` is then the level with
-    the least error. safety_factor: the permissible error over the largest one that passes. neighbours: factors of start
-    and motion. left_out: {factor: why} of neighbours that the model refuses. until: time [s] up to which histories were
-    compared, or were run for their impacts. cpu_seconds, analytic_cpu_seconds: of the chosen level and of the analytic
-    model on the whole scene. warnings: on the scene in the model."""
-
-    schema_: str = Field(default="rocking choose 4", serialization_alias="schema")
-    scene: str
-    criterion: str
-    error: float
-    safety_factor: float
-    neighbours: list[float]
-    left_out: dict[str, str]
-    until: float
-    chosen: Level | None
-    best: Level | None
-    cpu_seconds: float | None
-    analytic_cpu_seconds: float
-    command: str | None
-    snippet: str | None
-    variants: list[VariantLevels]
-    parts: list[ModelPart]
-    missing: dict[str, str]
-    warnings: list[Warned]
-
+from ..schemas.advice import Level, ModelPart
 
 CRITERIA = ("restitution", "tilt", "displacement", "slip", "outcome")
 COLUMNS = {"tilt": "tilt", "displacement": "base_displacement", "slip": "slip"}  # of a history

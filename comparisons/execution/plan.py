@@ -35,8 +35,6 @@ from .cases import SOLVERS, Case
 from .sweep import Row
 
 if TYPE_CHECKING:
-    from ..plotting.glance import Glance
-    from ..plotting.parts import Judgement, Page
     from .provenance import Result
 
 TIME_LIMIT = 300.0  # s, of one run
@@ -138,15 +136,15 @@ class Study:
                 parameters[name] = parameter.replace(annotation=known)
         return parameters
 
-    def page(self, result: Result) -> Page:
+    def page(self, result: Result) -> Any:
         """Return the page of a result."""
         return import_module(self.shown_by).page(result)
 
-    def judgements(self, result: Result) -> tuple[Judgement, ...]:
+    def judgements(self, result: Result) -> tuple[Any, ...]:
         """Return rows for the report's first table; none if the study judges no engine."""
         return getattr(import_module(self.shown_by), "judgements", lambda result: ())(result)
 
-    def glance(self, result: Result) -> Glance | None:
+    def glance(self, result: Result) -> Any:
         """Return what the study adds to the report's first screen, or None."""
         return getattr(import_module(self.shown_by), "glance", lambda result: None)(result)
 

@@ -34,6 +34,7 @@ from analytic.response import Caution, Failure, about_record
 from analytic.scene import Scene
 from analytic.scene_file import MATERIALS, UPLIFT, YIELD, derived, load_scene
 from engines import BROKEN, ENGINES, get_engine, guard
+from engines.comparison import changed_copies
 from engines.observe import failed_response
 from engines.simulating import RANGE, choose
 
@@ -235,11 +236,25 @@ def _simulate(scene, solver, variant, settings, history, compare):
         return engine.simulate(scene, variant=variant, history=history, compare=compare, **settings)
     response = _analytic(scene, variant, settings, history)
     if compare and response.decided:
-        from ..metrics.errors import unsure_outcome
-
         doubt = unsure_outcome(scene, response.outcome)
         return dataclasses.replace(response, warnings=(*response.warnings, *filter(None, [doubt])))
     return response
+
+
+def unsure_outcome(scene: Scene, outcome: str, perturbation: float = 1e-6) -> Caution | None:
+    """Return a warning if one of the `changed_copies` has another outcome than the model's `outcome`, or None."""
+    for name, copy in changed_copies(scene, perturbation).items():
+        try:
+            other = analytic.simulate(copy, history=False).outcome
+        except SceneError as error:  # the copy is refused, not the scene
+            other = f"cannot be run ({error.problem})"
+        if other != outcome:
+            words = (
+                f"with {name} by {perturbation:.0e} the block {other}, without it {outcome}: the scene is near an "
+                "outcome boundary; see rocking margin"
+            )
+            return Caution("model", words, "outcome", perturbation)
+    return None
 
 
 def _analytic(scene, variant, settings, history):

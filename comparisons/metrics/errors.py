@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from analytic import Base, Bearings, Caution, Impact, Response, Scene, SceneError, simulate
+from analytic import Base, Bearings, Impact, Response, Scene, SceneError, simulate
 from analytic.errors import Values
 from analytic.rocking import RockingModel, base_jump_length, base_jump_length_as_printed, restitution
 from engines.checks import energy_balance, energy_gain
@@ -359,22 +359,6 @@ class Horizon:
     def parts(self) -> bool:
         """Whether a copy departs before the run ends."""
         return any(time is not None for time in self.copies.values())
-
-
-def unsure_outcome(scene: Scene, outcome: str, perturbation: float = LEAST) -> Caution | None:
-    """Return a warning if one of the `changed_copies` has another outcome than the model's `outcome`, or None."""
-    for name, copy in changed_copies(scene, perturbation).items():
-        try:
-            other = simulate(copy, history=False).outcome
-        except SceneError as error:  # the copy is refused, not the scene
-            other = f"cannot be run ({error.problem})"
-        if other != outcome:
-            words = (
-                f"with {name} by {perturbation:.0e} the block {other}, without it {outcome}: the scene is near an "
-                "outcome boundary; see rocking margin"
-            )
-            return Caution("model", words, "outcome", perturbation)
-    return None
 
 
 def sensitivity_horizon(scene: Scene, *, perturbation: float = PERTURBATION) -> Horizon:

@@ -7,8 +7,8 @@ from rich.text import Text
 
 from engines import missing_words
 
-from ..advice.criteria import Choice, Level
 from ..execution.files import readable
+from ..schemas.advice import Choice, Level
 from .plots import TITLE_CHARACTERS, marker, style
 from .terminal import digits, echo, grid
 

@@ -3,11 +3,10 @@
 import json
 from typing import Any
 
-from ..advice.criteria import Choice
 from ..execution.files import write_all
 from ..execution.provenance import PROJECT_FOLDER
 from . import schema_of
-from .advice import BearingSearch, Design, Margins
+from .advice import BearingSearch, Choice, Design, Margins
 from .runs import Comparison, New, Record, Report, Run, Sheet, StudyResult, Verification
 
 FOLDER = PROJECT_FOLDER / "comparisons" / "schemas"

@@ -10,6 +10,7 @@ from sliding_scenes import LOST
 from analytic import Block, PulseMotion, SampledMotion, Scene, Start, simulate
 from analytic.rocking import restitution
 from comparisons.execution.plan import drive
+from comparisons.execution.solving import unsure_outcome
 from comparisons.metrics.boundaries import Edge, edges, least_normal, locate, pulse
 from comparisons.metrics.errors import (
     LADDER,
@@ -19,7 +20,6 @@ from comparisons.metrics.errors import (
     restitution_error,
     sensitivity_horizon,
     solver_horizon,
-    unsure_outcome,
 )
 from engines import get_engine
 

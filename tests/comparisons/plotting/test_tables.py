@@ -12,13 +12,13 @@ from analytic.bearing_scan import BearingScan
 from analytic.margins import Contact
 from analytic.response import COMPARED, Difference
 from analytic.rocking import design_bearings
-from comparisons.advice.criteria import Choice, Level, VariantLevels
 from comparisons.commands.advice import _chosen
 from comparisons.execution.solving import read_row
 from comparisons.metrics.errors import Horizon
 from comparisons.plotting.choices import print_choice
 from comparisons.plotting.margins import _friction_words, _normal_words, print_bearings
 from comparisons.plotting.terminal import comparison, mode_words, show, summary
+from comparisons.schemas.advice import Choice, Level, VariantLevels
 
 SCENE = load_scene("free-rocking-rigid")
 
