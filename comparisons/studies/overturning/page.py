@@ -1,4 +1,4 @@
-"""What is shown of the overturning study.
+"""The page of the overturning study: maps of outcomes, and boundaries of the model and of engines.
 
 Maps of outcomes with the boundaries of the model and of engines.
 """
@@ -46,7 +46,7 @@ from .study import COLUMNS
 
 
 def model_map(result: Result, ground: str, shape: str) -> Chart:
-    """Outcomes of the analytic model with its boundaries."""
+    """Return a map of outcomes of the analytic model with its boundaries."""
     chart = _outcomes(result, ground, shape, f"Outcomes of the analytic model on {ground} under a {shape} pulse.")
     edges = where(result.rows, part="edge", ground=ground, shape=shape)
     tooltips = [f"amplitude {number(edge['amplitude'], 4)}, N/(m g) {number(edge['min_normal'], 2)}" for edge in edges]
@@ -55,15 +55,18 @@ def model_map(result: Result, ground: str, shape: str) -> Chart:
 
 
 def maps(result: Result, shapes: Iterable[str]) -> Figure | None:
-    """Outcomes of the analytic model with the boundaries of the engines, and outcomes that differ."""
+    """Figure of outcomes of the analytic model, with the boundaries of the engines and the outcomes that differ.
+
+    None without shapes or grounds.
+    """
     chosen = list(shapes)
     panels = [_map(result, ground, shape) for shape, ground in itertools.product(chosen, result.settings["grounds"])]
     if not panels:
         return None
     differ = where(result.rows, part="disagreement", shape=set(chosen))
     caption = (
-        "Analytic model: shaded overturns, blank stands. Marks: boundaries of the engines’ main variants, as far as "
-        "they were found; shifts too small to be seen here are in the table."
+        "Analytic model: shaded overturns, blank stands. Marks: boundaries that the engines’ main variants found; "
+        "shifts too small to be seen here are in the table."
         + f" Crosses: outcomes that differ further than {percent(result.settings['band'], 1)} from every boundary."
         * bool(differ)
     )
@@ -72,6 +75,7 @@ def maps(result: Result, shapes: Iterable[str]) -> Figure | None:
 
 
 def _outcomes(result, ground, shape, says):
+    """Map of outcomes of the analytic model, without marks."""
     frequency, amplitude = result.arrays["frequency"], result.arrays["amplitude"]
     chart = Chart(
         Axis(FREQUENCY.head, float(frequency[0]), float(frequency[-1])),
@@ -85,17 +89,20 @@ def _outcomes(result, ground, shape, says):
 
 
 def _map(result, ground, shape):
+    """Map of outcomes with the engines' boundaries, and their outcomes that differ."""
     says = f"Outcomes on {ground} over frequency and amplitude of a {shape} pulse, with boundaries of the engines."
-    chart, here = _outcomes(result, ground, shape, says), where(result.rows, ground=ground, shape=shape)
+    chart, map_rows = _outcomes(result, ground, shape, says), where(result.rows, ground=ground, shape=shape)
     for engine in result.settings["engines"]:
         variant = result.settings["default_variants"][engine]
-        rows = [row for row in where(here, part="shift", engine=engine, variant=variant) if row["shift"] is not None]
+        rows = [
+            row for row in where(map_rows, part="shift", engine=engine, variant=variant) if row["shift"] is not None
+        ]
         tooltips = [
             f"{engine}: amplitude {number(row['amplitude'], 4)}, shifted by {percent(row['shift'])}" for row in rows
         ]
         amplitudes = [row["amplitude"] * (1 + row["shift"]) for row in rows]
         chart.dots([row["frequency"] for row in rows], amplitudes, engine, filled=False, says=tooltips, beyond=True)
-        rows = where(here, part="disagreement", engine=engine)
+        rows = where(map_rows, part="disagreement", engine=engine)
         tooltips = [f"{engine}: differs at amplitude {AMPLITUDE.text(row)}" for row in rows]
         chart.dots(
             [row["frequency"] for row in rows], [row["amplitude"] for row in rows], engine, says=tooltips, mark="x"
@@ -104,7 +111,7 @@ def _map(result, ground, shape):
 
 
 def _shade(chart, frequency, amplitude, falls):
-    """Runs of amplitudes that overturn, as a polygon for each stretch of frequencies with the same number of runs."""
+    """Shade the amplitudes that overturn: a polygon for each stretch of frequencies with equally many intervals."""
     runs = []
     for column in falls.T:
         ends = np.flatnonzero(np.diff(np.concatenate([[0], column.astype(np.int8), [0]])))
@@ -114,7 +121,7 @@ def _shade(chart, frequency, amplitude, falls):
         columns = list(stretch)
         end = begin + len(columns)
         xs = list(frequency[begin:end])
-        if end < len(runs):  # into the next one, so that no seam is seen
+        if end < len(runs):  # up to the next one, so that no gap shows
             xs.append(1.5 * frequency[end] - 0.5 * frequency[end - 1])
             columns.append(columns[-1])
         for run in zip(*columns, strict=True):
@@ -124,13 +131,13 @@ def _shade(chart, frequency, amplitude, falls):
 
 
 def over_frequency(rows: Sequence[Row]) -> Figure | None:
-    """Shifts of boundaries over the frequency of their pulse, for those that were found."""
+    """Figure of the shifts of boundaries over the frequency of their pulse, for the boundaries that were found."""
     return lines(
         [row for row in rows if row["shift"] is not None],
         FREQUENCY,
         Column(SHIFT.head, lambda row: max(SHIFT.of(row), DECADES[0])),
         "Boundary of the engine over that of the analytic model, less 1, of the main variants; smaller shifts are "
-        f"drawn at {short(DECADES[0])} %, boundaries not found are in the table below.",
+        f"drawn at {short(DECADES[0])} %. Boundaries that were not found are in the table below.",
         panel="ground",
         by=lambda row: f"overturning {'begins' if row['rises'] else 'ends'}",
         log="y",
@@ -152,6 +159,7 @@ REGIONS = {
 
 
 def page(result: Result) -> Page:
+    """Return the page of a result."""
     s = result.settings
     edges, shifts = where(result.rows, part="edge"), where(result.rows, part="shift")
     sound = pressed(result)
@@ -176,7 +184,7 @@ def page(result: Result) -> Page:
 
 
 def _summary(result, s, band):
-    """What stands on the report's first page, too."""
+    """Parts that the report's first page shows too."""
     return (
         _shifts(result),
         table(
@@ -198,9 +206,9 @@ def _summary(result, s, band):
             ),
         ),
         table(
-            f"Coarse scan: of {_scanned(s)} pulses those further than {band} from every boundary, with the block "
-            "pressed on its base; the others are left out. 95 % Wilson intervals, pulses of one shape and "
-            "frequency on one ground as one",
+            f"Coarse scan: the {_scanned(s)} pulses, less those within {band} of a boundary and those that do not "
+            "keep the block pressed on its base. 95 % Wilson intervals count pulses of one shape and frequency on one "
+            "ground as one",
             where(result.rows, part="scan"),
             NAME,
             COLUMNS["runs"],
@@ -214,7 +222,7 @@ def _summary(result, s, band):
 
 
 def _details(result, s, edges, shifts, sound, known, main_variants, band):
-    """What stands on the study's own page alone."""
+    """Parts that only the study's own page shows."""
     return (
         maps(result, s["shapes"]),
         Head("Every boundary"),
@@ -260,11 +268,12 @@ def _details(result, s, edges, shifts, sound, known, main_variants, band):
 
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
+    """Judge boundaries by (engine, variant)."""
     return (judged(result, "boundaries"),)
 
 
 def glance(result: Result) -> Glance:
-    """Of the coarse scan, away from the boundaries."""
+    """Return the outcomes of the coarse scan, away from the boundaries."""
     tiers = {NAME.of(variant): variant["tier"] for variant in result.settings["variants"]}
     near = _near_boundaries(result)
     return Glance(
@@ -279,7 +288,7 @@ def glance(result: Result) -> Glance:
 
 
 def _shifts(result):
-    """Beside each other the boundaries at their shifts, and those that are sought in one of the model's maps."""
+    """Figure of all boundaries at their shifts, beside one map of the model that shows what is searched for."""
     settings = result.settings
     model = model_map(result, next(iter(settings["grounds"])), settings["shapes"][0])
     words = "Right: analytic model under one pulse; shaded: overturns; dots: boundaries."
@@ -287,16 +296,20 @@ def _shifts(result):
 
 
 def _scanned(settings):
-    """How many pulses the coarse scan has."""
+    """Return how many pulses the coarse scan has."""
     return math.prod(len(settings[key]) for key in ("grounds", "shapes", "frequencies", "scan"))
 
 
 def _share(row):
+    """Share of the runs of a scan that differ or fail."""
     return (row["only_a"] + row["only_b"] + row["failed"]) / row["runs"]
 
 
 def _near_boundaries(result):
-    """How many points of the scan are left out as near a boundary, not counting others where the block would jump."""
+    """Count the points of the scan that are left out as near a boundary.
+
+    Other points are left out because the block would jump; they are not counted.
+    """
     settings = result.settings
     edges = grouped(where(result.rows, part="edge"), "ground", "shape", "frequency")
     places = itertools.product(settings["grounds"], settings["shapes"], settings["frequencies"])
@@ -307,7 +320,7 @@ def _near_boundaries(result):
 
 
 def _sliding(settings):
-    """On which grounds a built-in friction is too low for a block to lift."""
+    """Yield sentences on the grounds on which a variant's built-in friction is too low for a block to lift."""
     for variant in settings["variants"]:
         mu = variant["friction"]
         for ground, given in settings["grounds"].items() if mu is not None else ():
@@ -319,6 +332,7 @@ def _sliding(settings):
 
 
 def _held_down(edges, shifts):
+    """Yield what is shown of boundaries at which the normal force of the model becomes negative."""
     pulled = [edge for edge in edges if edge["min_normal"] < 0]
     if pulled:
         yield (
@@ -351,7 +365,10 @@ def _confusions(result, band):
 
 
 def _refinement(result):
-    """The boundaries at one frequency at all levels; at the default those that were searched more closely."""
+    """Yield the boundaries at one frequency at all levels.
+
+    At the default level they are those that were searched more closely.
+    """
     variants = {NAME.of(variant): variant for variant in result.settings["variants"]}
     tried = where(result.rows, part="refinement")
     places, shifts = {place(row) for row in tried}, where(result.rows, part="shift")
@@ -368,7 +385,7 @@ def _refinement(result):
         Column("accuracy parameter over its default [-]", lambda row: row["level"] / row["default"]),
         LARGEST,
         "Largest shift where all boundaries are found, one-sine pulses on both grounds; a stiffness refines upward, a "
-        "step downward. Time-stepping: the analytic model's equations by another method, its steps over 0.1 ms.",
+        "step downward. Time-stepping: the analytic model's equations by another method; its steps are over 0.1 ms.",
         log="xy",
         rules=[("y", 100 * LIMIT, "trusted")],
     )
@@ -401,8 +418,8 @@ def _how(result):
         f"{min(s['frequencies']):g} to {max(s['frequencies']):g} times the rocking frequency, amplitudes of "
         f"{s['amplitudes'][0]:g} to {s['amplitudes'][1]:g} g tan γ, on two grounds ({grounds}). Each engine bisects "
         f"for its own to ± {percent(s['tolerance'] / 2, 1)} at the default level. Where the normal force of the "
-        "analytic model becomes negative, that model is the one not to be trusted, and the boundary is not rated.",
+        "analytic model becomes negative, the model is not to be trusted, and the boundary is not rated.",
         f"Trusted: all boundaries found, shifted by at most {percent(LIMIT, 1)}, no outcome that differs beyond the "
         f"band; usable: all found, at most {percent(FAIR, 1)}. Kind “assisted”: the adapter applies the impact, so "
-        "that the boundaries test the integration alone; no other level is tried.",
+        "the boundaries test only the integration; no other level is tried.",
     )
