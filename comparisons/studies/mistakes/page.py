@@ -23,17 +23,17 @@ WORDS = {"graph": "tilt", "error": "restitution", "lost": "another outcome, or f
 def page(result: Result) -> Page:
     """Return the page of a result."""
     by_engine = {engine: _ranked(result, engine) for (engine,) in grouped(result.rows, "engine")}
-    every = [row for rows in by_engine.values() for row in rows]
-    mistakes = [row for row in every if row["group"] not in (None, result.settings["no_matter"])]
+    all_rows = [row for rows in by_engine.values() for row in rows]
+    mistakes = [row for row in all_rows if row["group"] not in (None, result.settings["no_matter"])]
     lost = [row for row in mistakes if row["lost"]]
     same_outcome = [row for row in mistakes if not row["lost"] and row["error"] is not None and row["error"] <= TRUSTED]
     worst = max(same_outcome, key=lambda row: row["graph"], default=None)
-    says = [
+    sentences = [
         "The scripts that rocking script writes agree with the analytic model. Here one thing in them is changed to "
         "what a first script may do; all else stays."
     ]
     if worst:
-        says.append(
+        sentences.append(
             f"The error of restitution does not show every mistake: with {worst['mistake']} in {worst['engine']} it is "
             f"{number(worst['error'], 1)} at most, but the tilt is off by {number(worst['graph'], 2)} of the "
             "slenderness."
@@ -41,10 +41,10 @@ def page(result: Result) -> Page:
     return Page(
         f"What a mistake costs: of {len(mistakes)} in scripts for {listed(list(by_engine)) or 'no engine'}, "
         f"{len(lost)} change an outcome or make a run fail",
-        tuple(says),
+        tuple(sentences),
         first=(
             _dots(by_engine, result.settings["no_matter"]),
-            _counts(mistakes, where(every, group=result.settings["no_matter"])),
+            _counts(mistakes, where(all_rows, group=result.settings["no_matter"])),
         ),
         more=tuple(_table(engine, rows) for engine, rows in by_engine.items()),
         how=(

@@ -83,8 +83,8 @@ def changes(engine: Engine, quick: bool = False) -> list[Mistake | None]:
 
     quick: only a few.
     """
-    known = engine.known_mistakes().values()
-    return [None, *(mistake for mistake in known if not quick or mistake.key in QUICK)] if known else []
+    mistakes = engine.known_mistakes().values()
+    return [None, *(mistake for mistake in mistakes if not quick or mistake.key in QUICK)] if mistakes else []
 
 
 def plan(request: Request) -> Plan:

@@ -160,12 +160,12 @@ REGIONS = {
 
 def page(result: Result) -> Page:
     """Return the page of a result."""
-    s = result.settings
+    settings = result.settings
     edges, shifts = where(result.rows, part="edge"), where(result.rows, part="shift")
     sound = pressed(result)
-    known = [row for row in shifts if place(row) in sound]
-    main_variants = s["default_variants"]
-    band = percent(s["band"], 1)
+    rated_shifts = [row for row in shifts if place(row) in sound]
+    main_variants = settings["default_variants"]
+    band = percent(settings["band"], 1)
     return Page(
         f"Many pulses: on two grounds, {largest(result)}",
         (
@@ -176,14 +176,14 @@ def page(result: Result) -> Page:
             "when it falls. Boundaries of statues drawn at random stand with these in the table of trust.",
             *under_jumps(result),
         ),
-        first=_summary(result, s, band),
-        more=_details(result, s, edges, shifts, sound, known, main_variants, band),
+        first=_summary(result, settings, band),
+        more=_details(result, settings, edges, shifts, sound, rated_shifts, main_variants, band),
         how=_how(result),
         evidence=failures(result),
     )
 
 
-def _summary(result, s, band):
+def _summary(result, settings, band):
     """Parts that the report's first page shows too."""
     return (
         _shifts(result),
@@ -206,13 +206,13 @@ def _summary(result, s, band):
             ),
         ),
         table(
-            f"Coarse scan: the {_scanned(s)} pulses, less those within {band} of a boundary and those that do not "
-            "keep the block pressed on its base. 95 % Wilson intervals count pulses of one shape and frequency on one "
-            "ground as one",
+            f"Coarse scan: the {_scanned(settings)} pulses, less those within {band} of a boundary and those that do "
+            "not keep the block pressed on its base. 95 % Wilson intervals count pulses of one shape and frequency "
+            "on one ground as one",
             where(result.rows, part="scan"),
             NAME,
             COLUMNS["runs"],
-            Column("left out [-]", lambda row: _scanned(s) - row["runs"]),
+            Column("left out [-]", lambda row: _scanned(settings) - row["runs"]),
             COLUMNS["only_a"].called("overturning missed"),
             COLUMNS["only_b"].called("overturning added"),
             COLUMNS["failed"],
@@ -221,20 +221,20 @@ def _summary(result, s, band):
     )
 
 
-def _details(result, s, edges, shifts, sound, known, main_variants, band):
+def _details(result, settings, edges, shifts, sound, rated_shifts, main_variants, band):
     """Parts that only the study's own page shows."""
     return (
-        maps(result, s["shapes"]),
+        maps(result, settings["shapes"]),
         Head("Every boundary"),
-        over_frequency([row for row in known if main_variants[row["engine"]] == row["variant"]]),
+        over_frequency([row for row in rated_shifts if main_variants[row["engine"]] == row["variant"]]),
         listing(
             "Boundaries, and the engines' shifts, known to ± "
-            f"{percent(s['tolerance'] / 2, 1)}: block pressed on its base",
+            f"{percent(settings['tolerance'] / 2, 1)}: block pressed on its base",
             [edge for edge in edges if place(edge) in sound],
-            known,
+            rated_shifts,
         ),
         missing(result),
-        *_sliding(s),
+        *_sliding(settings),
         Head("Where the analytic model holds the corner down"),
         *_held_down(edges, shifts),
         Head("Outcomes between the boundaries"),
@@ -373,8 +373,8 @@ def _refinement(result):
     tried = where(result.rows, part="refinement")
     places, shifts = {place(row) for row in tried}, where(result.rows, part="shift")
     closer = [row for row in shifts if place(row) in places and NAME.of(row) in map(NAME.of, tried)]
-    known = {(NAME.of(row), row["level"]) for row in closer}
-    rows = [row for row in tried if (NAME.of(row), row["level"]) not in known] + closer
+    closer_levels = {(NAME.of(row), row["level"]) for row in closer}
+    rows = [row for row in tried if (NAME.of(row), row["level"]) not in closer_levels] + closer
     groups, order = grouped(rows, NAME.of, "level"), list(variants)
     levels = [
         {**variants[name], "level": level, **summary(groups[name, level])}
@@ -407,18 +407,19 @@ def _refinement(result):
 
 
 def _how(result):
-    s = result.settings
+    settings = result.settings
     grounds = "; ".join(
         f"{name}: γ = {given['block']['slenderness']:g} rad"
         + (f", {given['bearings']['count']} bearings, base of {given['base']['mass']:g} kg" if given["base"] else "")
-        for name, given in s["grounds"].items()
+        for name, given in settings["grounds"].items()
     )
     return (
-        f"{len(where(result.rows, part='edge'))} boundaries of the analytic model: pulses {', '.join(s['shapes'])} of "
-        f"{min(s['frequencies']):g} to {max(s['frequencies']):g} times the rocking frequency, amplitudes of "
-        f"{s['amplitudes'][0]:g} to {s['amplitudes'][1]:g} g tan γ, on two grounds ({grounds}). Each engine bisects "
-        f"for its own to ± {percent(s['tolerance'] / 2, 1)} at the default level. Where the normal force of the "
-        "analytic model becomes negative, the model is not to be trusted, and the boundary is not rated.",
+        f"{len(where(result.rows, part='edge'))} boundaries of the analytic model: pulses "
+        f"{', '.join(settings['shapes'])} of {min(settings['frequencies']):g} to {max(settings['frequencies']):g} "
+        f"times the rocking frequency, amplitudes of {settings['amplitudes'][0]:g} to {settings['amplitudes'][1]:g} "
+        f"g tan γ, on two grounds ({grounds}). Each engine bisects for its own to ± "
+        f"{percent(settings['tolerance'] / 2, 1)} at the default level. Where the normal force of the analytic model "
+        "becomes negative, the model is not to be trusted, and the boundary is not rated.",
         f"Trusted: all boundaries found, shifted by at most {percent(LIMIT, 1)}, no outcome that differs beyond the "
         f"band; usable: all found, at most {percent(FAIR, 1)}. Kind “assisted”: the adapter applies the impact, so "
         "the boundaries test only the integration; no other level is tried.",

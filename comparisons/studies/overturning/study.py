@@ -138,10 +138,10 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
     # 2. at default levels: outcomes of engines over a coarse scan, and their boundaries
     default, coarser = usual_settings(request.engines)
     runs, points = Runs(grounds, default), _scan(grounds, grid)
-    known = _model_outcomes(grounds, points, boundaries)
+    model_outcomes = _model_outcomes(grounds, points, boundaries)
     for setting in (*default, *coarser):
         answers = yield from runs.ask([(setting, point) for point in points], f"scan: {setting.engine}", scan=True)
-        rows.append({"part": "scan", **setting.row(), **_scan_counts(points, known, answers)})
+        rows.append({"part": "scan", **setting.row(), **_scan_counts(points, model_outcomes, answers)})
     rows += yield from runs.search_usual("shift", request.engines, boundaries)
     records = _records(runs.outcomes, default, grounds, boundaries)
     rows += [*_confusions(records, default, grounds), *_disagreements(records)]
@@ -225,12 +225,14 @@ def _model_outcomes(grounds, points, boundaries):
     ]
 
 
-def _scan_counts(points, known, answers):
+def _scan_counts(points, model_outcomes, answers):
     """Count the points that are judged, the failed runs, and the outcomes of the others.
 
     In the interval of the share that differs or fails, runs of one shape and frequency on one ground count as one.
     """
-    chosen = [(*run, point[:3]) for *run, point in zip(known, answers, points, strict=True) if run[0] is not None]
+    chosen = [
+        (*run, point[:3]) for *run, point in zip(model_outcomes, answers, points, strict=True) if run[0] is not None
+    ]
     models, engines, groups = zip(*chosen, strict=True)
     both = [(a, b) for a, b in zip(models, engines, strict=True) if b is not None]
     _, interval = equality([a != b for a, b in zip(models, engines, strict=True)], groups)

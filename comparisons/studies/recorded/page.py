@@ -191,9 +191,9 @@ def _turned(row):
 
 def _spread(errors: Sequence[float | None]) -> list[float | int] | None:
     """Return [median, largest, number, 95 % quantile] of the known errors; None without any."""
-    known = np.abs([error for error in errors if error is not None])
-    high = float(np.quantile(known, MANY, method="higher")) if len(known) else None
-    return [float(np.median(known)), float(known.max()), len(known), high] if len(known) else None
+    sizes = np.abs([error for error in errors if error is not None])
+    high = float(np.quantile(sizes, MANY, method="higher")) if len(sizes) else None
+    return [float(np.median(sizes)), float(sizes.max()), len(sizes), high] if len(sizes) else None
 
 
 def _peak_mark(errors):
@@ -210,8 +210,8 @@ def _tilts(runs: list[dict[str, Any]], main: Mapping[str, str]) -> Figure | None
     There is a panel for each configuration. Tuned variants that are not their engine's main one stand behind, in grey.
     """
     groups = grouped(runs, "engine", "variant", "tier").values()
-    shown = [members for members in groups if subject(members[0])]
-    firsts = [members[0] for members in shown]
+    subject_groups = [members for members in groups if subject(members[0])]
+    firsts = [members[0] for members in subject_groups]
 
     def other(row):
         return not as_it_comes(row) and main[row["engine"]] != row["variant"]
@@ -230,7 +230,8 @@ def _tilts(runs: list[dict[str, Any]], main: Mapping[str, str]) -> Figure | None
         )
         chart.line([LEAST, FALLEN], [LEAST, FALLEN], tone="var(--faint)")
         for members in sorted(
-            shown, key=lambda runs_of_variant: (not other(runs_of_variant[0]), not as_it_comes(runs_of_variant[0]))
+            subject_groups,
+            key=lambda runs_of_variant: (not other(runs_of_variant[0]), not as_it_comes(runs_of_variant[0])),
         ):
             drawn = where(members, configuration=configuration, **{"class": {"right", "differs", "failed"}})
             model, engine = ([_place(row, side) for row in drawn] for side in ("model_", ""))
@@ -241,7 +242,7 @@ def _tilts(runs: list[dict[str, Any]], main: Mapping[str, str]) -> Figure | None
     coloured = [row for row in firsts if not other(row)]
     grey = ", ".join(NAME.of(row) for row in firsts if other(row))
     keys = {kind(row): key_of(kind(row), filled=not as_it_comes(row), joined=False) for row in coloured}
-    left_out = "; ".join(NAME.of(members[0]) for members in groups if members not in shown)
+    left_out = "; ".join(NAME.of(members[0]) for members in groups if members not in subject_groups)
     caption = (
         "One mark for each component that is judged. On the line engine and model agree; if only one is at "
         "“overturns”, the outcomes differ. Open marks: defaults, with fewer records; upper edge: failed runs."
@@ -252,7 +253,7 @@ def _tilts(runs: list[dict[str, Any]], main: Mapping[str, str]) -> Figure | None
 
 
 def _place(row, side):
-    """Value at which a run's tilt is drawn: overturned and failed runs have places of their own."""
+    """Return the value at which a run's tilt is drawn; overturned and failed runs have places of their own."""
     at = {FALLS: FALLEN, "failed": FAILED}.get(row[f"{side}outcome"])
     return at or max(row[f"{side}tilt"], LEAST)
 

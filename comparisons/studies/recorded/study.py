@@ -164,7 +164,7 @@ def plan(request: Request, *, records: Folder = None) -> Plan:
     names = list(moving)
     model = yield Batch(_model_cases({name: moving[name] for name in names[:many]}), of_model, "analytic model")
     scenes = [(row.case.scene, {**row.case.tag, **row.values}) for row in model if not row.failed]
-    known = [drawn for _, drawn in scenes]
+    scene_rows = [drawn for _, drawn in scenes]
     settings: dict[str, Any] = {
         "quick": request.quick,
         "source": source_of(records),
@@ -174,12 +174,14 @@ def plan(request: Request, *, records: Folder = None) -> Plan:
         "ranges": RANGES,
         "laws": LAWS,
         "x_max": X_MAX,
-        "mix": {name: _outcome_counts(name, known) for name in RANGES},
+        "mix": {name: _outcome_counts(name, scene_rows) for name in RANGES},
         "perturbation": PERTURBATION,
         "equal": EQUAL,
         "variants": [],
     }
-    rows: list[dict[str, Any]] = [{"part": "scene", "engine": "analytic", "variant": "", **drawn} for drawn in known]
+    rows: list[dict[str, Any]] = [
+        {"part": "scene", "engine": "analytic", "variant": "", **drawn} for drawn in scene_rows
+    ]
     answer = Computed(settings, rows, seed=SEED)
     for engine, variant, on_all in itertools.chain.from_iterable(map(_variants, request.engines)):
         cases = [
@@ -188,7 +190,7 @@ def plan(request: Request, *, records: Folder = None) -> Plan:
             if on_all or drawn["record"] in names[:few]
         ]
         runs = yield Batch(cases, of_engine, f"{engine}, {variant}", TIME_LIMIT)
-        rows = [*rows, *(_run_row(row, known) for row in runs)]
+        rows = [*rows, *(_run_row(row, scene_rows) for row in runs)]
         settings = {**settings, "variants": [*settings["variants"], variant_settings(engine, variant)]}
         answer = Computed(settings, rows, seed=SEED)
         yield answer
@@ -290,9 +292,9 @@ def _peak(history, name, until):
     return float(np.abs([*values[history.time <= until], np.interp(until, history.time, values)]).max())
 
 
-def _run_row(row: Row, known: Iterable[dict[str, Any]]) -> dict[str, Any]:
+def _run_row(row: Row, scene_rows: Iterable[dict[str, Any]]) -> dict[str, Any]:
     tag = {key: row.case.tag[key] for key in NAMES}
-    (model,) = (scene_row for scene_row in known if tag.items() <= scene_row.items())
+    (model,) = (scene_row for scene_row in scene_rows if tag.items() <= scene_row.items())
     variant = get_engine(row.case.solver).variants[row.case.variant]
     return {
         "part": "run",
@@ -308,9 +310,9 @@ def _run_row(row: Row, known: Iterable[dict[str, Any]]) -> dict[str, Any]:
     }
 
 
-def _outcome_counts(configuration, known):
+def _outcome_counts(configuration, scene_rows):
     """Count how often each outcome comes in the model."""
-    outcomes = [row["outcome"] for row in known if row["configuration"] == configuration]
+    outcomes = [row["outcome"] for row in scene_rows if row["configuration"] == configuration]
     return {outcome: outcomes.count(outcome) for outcome in OUTCOMES if outcome in outcomes}
 
 

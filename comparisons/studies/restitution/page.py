@@ -440,7 +440,7 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
 
 
 def _free_mark(row):
-    """Mark of free rocking: the error by states is shown, the worse of both measures rates."""
+    """Mark of free rocking: it shows the error by states; the worse of both measures gives the rating."""
     mark = _mark(row, "rms_state", "worst_state")
     return replace(
         mark, level=rating(_worse_error(row), _failures(row)), note=f"{mark.note}; by swings {number(row['rms'], 2)}"

@@ -517,12 +517,12 @@ def _summaries(cells, engines, grid):
 def _on_bearings(runs):
     """Rows of errors by states on bearings: one of all runs of a variant, and one for each value of each factor."""
     for (engine, variant), members in _grouped(runs, "bearings").items():
-        parted = {("all", None): members}
+        groups = {("all", None): members}
         for factor in FACTORS:
             for run in members:
-                parted.setdefault((factor, run.case.tag[factor]), []).append(run)
-        for (factor, value), alike in parted.items():
-            row = _row("bearings", {"engine": engine, "variant": variant, "factor": factor, "of": value}, alike)
+                groups.setdefault((factor, run.case.tag[factor]), []).append(run)
+        for (factor, value), group_runs in groups.items():
+            row = _row("bearings", {"engine": engine, "variant": variant, "factor": factor, "of": value}, group_runs)
             yield {key: row[key] for key in BEARING_COLUMNS}
 
 
@@ -617,8 +617,8 @@ def damped_error(scene: Scene, damping: float) -> np.ndarray:
         down = solve_ivp(fall, (0, 30), (tilt, 0.0), events=Event(landing), rtol=1e-9, atol=1e-12)
         up = solve_ivp(fall, (0, 30), (1e-12, -e * down.y[1, -1]), events=Event(peak), rtol=1e-9, atol=1e-12)
         tilt = up.y[0, -1]
-    kept = np.array(energies)
-    return np.sqrt(kept[1:] / kept[:-1]) - e
+    energy = np.array(energies)
+    return np.sqrt(energy[1:] / energy[:-1]) - e
 
 
 def friction_needed(scene: Scene) -> float:

@@ -183,8 +183,8 @@ def score(probability: np.ndarray, measured: np.ndarray, records: Sequence[str],
         "false_alarms": int((~measured & ~hit).sum()),
     }
     errors = brier(probability, measured)
-    known = None if sure else (float(errors.mean()), clustered(errors, records))
-    return {**counts, "brier": known and known[0], "brier_interval": known and known[1]}
+    brier_score = None if sure else (float(errors.mean()), clustered(errors, records))
+    return {**counts, "brier": brier_score and brier_score[0], "brier_interval": brier_score and brier_score[1]}
 
 
 def paired(first: np.ndarray, second: np.ndarray, measured: np.ndarray, records: Sequence[str]) -> dict[str, Any]:

@@ -63,8 +63,8 @@ def sentence(result: Result, engines: Sequence[dict[str, Any]]) -> str:
     wrong = listed([str(row["size"] - row["right"]) for row in scores])
     names = listed([row["specimen"] for row in scores])
     words = [f"The model is wrong in {wrong} of {len(result.settings['tests'])} tests ({names})."]
-    every = where(engines, specimen=ALL) or engines
-    if tuned := where(every, tier="tuned"):
+    engine_rows = where(engines, specimen=ALL) or engines
+    if tuned := where(engine_rows, tier="tuned"):
         counts = [f"{apart(row)} of {row['size']} ({row['engine']})" for row in tuned]
         fits = [count for row in where(result.rows, part="fit", change=AS_IT_IS) for count in row["neighbours"]]
         first, second, *_ = result.settings["specimens"][0]["grid"]
@@ -73,7 +73,7 @@ def sentence(result: Result, engines: Sequence[dict[str, Any]]) -> str:
             f"{number(math.degrees(second - first), 1)} deg smaller or larger changes {min(fits)} to {max(fits)} of "
             f"{len(result.settings['tests'])} outcomes of the model itself."
         )
-    if unsafe := [row for row in where(every, tier="defaults") if _unsafe(row)]:
+    if unsafe := [row for row in where(engine_rows, tier="defaults") if _unsafe(row)]:
         chances = listed([f"{number(row['p_records'], 2)} in {row['engine']}" for row in unsafe])
         words.append(
             "With defaults, engines err on the unsafe side: they miss more overturnings than they add (p by record: "
@@ -161,7 +161,7 @@ def name_of(row: dict[str, Any]) -> str:
 
 
 def bounds(result: Result) -> str:
-    """Return sentences on the most that can be asked of a model."""
+    """Return sentences on the most that can be expected of a model."""
     settings = result.settings
     names = listed([specimen["name"] for specimen in settings["specimens"]])
     count = len(settings["tests"])
@@ -169,15 +169,15 @@ def bounds(result: Result) -> str:
         f"{settings['campaign'].capitalize()}: {count} tests under {settings['records']} records at many scales; "
         f"{listed([str(specimen) for specimen in settings['overturned']])} overturned ({names})."
     )
-    each = where(result.rows, part="score", forecast=EACH)
+    thresholds = where(result.rows, part="score", forecast=EACH)
     model = where(result.rows, part="score", forecast=MODEL, judged=BY_RECORD)
     words += (
         " A PGA threshold for each record, fitted to the same tests, is right in "
-        f"{listed([str(row['right']) for row in each])}"
+        f"{listed([str(row['right']) for row in thresholds])}"
     )
     not_by_chance = all(
         2 * (specimen["size"] - specimen["right"]) < row["size"] - row["right"]
-        for specimen, row in zip(each, model, strict=True)
+        for specimen, row in zip(thresholds, model, strict=True)
     )
     words += ". Most of the model’s errors are therefore its own, not chance." if not_by_chance else "."
     if settings["agree"] is not None:
@@ -240,33 +240,37 @@ def _left_out(settings):
 
 def how(result: Result) -> tuple[str, ...]:
     """Return paragraphs on the data, the motions and the statistics."""
-    s = result.settings
-    steps = listed([f"{round(1 / step):g} Hz" for step in s["steps"]])
+    settings = result.settings
+    steps = listed([f"{round(1 / step):g} Hz" for step in settings["steps"]])
     blocks = "; ".join(
         f"{specimen['name']}: centre of mass {specimen['height']:.3g} m up, "
         f"radius of gyration {specimen['gyration']:.3g} m"
-        for specimen in s["specimens"]
+        for specimen in settings["specimens"]
     )
-    resampled = s["published"] and any(abs(1 / step / s["published"] - 1) > 1e-3 for step in s["steps"])
-    published = f" (published at {s['published']:g} Hz; resampled by whoever made these files)" if resampled else ""
-    speed = f"{s['model_runs']:,} runs of the model took {short(s['cpu_seconds'])} s of CPU time"
-    rigid = f"{_left_out(s)}Rigid planar block on rigid ground; {blocks}."
+    resampled = settings["published"] and any(
+        abs(1 / step / settings["published"] - 1) > 1e-3 for step in settings["steps"]
+    )
+    published = (
+        f" (published at {settings['published']:g} Hz; resampled by whoever made these files)" if resampled else ""
+    )
+    speed = f"{settings['model_runs']:,} runs of the model took {short(settings['cpu_seconds'])} s of CPU time"
+    rigid = f"{_left_out(settings)}Rigid planar block on rigid ground; {blocks}."
     intervals = (
         f"Intervals: percentiles of a bootstrap over records (seed {result.provenance['seed']}). “Fitted to every "
         "other test” may have a record on both sides."
     )
     runs = (
-        f"Subject engines run all tests, other engines one in {s['others']}, at the slenderness that is right most "
-        "often in the model. A failed run counts as wrong and as differing."
+        f"Subject engines run all tests, other engines one in {settings['others']}, at the slenderness that is right "
+        "most often in the model. A failed run counts as wrong and as differing."
     )
-    if not s["cite"]:
+    if not settings["cite"]:
         return (
             f"Motions: as in their files, at {steps}. {rigid} {speed}.",
             f"{intervals} PGA and PGV are those of these motions; PGV is taken above {CORNER} Hz.",
             runs,
         )
     return (
-        f"Data: {s['cite']}. Only sums over at least five tests are stored or shown.",
+        f"Data: {settings['cite']}. Only sums over at least five tests are stored or shown.",
         f"Motions: the measured acceleration of the table at {steps}{published}, less the median of the first second. "
         f"{rigid} The moment of inertia is the mean about the two horizontal axes of the mesh. {speed}.",
         f"{intervals} PGA and PGV are those the campaign states for the motion sent to the table; “of the table” are "

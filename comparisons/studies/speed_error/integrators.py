@@ -188,8 +188,8 @@ def run_of(problem: str, engine: str, variant: str, tolerance: float) -> Callabl
 def prepared(scene: Scene, *, engine: str, variant: str, tolerance: float, **settings: Any) -> Response:
     """Make the first run, which loads and compiles what the timed ones need; nothing is measured in it."""
     run_of(scene.name, engine, variant, tolerance)()
-    known = dict(engine=engine, variant=variant, outcome="rocks", settings=settings, versions={})
-    return Response.unmeasured(**known, end=State(scene.duration, *[math.nan] * 5))
+    identity = dict(engine=engine, variant=variant, outcome="rocks", settings=settings, versions={})
+    return Response.unmeasured(**identity, end=State(scene.duration, *[math.nan] * 5))
 
 
 def timed(case: Case, least: float) -> dict[str, Any]:
@@ -206,5 +206,5 @@ def timed(case: Case, least: float) -> dict[str, Any]:
         if (spent := time.process_time() - begin) >= least:
             break
     errors = {"lost": problem.impacts - impacts, "horizon_tilt": problem.error(tilt)}
-    known = {"outcome": "rocks", "end": {"time": case.scene.duration}, "steps": 0, "settings": case.settings}
-    return {**known, "boundary_shifts": None, "errors": errors, "cost": {"cpu_seconds": spent / repeats}}
+    values = {"outcome": "rocks", "end": {"time": case.scene.duration}, "steps": 0, "settings": case.settings}
+    return {**values, "boundary_shifts": None, "errors": errors, "cost": {"cpu_seconds": spent / repeats}}

@@ -153,9 +153,13 @@ def equal_cost_tables(result: Result) -> list[Table | None]:
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
     """Judge CPU time over the analytic model's at an equal error, by (engine, variant); empty without that scene."""
-    kept, apart, marks = keeping(result, ASKED), timed_apart(result), {}
-    for name, *pair in grouped(_main_scene_rows(result), "name", "engine", "variant") if KERNEL in kept else ():
-        ratio = name in kept and kept[name]["cpu_per_second"] / kept[KERNEL]["cpu_per_second"]
+    cheapest_rows, apart, marks = keeping(result, ASKED), timed_apart(result), {}
+    for name, *pair in (
+        grouped(_main_scene_rows(result), "name", "engine", "variant") if KERNEL in cheapest_rows else ()
+    ):
+        ratio = (
+            name in cheapest_rows and cheapest_rows[name]["cpu_per_second"] / cheapest_rows[KERNEL]["cpu_per_second"]
+        )
         if name in {NAME.of(variant) for variant in result.settings["variants"]}:
             mark = Mark(f"{number(ratio, 2)} ×", "none", value=ratio) if ratio else NOT_REACHED
             marks[tuple(pair)] = Mark(APART, "none", apart[pair[0]]) if ratio and pair[0] in apart else mark
@@ -196,8 +200,8 @@ def _curves(result, rows):
         tier = listed[name_of_curve]["tier"] if name_of_curve in listed else ""
         if name_of_curve in listed and tier != "defaults" and main[engine] != variant:
             continue
-        known = {"tuned": f"{engine}, tuned", "defaults": f"{engine}, defaults"}
-        name = known.get(tier, f"{engine}, script" if variant == SCRIPT else SHORT.get(name_of_curve, engine))
+        names = {"tuned": f"{engine}, tuned", "defaults": f"{engine}, defaults"}
+        name = names.get(tier, f"{engine}, script" if variant == SCRIPT else SHORT.get(name_of_curve, engine))
         name += f" ({APART})" if engine in apart else ""
         points = tuple(
             (row["cpu_per_second"], row["errors"]["peak_tilt"], not row["lost"], _tooltip(row))
@@ -225,11 +229,11 @@ def keeping(result: Result, error: float) -> dict[str, Row]:
     judged = [*where(rows, scene=PLAIN, measure=PEAK), *where(rows, measure=BOUNDARY)]
     for (name,), members in grouped(judged, "name").items():
         by_scene = grouped(members, "scene")
-        kept = [
+        levels_kept = [
             {row["level"] for row in kept_from(scene_rows, lambda row: _within(row, error))}
             for scene_rows in by_scene.values()
         ]
-        levels = [row for row in by_scene.get((PLAIN,), ()) if all(row["level"] in levels for levels in kept)]
+        levels = [row for row in by_scene.get((PLAIN,), ()) if all(row["level"] in levels for levels in levels_kept)]
         if levels:
             cheapest_levels[name] = min(levels, key=lambda row: row["cpu_per_second"])
     return dict(sorted(cheapest_levels.items(), key=lambda item: item[1]["cpu_per_second"]))
@@ -248,9 +252,9 @@ def advice(result: Result, error: float) -> list[Advised]:
         for variant in where(result.settings["variants"], tier="tuned", applies_impact=False)
         if ENGINES[variant["engine"]].subject
     }
-    kept = [row for name, row in keeping(result, error).items() if name in able]
-    least = min((row["cpu_per_second"] for row in kept if row["engine"] not in apart), default=0.0)
-    alike = [row for row in kept if row["engine"] in apart or row["cpu_per_second"] <= noise(result) * least]
+    candidates = [row for name, row in keeping(result, error).items() if name in able]
+    least = min((row["cpu_per_second"] for row in candidates if row["engine"] not in apart), default=0.0)
+    alike = [row for row in candidates if row["engine"] in apart or row["cpu_per_second"] <= noise(result) * least]
     return [_advised(result, error, row) for row in alike] or [Advised(error)]
 
 
@@ -303,8 +307,8 @@ def _costs_at_asked(result):
 
     Engines timed apart are left out.
     """
-    kept, apart = keeping(result, ASKED), timed_apart(result)
-    model = kept.get(KERNEL)
+    cheapest_rows, apart = keeping(result, ASKED), timed_apart(result)
+    model = cheapest_rows.get(KERNEL)
     return [
         (row["engine"], row["cpu_per_second"], model["cpu_per_second"])
         for row in reached(result)
@@ -314,13 +318,13 @@ def _costs_at_asked(result):
 
 def reached(result: Result) -> list[Row]:
     """Return the rows of `keeping` at the error `ASKED` for tuned main variants of subject engines."""
-    kept, main = keeping(result, ASKED), mains(result.settings["variants"])
+    cheapest_rows, main = keeping(result, ASKED), mains(result.settings["variants"])
     return [
-        kept[NAME.of(variant)]
+        cheapest_rows[NAME.of(variant)]
         for variant in where(result.settings["variants"], tier="tuned")
         if ENGINES[variant["engine"]].subject
         and main[variant["engine"]] == variant["variant"]
-        and NAME.of(variant) in kept
+        and NAME.of(variant) in cheapest_rows
     ]
 
 
@@ -331,8 +335,8 @@ def noise(result: Result) -> float:
     its fastest round the cost of a level would be higher by this factor at most.
     """
     rows = where(result.rows, part="work-precision")
-    known = [row["cpu_seconds"] / row["cpu_low"] for row in rows if "cpu_seconds" in row]
-    return float(np.percentile(known or [1], NOISE))
+    ratios = [row["cpu_seconds"] / row["cpu_low"] for row in rows if "cpu_seconds" in row]
+    return float(np.percentile(ratios or [1], NOISE))
 
 
 LEVELS = (1e-2, 1e-3, 1e-4, 1e-5)  # errors in the tables of costs
@@ -349,8 +353,8 @@ SCENE = Column("scene", "title")
 
 def page(result: Result) -> Page:
     """Return the page of a result."""
-    shown = levels_run(result)
-    every, rows = where(shown, principal=True), as_needed(result)
+    rows_by_error = levels_run(result)
+    principal_rows, rows = where(rows_by_error, principal=True), as_needed(result)
     errors = grouped(rows, "scene", "measure")
     first = [key for key in errors if key in FIRST] or list(errors)[-1:]
     others = [key for key in errors if key not in first]
@@ -372,7 +376,7 @@ def page(result: Result) -> Page:
             _figure([row for key in others if key[1] == FINE for row in errors[key]], CPU, FINE_CAPTION, rows),
             Head("The cheapest level of each solver"),
             *(_costs(result, members) for members in errors.values()),
-            _without_error(every),
+            _without_error(principal_rows),
             Head("Step and order"),
             _figure(rows, COLUMNS["step"], "Mean step: simulated time over steps.", rows),
             *(
@@ -386,15 +390,15 @@ def page(result: Result) -> Page:
                 Column("CPU time per simulated second [s/s]", lambda row: _range(row["rows"], "cpu_per_second", 1)),
                 Column("CPU time per step [µs]", lambda row: _range(row["rows"], "cpu_per_step", 1e6)),
             ),
-            *_more_than_needed(result, every),
+            *_more_than_needed(result, principal_rows),
         ),
-        how=_how(result, every),
+        how=_how(result, principal_rows),
         evidence=tuple(
             (
                 f"{row['name']} at {level_words(row)}, {row['title']}: {row['failure']['reason']}",
                 row["failure"].get("message", ""),
             )
-            for row in every
+            for row in principal_rows
             if row["failure"]
         ),
     )
@@ -447,7 +451,7 @@ def _figure(rows, x, caption, like, leads=()):
 
     leads: the (engine, variant) that may have a colour, in their order; without any, all may.
     """
-    kept = {
+    coloured = {
         (*key, name)
         for key, members in grouped(rows, "scene", "measure").items()
         for name, row in passing(members, ASKED).items()
@@ -462,7 +466,7 @@ def _figure(rows, x, caption, like, leads=()):
             Column(MEASURES[measure], lambda row: max(row["error"], FINEST if row["measure"] == FINE else DRAWN)),
             caption,
             panel=_panel,
-            grey=lambda row: (row["scene"], row["measure"], row["name"]) not in kept,
+            grey=lambda row: (row["scene"], row["measure"], row["name"]) not in coloured,
             log="xy",
             says=lambda row: f"{row['name']}, {level_words(row)}: {number(row['error'], 2)} in {CPU.text(row)} s",
             like=like,
@@ -479,29 +483,32 @@ def _costs(result, rows):
     assisted = _assisted(result)
 
     def cell(level):
-        kept = by_level[level]
+        cheapest_rows = by_level[level]
 
         def text(row):
-            if (best := kept.get(row["name"])) is None:
+            if (best := cheapest_rows.get(row["name"])) is None:
                 return None
-            fine = rows[0]["measure"] == FINE and KERNEL in kept  # other errors have tables at an equal error
-            ratio = f"{number(CPU.of(best) / CPU.of(kept[KERNEL]), 2)} ×; " if fine else ""
+            fine = rows[0]["measure"] == FINE and KERNEL in cheapest_rows  # other errors have tables at an equal error
+            ratio = f"{number(CPU.of(best) / CPU.of(cheapest_rows[KERNEL]), 2)} ×; " if fine else ""
             return f"{number(1e3 * CPU.of(best), 2)} ({ratio}{level_words(best)})"
 
         return Column(f"≤ {short(level)}", text)
 
     return table(
         f"{rows[0]['title']}: CPU time [ms] to keep the {MEASURES[rows[0]['measure']]}",
-        [{"name": name} for name in dict.fromkeys(name for kept in by_level.values() for name in kept)],
+        [
+            {"name": name}
+            for name in dict.fromkeys(name for cheapest_rows in by_level.values() for name in cheapest_rows)
+        ],
         Column("solver", lambda row: row["name"] + (" (assisted)" if row["name"] in assisted else "")),
         *map(cell, levels),
     )
 
 
-def _without_error(every):
+def _without_error(rows):
     """Table of levels that failed, missed impacts or found no boundary, which figures and tables of cost leave out."""
     counted = []
-    for (name, model, title, measure), members in grouped(every, "name", "model", "title", "measure").items():
+    for (name, model, title, measure), members in grouped(rows, "name", "model", "title", "measure").items():
         sound = [row for row in members if not row["failure"]]
         counted.append(
             {
@@ -529,9 +536,9 @@ def _orders(measure, rows, scenes):
     """Table of the observed order of each solver in each scene."""
     fits = {}
     for (name, scene), members in grouped(rows, "name", "scene").items():
-        known = [(row["level"], row["error"]) for row in members if (row["error"] or 0) > ROUNDING]
-        if len(known) >= 3:
-            order, error = fit(*zip(*known, strict=True))
+        points = [(row["level"], row["error"]) for row in members if (row["error"] or 0) > ROUNDING]
+        if len(points) >= 3:
+            order, error = fit(*zip(*points, strict=True))
             words = f"{round(order, 2) + 0.0:.2f} ± {error:.2f}".replace("-", "−")  # no minus before 0.00
             fits.setdefault(name, dict.fromkeys(scene for (scene,) in grouped(rows, "scene")))[scene] = words
     return table(
@@ -557,18 +564,18 @@ def _range(rows, key, unit):
     return f"{number(min(values), 2)} – {number(max(values), 2)}" if values else None
 
 
-def _more_than_needed(result, every):
+def _more_than_needed(result, rows):
     """Tables of rows with another model or law, beside those of the same solver at the same level."""
-    plain = {
+    needed = {
         (row["scene"], row["engine"], row["variant"], row["level"]): row
-        for row in where(every, model=NEEDED)
+        for row in where(rows, model=NEEDED)
         if row["law"] != "bouc-wen" and "cpu_seconds" in row
     }
     pairs = [
-        {**row, "plain": plain[key], "ratio": CPU.of(row) / CPU.of(plain[key])}
-        for row in every
+        {**row, "plain": needed[key], "ratio": CPU.of(row) / CPU.of(needed[key])}
+        for row in rows
         for key in ((row["scene"], row["engine"], row["variant"], row["level"]),)
-        if key in plain and row is not plain[key] and "cpu_seconds" in row
+        if key in needed and row is not needed[key] and "cpu_seconds" in row
     ]
     laws = [
         {
@@ -613,9 +620,9 @@ def _more_than_needed(result, every):
     )
 
 
-def _how(result, every):
-    same = sum(row["repeatable"] for row in every)
-    differing = sorted({row["name"] for row in every if not row["repeatable"]})
+def _how(result, rows):
+    same = sum(row["repeatable"] for row in rows)
+    differing = sorted({row["name"] for row in rows if not row["repeatable"]})
     scenes = result.settings["scenes"].values()
     differences = [
         scene["reference_difference"].get(measure, 0.0) for scene in scenes for measure in measures_of(scene)
@@ -630,7 +637,7 @@ def _how(result, every):
         f"{machine['logical_cores']} cores.{beside}",
         "References are computed by the kernel at its tightest tolerance. An independent solution by scipy differs "
         f"from them by at most {number(max(differences), 1)} in the errors shown. Solvers of the equations apply eq. "
-        f"(7): their error of restitution under a motion is rounding. The errors of {same} of {len(every)} levels are "
+        f"(7): their error of restitution under a motion is rounding. The errors of {same} of {len(rows)} levels are "
         f"the same bit for bit in every round{'; the exceptions are of ' + ', '.join(differing) if differing else ''}.",
         "On a free base the largest tilt is the tilt at the start, so it has no error. Errors of the peak "
         "displacement and of the overturning boundary are relative. A boundary is searched for by six runs, each at "

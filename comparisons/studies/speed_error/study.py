@@ -131,28 +131,28 @@ def searched(
     first = run(scene)
     if boundary is None:
         return first, None, first.cpu_seconds
-    shift, shifts, cpu, known = 0.0, list[float](), 0.0, dict[float, float]()
+    shift, shifts, cpu, margins = 0.0, list[float](), 0.0, dict[float, float]()
     for _ in range(RUNS):
         moved = at_amplitude(scene, boundary.amplitude * (1 + shift))
-        response = run(moved) if known else first
+        response = run(moved) if margins else first
         cpu += response.cpu_seconds
         if response.outcome == "failed":
             return response, None, cpu
-        known[shift] = margin(moved, response.end) / boundary.slope
-        shift = _next_shift(known, shift)
+        margins[shift] = margin(moved, response.end) / boundary.slope
+        shift = _next_shift(margins, shift)
         shifts.append(shift)
     return first, shifts, cpu
 
 
-def _next_shift(known, last):
+def _next_shift(margins, last):
     """Choose the next shift: by the chord of the nearest points on either side, else by the reference's slope."""
-    below = max((at for at, value in known.items() if value <= 0), default=None)
-    above = min((at for at, value in known.items() if value > 0), default=None)
-    if below is None or above is None or abs(known[last]) < SMALL:
-        return last - min(max(known[last], -STRIDE), STRIDE)
+    below = max((at for at, value in margins.items() if value <= 0), default=None)
+    above = min((at for at, value in margins.items() if value > 0), default=None)
+    if below is None or above is None or abs(margins[last]) < SMALL:
+        return last - min(max(margins[last], -STRIDE), STRIDE)
     if below > above:  # the margin is not monotone here: stay
         return last
-    return below + (above - below) * min(max(-known[below] / (known[above] - known[below]), 0.1), 0.9)
+    return below + (above - below) * min(max(-margins[below] / (margins[above] - margins[below]), 0.1), 0.9)
 
 
 TIGHTEST = 1e-17  # tolerance of the kernel as a reference
@@ -439,8 +439,8 @@ def errors(trial: Trial, values: Mapping[str, Any], shifts: Sequence[float] | No
         by_measure["end_tilt"] = [abs(abs(end["tilt"]) - abs(reference.end.tilt)) / gamma]
     if shifts and abs(shifts[-1] - shifts[-2]) < STRAY:
         by_measure["boundary_shift"] = shifts[-LAST:]
-    known = {name: rms(by_measure[name]) for name in trial.measures if len(by_measure.get(name, ()))}
-    return {"lost": lost_impacts(run, reference), **known}
+    root_mean_squares = {name: rms(by_measure[name]) for name in trial.measures if len(by_measure.get(name, ()))}
+    return {"lost": lost_impacts(run, reference), **root_mean_squares}
 
 
 def _restitution_errors(scene, run):
@@ -474,10 +474,12 @@ def plan(
         Name of the one scene that is run; None: all.
     """
     rounds = repeats or (QUICK_REPEATS if request.quick else REPEATS)
-    known = scenes or [*trials(), *problem_trials()]
-    scenes = [trial for trial in known if scene in (None, trial.name)]
+    all_trials = scenes or [*trials(), *problem_trials()]
+    scenes = [trial for trial in all_trials if scene in (None, trial.name)]
     if not scenes:
-        raise SettingError(f"--scene {scene}: no such scene; give one of {', '.join(trial.name for trial in known)}")
+        raise SettingError(
+            f"--scene {scene}: no such scene; give one of {', '.join(trial.name for trial in all_trials)}"
+        )
     measured = [(entry, []) for entry in entries(scenes, request.engines, request.quick) if keep(entry)]
     loads = []
     for turn in range(rounds):

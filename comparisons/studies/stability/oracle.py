@@ -49,8 +49,8 @@ class Oracle:
         times = times[times <= self.until]
         if self.case.oracle != FREE:
             return times, column_at(self.response, times, "tilt")
-        times, known = times[:: max(1, len(times) // TIMES)], _free_rocking(self.case.scene)
-        return times, np.array([free_rocking_tilt(*known, time) for time in times])
+        times, parameters = times[:: max(1, len(times) // TIMES)], _free_rocking(self.case.scene)
+        return times, np.array([free_rocking_tilt(*parameters, time) for time in times])
 
 
 @functools.cache

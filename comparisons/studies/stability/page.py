@@ -50,12 +50,12 @@ def page(result: Result) -> Page:
     """Return the page of a result."""
     cases, measures = result.settings["cases"], result.settings["measures"]
     cells, variants = _cells(result), _judged_variants(result)
-    within, apart = _by_range(cases)
+    inside, outside = _by_range(cases)
     chosen = [variant for variant in variants if variant["best"] or subject(variant) and as_it_comes(variant)]
     counts = sorted(_counts(result, cells), key=lambda row: -row[RIGHT])
     wrong = where(cells.values(), result={DIFFERS, FAILED})
     return Page(
-        _title(cells, within, apart, where(variants, kind="stepping", best=True)),
+        _title(cells, inside, outside, where(variants, kind="stepping", best=True)),
         (
             "Real integrators have failed on these scenes. A result is right if every measure is within its tolerance; "
             "otherwise it differs. It fails if the solver gives up, exceeds its time limit or moves the block in a "
@@ -64,15 +64,15 @@ def page(result: Result) -> Page:
             _best_solvers(where(counts, kind="stepping")),
             *(
                 [
-                    f"{len(apart)} of the {len(cases)} cases lie outside the range for which engines are tested. They "
-                    "are counted separately."
+                    f"{len(outside)} of the {len(cases)} cases lie outside the range for which engines are tested. "
+                    "They are counted separately."
                 ]
-                if apart
+                if outside
                 else []
             ),
         ),
-        first=_summary(cells, within, apart, chosen, counts),
-        more=_details(result, cases, measures, cells, variants, apart, chosen, wrong),
+        first=_summary(cells, inside, outside, chosen, counts),
+        more=_details(result, cases, measures, cells, variants, outside, chosen, wrong),
         how=(
             "The reference itself is judged by its independent second implementation and, for free rocking, by the "
             "closed form. With friction it is judged by Moreau’s time stepping, which shares no code with it. "
@@ -94,12 +94,12 @@ def page(result: Result) -> Page:
     )
 
 
-def _summary(cells, within, apart, chosen, counts):
+def _summary(cells, inside, outside, chosen, counts):
     """Parts that the report's first page shows too."""
     return (
         _strip(
             cells,
-            within,
+            inside,
             chosen,
             "Default levels. Blank or ✓: right; ~: differs; ≠: another outcome; ✗: failed. Under the pointer: the "
             "measure farthest outside its tolerance. 2nd code: the independent second implementation; steps: plain "
@@ -111,15 +111,15 @@ def _summary(cells, within, apart, chosen, counts):
             NAME,
             *(Column(f"{name} [-]", name) for name in (RIGHT, DIFFERS, FAILED)),
             Column("right at finer levels [-]", FINER),
-            *([Column(f"right {APART}", APART)] if apart else []),
+            *([Column(f"right {APART}", APART)] if outside else []),
         ),
     )
 
 
-def _details(result, cases, measures, cells, variants, apart, chosen, wrong):
+def _details(result, cases, measures, cells, variants, outside, chosen, wrong):
     """Parts that only the study's own page shows."""
     return (
-        _matrix(cells, apart, chosen, "Cases outside the range. They are counted separately."),
+        _matrix(cells, outside, chosen, "Cases outside the range. They are counted separately."),
         _matrix(
             cells,
             cases,
@@ -255,11 +255,11 @@ def _counts(result, cells):
     Within the range: numbers of results by kind, of runs, and of results rerun at finer levels and then right. Outside
     the range: its right results, in words.
     """
-    _, apart = _by_range(result.settings["cases"])
+    _, outside = _by_range(result.settings["cases"])
     for variant in _judged_variants(result):
         ran = {case: cell for (case, name), cell in cells.items() if name == NAME.of(variant) and "engine" in cell}
-        beyond = [cell for case, cell in ran.items() if case in apart]
-        rows = [cell for case, cell in ran.items() if case not in apart]
+        beyond = [cell for case, cell in ran.items() if case in outside]
+        rows = [cell for case, cell in ran.items() if case not in outside]
         counts = {kind: len(where(rows, result=kind)) for kind in (RIGHT, DIFFERS, FAILED)}
         tried = [row for row in rows if row["remedy"] != NOT_TRIED]
         cured = len(tried) - len(where(tried, remedy=NONE_FOUND))
@@ -277,21 +277,21 @@ def _outside(case):
 
 def _by_range(cases):
     """Return the cases inside the range for which engines are tested, and those outside."""
-    apart = {name: case for name, case in cases.items() if _outside(case)}
-    return {name: case for name, case in cases.items() if name not in apart}, apart
+    outside = {name: case for name, case in cases.items() if _outside(case)}
+    return {name: case for name, case in cases.items() if name not in outside}, outside
 
 
-def _title(cells, within, apart, engines):
+def _title(cells, inside, outside, engines):
     names = [NAME.of(engine) for engine in engines]
     none, beyond = (
         [case for case in cases if not any(cells[case, name]["result"] == RIGHT for name in names)]
-        for cases in (within, apart)
+        for cases in (inside, outside)
     )
     listed = _readable(f" ({'; '.join(none[:3])}{' …' if len(none) > 3 else ''})") if none else ""
-    more = f"; {APART} {len(beyond)} of {len(apart)}" if apart else ""
+    more = f"; {APART} {len(beyond)} of {len(outside)}" if outside else ""
     if len(names) > 2:
-        return f"Hard cases: no engine gets {len(none)} of {len(within)} right{listed}{more}"
-    return f"Hard cases: {len(none)} of {len(within)} are not right in {' and '.join(names)}{listed}{more}"
+        return f"Hard cases: no engine gets {len(none)} of {len(inside)} right{listed}{more}"
+    return f"Hard cases: {len(none)} of {len(inside)} are not right in {' and '.join(names)}{listed}{more}"
 
 
 def _best_solvers(counts):
@@ -366,7 +366,7 @@ def _drawn_cell(cell, case, name):
 
 
 def _label(variant):
-    """Label below a column: in the first figure the variant's kind alone."""
+    """Label below a column; in the first figure it is the variant's kind alone."""
     name = NAME.of(variant)
     if variant["best"] or subject(variant) and as_it_comes(variant):
         return SHORT.get(name, kind(variant).removesuffix(", "))
@@ -376,8 +376,8 @@ def _label(variant):
 def _judged_by(case):
     """Words on what judges a case, and its own tolerances."""
     until = case["twin_until"]
-    known = {FREE: "closed form", SLIDING: "Moreau’s time stepping"}
-    words = f"reference, itself by {known.get(case['oracle'], f'the {TWIN}')}"
+    judges = {FREE: "closed form", SLIDING: "Moreau’s time stepping"}
+    words = f"reference, itself by {judges.get(case['oracle'], f'the {TWIN}')}"
     words += "" if until is None else f" (this one up to {until:g} s; beyond, the energy ledger)"
     special = [
         f"{name} {short(limit)} for {kind} solvers: {reason}"

@@ -55,7 +55,7 @@ SHARES = {
 def page(result: Result) -> Page:
     """Return the page of a result."""
     cells, counts, settings = where(result.rows, part="cell"), tallies(result), result.settings
-    every = summed(cells, lambda cell: ALL)
+    totals = summed(cells, lambda cell: ALL)
     return Page(
         _title(result, counts),
         (
@@ -65,11 +65,11 @@ def page(result: Result) -> Page:
             *(
                 f"In the model sliding saves {row['saved']} of {row['falls_without']} statues that overturn without "
                 f"it, and overturns {row['overturned']} of {row['upright_without']} others."
-                for row in every
+                for row in totals
             ),
         ),
         first=_summary(result, counts),
-        more=_details(result, cells, settings, every),
+        more=_details(result, cells, settings, totals),
         how=_how(result),
         evidence=(
             *(
@@ -127,7 +127,7 @@ def _summary(result, counts):
     )
 
 
-def _details(result, cells, settings, every):
+def _details(result, cells, settings, totals):
     """Parts that only the study's own page shows."""
     return (
         table(
@@ -150,7 +150,7 @@ def _details(result, cells, settings, every):
         ),
         missing(result),
         _shares(cells),
-        _sliding([*summed(cells, "support"), *every]),
+        _sliding([*summed(cells, "support"), *totals]),
         *(f"{NAME.of(row)}: {row['words']}" for row in settings["faults"]),
     )
 

@@ -152,13 +152,14 @@ def plan(
     reached = [case for case in drawn if simulate(case.scene, history=False).peak_tilt_ratio >= RANGE["tilt"][0]]
     rows, chosen = _ensemble(motions, seed, sliding, few)
     model = yield Batch(chosen, of_model, "analytic model")
-    known = {row.case.tag["index"]: row for row in model if not row.failed}
+    model_runs = {row.case.tag["index"]: row for row in model if not row.failed}
     rows += [
-        {"part": "scene", "engine": "analytic", "variant": "", **row.case.tag, **row.values} for row in known.values()
+        {"part": "scene", "engine": "analytic", "variant": "", **row.case.tag, **row.values}
+        for row in model_runs.values()
     ]
-    cases = [*_cases(request.engines, reached), *_cases(request.engines, [row.case for row in known.values()])]
+    cases = [*_cases(request.engines, reached), *_cases(request.engines, [row.case for row in model_runs.values()])]
     engine_runs = yield Batch(cases, of_engine, "engines")
-    rows += [_run_row(row, known) for row in engine_runs]
+    rows += [_run_row(row, model_runs) for row in engine_runs]
     log("analytic boundaries of drawn statues")
     statues = drawn_edges(count if boundaries is None else boundaries)
     rows += [{"part": "drawn edge", **vars(edge), **drawn_columns(scene)} for scene, edge in statues]
@@ -199,12 +200,12 @@ def _recorded(folder: str | None) -> tuple[list[SampledMotion], str]:
     return [motion for motions in folder_records.values() for motion in motions if motion.peak], source_of(folder)
 
 
-def _cases(engines: Sequence[str], known: Sequence[Case]) -> Iterator[Case]:
+def _cases(engines: Sequence[str], scenes: Sequence[Case]) -> Iterator[Case]:
     """Yield runs of scenes in engines: all in main variants of subject engines, one in `FEWER` in other variants."""
     for engine in map(get_engine, engines):
         for variant in engine.variants:
             step = 1 if engine.subject and variant == engine.default_variant else FEWER
-            for case in known[::step]:
+            for case in scenes[::step]:
                 yield Case(case.scene, engine.name, variant, {"history": False}, {"index": case.tag["index"]})
 
 
@@ -355,15 +356,15 @@ def slips_at(model: Response, time: float) -> bool:
     return "slide-rock" in (*before, *after)
 
 
-def _run_row(row: Row, known: Mapping[int, Row]) -> dict[str, Any]:
+def _run_row(row: Row, model_runs: Mapping[int, Row]) -> dict[str, Any]:
     """Row of a run.
 
     A failed run is left out where no run of its scene is judged, of all engines alike.
 
-    known: the model's runs of the scenes with friction, by their number.
+    model_runs: those of the scenes with friction, by their number.
     """
     case, values = row.case, dict(row.values)
-    model = None if case.scene.friction is None else known[case.tag["index"]]
+    model = None if case.scene.friction is None else model_runs[case.tag["index"]]
     comparable = model.values["comparable"] if model else Reference.of(case.scene).comparable
     identity = {
         "part": "run",
