@@ -259,5 +259,5 @@ def _how(settings):
         f"{settings['near'][1]:g} times g tan γ, the variants “defaults” the first {settings['runs_of_defaults']}. "
         f"Exact McNemar test, adjusted after Holm for the limit states, at a level of {LEVEL:g}. “analytic, "
         f"perturbed”: the model with its restitution changed by 1 part in {1 / settings['change']:.0f}; an "
-        "engine that differs no more than this variant cannot be told from the model.",
+        "engine that differs no more than this variant cannot be distinguished from the model.",
     )

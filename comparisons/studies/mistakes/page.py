@@ -55,7 +55,7 @@ def page(result: Result) -> Page:
             "Each script runs by itself; what is measured is read from its steps as that of any engine. Error of "
             "restitution: against eq. (7), at impacts of at least a tenth of the fastest rate, root mean square, worst "
             "scene. By energy: from the rates of successive impacts. Tilt: largest difference from the analytic model "
-            "at one time, until either block is beyond its unstable point, so that an impact that is late counts. "
+            "at one time, until either block is beyond its unstable point, so late impacts count. "
             "A run fails if it ends in an error, gains energy, or leaves its place.",
         ),
     )

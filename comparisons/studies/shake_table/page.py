@@ -212,11 +212,11 @@ def not_shown(result: Result) -> tuple[str, str]:
         f"What this shows: of {runs} outcomes the model is right in {more_right(pairs[last, THRESHOLD])} more than a "
         f"threshold of PGV, and in {more_right(pairs[last, CURVE])} more than a curve in PGA and PGV{slopes}. That "
         "curve holds for these blocks alone. Model and curve joined are compared with the curve above.",
-        f"What it does not show: it is one campaign{stone if boulders else '.'} Outcomes do not tell slenderness and "
-        "restitution apart: the fitted slenderness stands for what the model lacks. Intervals count records, hold the "
-        "fits fixed, are not adjusted for their number, and say nothing of records unlike these. The slenderness of "
-        "the engines’ runs is the one at which the model is right most often, which favours the model over them."
-        f"{granite}",
+        f"What it does not show: it is one campaign{stone if boulders else '.'} Outcomes cannot separate slenderness "
+        "from restitution: the fitted slenderness stands for all that the model lacks. Intervals count records, "
+        "hold the fits fixed, are not adjusted for their number, and say nothing of records unlike these. The "
+        "slenderness of the engines’ runs is the one at which the model is right most often, which favours the "
+        f"model over them.{granite}",
     )
 
 
@@ -251,7 +251,7 @@ def how(result: Result) -> tuple[str, ...]:
         abs(1 / step / settings["published"] - 1) > 1e-3 for step in settings["steps"]
     )
     published = (
-        f" (published at {settings['published']:g} Hz; resampled by whoever made these files)" if resampled else ""
+        f" (published at {settings['published']:g} Hz; resampled by the makers of these files)" if resampled else ""
     )
     speed = f"{settings['model_runs']:,} runs of the model took {short(settings['cpu_seconds'])} s of CPU time"
     rigid = f"{_left_out(settings)}Rigid planar block on rigid ground; {blocks}."
@@ -273,10 +273,10 @@ def how(result: Result) -> tuple[str, ...]:
         f"Data: {settings['cite']}. Only sums over at least five tests are stored or shown.",
         f"Motions: the measured acceleration of the table at {steps}{published}, less the median of the first second. "
         f"{rigid} The moment of inertia is the mean about the two horizontal axes of the mesh. {speed}.",
-        f"{intervals} PGA and PGV are those the campaign states for the motion sent to the table; “of the table” are "
-        f"those of its measured acceleration above {CORNER} Hz. The other specimen’s outcome is that under the same "
-        "motion. The setting of the authors’ discrete elements is chosen in the same way; none was fitted to these "
-        "outcomes as the slenderness is.",
+        f"{intervals} PGA and PGV are as the campaign states them for the motion sent to the table; “of the table” "
+        f"means values of its measured acceleration above {CORNER} Hz. The other specimen’s outcome is that under "
+        "the same motion. The setting of the authors’ discrete elements is chosen in the same way; none was fitted "
+        "to these outcomes as the slenderness is.",
         runs,
     )
 

@@ -372,7 +372,7 @@ def _grid_cases(campaign: Campaign, kinds: Sequence[dict[str, float]]) -> list[C
 
 
 def _fitted_cases(campaign, slendernesses, solver, variant, every):
-    """Cases of a solver at the fitted slendernesses, on one in every so many tests."""
+    """Cases of a solver at the fitted slendernesses, on one in `every` tests."""
     return [
         Case(
             leaning(specimen.scene, slenderness).with_(motion=test.motion, name=specimen.name),

@@ -521,7 +521,7 @@ def _without_error(rows):
             }
         )
     return table(
-        "Levels without an error, of those run",
+        "Levels that were run and have no error",
         [row for row in counted if row["failed"] or row["lost"] or row["none"]],
         NAME_COLUMN,
         SCENE,
