@@ -1,9 +1,9 @@
-"""The studies: each asks one question of many runs, and is one `comparisons.execution.plan.Study`.
+"""The studies: each answers one question from many runs, as one `comparisons.execution.plan.Study`.
 
-A study is a folder of its name with two files, ``study.py`` and ``page.py``, and a line of `QUESTIONS`. A further file
-holds a further noun, such as its cases.
+A study is a folder of its name with two files, ``study.py`` and ``page.py``, and a line of `QUESTIONS`. Another
+file holds another subject, such as its cases.
 
-``study.py`` computes, and imports nothing that shows. It declares the columns of its rows, ``COLUMNS``, and by ``part``
+``study.py`` computes, and imports nothing that draws. It declares the columns of its rows, ``COLUMNS``, and by ``part``
 (what a row is) which of them a row has, ``PARTS``; see `comparisons.schemas.columns`, `comparisons.studies.rows`. Its
 ``plan(request)`` yields a `Batch` of cases with their ``measure``, and returns `Computed`: plain rows and settings. It
 may also have ``problems`` and ``WHOLE``, see `Study`. All rows have ``engine`` and ``variant``; ``level`` is a value of
@@ -13,8 +13,8 @@ and levels.
     COLUMNS = SHARED | declared(number_of("rms", "error of restitution, rms", "over impacts"), ...)
     PARTS = {"summary": "engine variant ground slenderness rms? failed runs"}
 
-``page.py`` shows: one function from a `Result` to a `comparisons.plotting.parts.Page`. The report's first page takes
-title, lead and first, the study's own page all of it; nothing is told or drawn twice.
+``page.py`` shows: one function from a `Result` to a `comparisons.plotting.parts.Page`. The report's first page shows
+title, lead and first; the study's own page shows all of it. Nothing is said or drawn twice.
 
     ERROR, GAMMA = COLUMNS["rms"], COLUMNS["slenderness"]  # columns of tables and axes of figures
 
@@ -43,7 +43,7 @@ from typing import TYPE_CHECKING
 
 from analytic.errors import SettingError
 
-if TYPE_CHECKING:  # loads engines: not where only the names are asked for
+if TYPE_CHECKING:  # it loads engines, which the names alone do not need
     from ..execution.plan import Study
 
 GROUP = "rocking.studies"
@@ -91,23 +91,23 @@ QUESTIONS = {
     ),
 }
 BUILT_IN = tuple(QUESTIONS)
-TOLERANCES = "tolerances"  # a result that is shown as a study's, and computed by rocking verify
+TOLERANCES = "tolerances"  # a result that is shown as a study's, but computed by rocking verify
 STUDIES = (*BUILT_IN, TOLERANCES)
 # What a study.py may have beside its plan: {its name there: the field of `Study`}.
 OWN = {"COLUMNS": "columns", "PARTS": "parts", "problems": "problems", "WHOLE": "whole"}
 
 
 class StudyBroken(SettingError):
-    """A study that another package declares cannot be used; the message names who declares it."""
+    """Raised where a study that another package declares cannot be used; the message names the package."""
 
 
 def study_names() -> tuple[str, ...]:
-    """Names of all studies, those of this project first, each once."""
+    """Return the names of all studies, those of this project first, each once."""
     return tuple(dict.fromkeys([*BUILT_IN, *sorted(entry.name for entry in entry_points(group=GROUP))]))
 
 
 def get_study(name: str) -> Study:
-    """The `Study` called `name`.
+    """Return the `Study` called `name`.
 
     Raises
     ------
@@ -121,7 +121,7 @@ def get_study(name: str) -> Study:
     if name in QUESTIONS:
         package = f"{PACKAGE}.{name.replace('-', '_')}"
         module = import_module(f"{package}.study")
-        optional = {field: getattr(module, given) for given, field in OWN.items() if hasattr(module, given)}
+        optional = {field: getattr(module, constant) for constant, field in OWN.items() if hasattr(module, constant)}
         return Study(name, QUESTIONS[name], module.plan, f"{package}.page", **optional)
     if name == TOLERANCES:
         shown_by = f"{PACKAGE}.{name}"
@@ -130,15 +130,15 @@ def get_study(name: str) -> Study:
     entries = list(entry_points(group=GROUP, name=name))
     if not entries:
         raise KeyError(f"unknown study {name!r}: choose one of {', '.join(study_names())}")
-    who = f"study {name!r}, declared as {entries[0].value} by {', '.join(sorted(map(_distribution, entries)))}"
+    origin = f"study {name!r}, declared as {entries[0].value} by {', '.join(sorted(map(_distribution, entries)))}"
     if len(entries) > 1:
-        raise StudyBroken(f"{who}: several declare that name; uninstall all but one")
+        raise StudyBroken(f"{origin}: several declare that name; uninstall all but one")
     try:
         study = entries[0].load()
-    except Exception as error:  # whatever another package raises as it is imported
-        raise StudyBroken(f"{who}: it cannot be imported ({type(error).__name__}: {error})") from error
+    except Exception as error:  # importing another package may raise anything
+        raise StudyBroken(f"{origin}: it cannot be imported ({type(error).__name__}: {error})") from error
     if not isinstance(study, Study) or study.name != name:
-        raise StudyBroken(f"{who}: it is no comparisons.execution.plan.Study called {name!r}")
+        raise StudyBroken(f"{origin}: it is no comparisons.execution.plan.Study called {name!r}")
     return study
 
 

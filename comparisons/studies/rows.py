@@ -1,13 +1,13 @@
-"""The columns that several studies' rows have, and results read whose rows are as their study declares.
+"""The columns that several studies share, and results whose rows are checked against their study.
 
 A study declares in its ``study.py`` the columns of its rows, ``COLUMNS``, and by ``part`` which of them a row has,
-``PARTS``. What is not known, or does not exist, is null.
+``PARTS``. A value that is not known, or does not exist, is null.
 
     columns = columns_of("restitution")
     frame = pandas.DataFrame(read_result("restitution.json").rows)  # or any other table library
     print(columns["rms"].head, columns["rms"].declaration)  # name with unit; meaning, unit and type
 
-Nothing here is part of what a result depends on.
+No result depends on anything here.
 """
 
 import shlex
@@ -65,7 +65,7 @@ SHARED = declared(
 )
 
 
-# Of an engine's overturning boundary, and of the model's.
+# Columns of an engine's overturning boundary, and of the model's.
 BOUNDARY = declared(
     word_of("shape", "shape", "shape of the pulse"),
     number_of("frequency", "frequency", "frequency of the pulse over omega_r"),
@@ -83,33 +83,39 @@ BOUNDARY = declared(
 PULSE = "engine variant level ground shape frequency amplitude"
 EDGE = "ground shape frequency amplitude rises mode low high min_normal"
 BOUNDARY_ROW = f"{PULSE} rises mode room shift? half_width? reason? runs"
-SOUGHT = f"{PULSE} min_normal kind reason message"  # of a boundary, by a run that failed
+SOUGHT = f"{PULSE} min_normal kind reason message"  # fields of a failed run that searched for a boundary
 
-SHOWN = 80  # characters of a wrong value
-NOTHING = ("failure", "why_not")  # a row that has one of these says why it has no numbers
+SHOWN = 80  # characters of a wrong value that messages show
+NOTHING = ("failure", "why_not")  # a row with one of these fields says why it has no numbers
 
 
 def columns_of(kind: str) -> Mapping[str, Column]:
-    """{field: its column} of the rows of a study; of another package's that declares none, those that all share."""
+    """Return {field: its column} of the rows of a study.
+
+    A study of another package that declares none has those that all studies share.
+    """
     return get_study(kind).columns or SHARED
 
 
 def read_study(path: str | PathLike[str], name: str | None = None) -> Result:
-    """The `Result` at `path`, a folder of files by solver or one file, its rows such as its study writes; those of
-    another package's study are not looked at. name: of the study that it must be of.
+    """Read a result and check that its rows are as its study writes them.
+
+    Rows of another package's study are not checked.
+
+    path: a folder of files by solver, or one file. name: of the study that the result must be of; None: any.
 
     Raises
     ------
     ResultError
-        As `by_solver.read`; or it is of another study, or a row is not as it should be.
+        `by_solver.read` raises it, the result is of another study, or a row is not as it should be.
     """
     result, file = read(path), Path(path).name
     if name not in (None, result.kind):
         raise ResultError(f"{file}: a result of {result.kind}; give one that rocking study {name} wrote")
     place: Counter[str] = Counter()
     for row in result.rows if result.kind in STUDIES else ():
-        who = engine_of(row)
-        solver = who if who in result.provenance.get("engines", ()) else MODEL
+        engine = engine_of(row)
+        solver = engine if engine in result.provenance.get("engines", ()) else MODEL
         place[solver] += 1
         if wrong := wrong_with(row, result.kind):
             whose = f"{file}/{solver}.json" if Path(path).is_dir() else file
@@ -118,7 +124,7 @@ def read_study(path: str | PathLike[str], name: str | None = None) -> Result:
 
 
 def wrong_with(row: Mapping[str, Any], kind: str) -> str | None:
-    """What is wrong with a row of the study `kind`, in words; None if nothing is."""
+    """Return what is wrong with a row of the study `kind`, in words; None if nothing is."""
     study, part = _study(kind), row.get("part", "")
     if part not in list(study.parts):
         return f"part = {_shown(part)} is none of {', '.join(study.parts)}"
@@ -142,8 +148,10 @@ _study = cache(get_study)
 
 @cache
 def fields_of(part: str) -> list[dict[str, bool]]:
-    """Of a part as `Study.parts` writes it [{field: whether null may stand there} of every row, of rows with
-    numbers]."""
+    """Return the fields of a part as `Study.parts` writes it: those of every row, and those of rows with numbers.
+
+    Each is {field: whether null may stand there}.
+    """
     words = shlex.split(part)
     bar = words.index("|") if "|" in words else len(words)
     return [

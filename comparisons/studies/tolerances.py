@@ -1,11 +1,14 @@
-"""What is shown of the tolerances, a result of no study: ``rocking verify --output DIR`` measures and writes it."""
+"""The page of the tolerances, a result of no study.
+
+``rocking verify --output DIR`` measures and writes it.
+"""
 
 from ..execution.provenance import Result
 from ..plotting.parts import Page, table, where
 from ..schemas.columns import NAME, Column, declared, flag_of, number_of, word_of
 from .rows import SHARED
 
-# What its rows have; see `comparisons.studies.rows`.
+# The columns of its rows, and by part which of them a row has; see `comparisons.studies.rows`.
 COLUMNS = SHARED | declared(
     word_of("quantity", "quantity", "whose error is bounded"),
     word_of("scenes", "scenes", "scenes on which it is measured"),
@@ -21,6 +24,7 @@ PARTS = {"tolerance": "quantity engine variant scenes bound? unit measured? sour
 
 
 def page(result: Result) -> Page:
+    """Return the page of a result."""
     broken, bounded = where(result.rows, holds=False), where(result.rows, holds={True, False})
     return Page(
         f"Agreement tolerances: {f'{len(broken)} of {len(bounded)} do not hold' if broken else 'all hold'}",

@@ -1,4 +1,4 @@
-"""What is shown of the study of the paper, a page for each of its three results.
+"""The pages of the study of the Caryatid paper, one for each of its three results.
 
 Curves of the paper: its misprints beside their corrections, and its bearings.
 """
@@ -25,7 +25,10 @@ GAMMA = "slenderness γ [rad]"
 
 
 def curves(title: str, x: Axis, y: Axis, named: Mapping[str, tuple], right: int = 106) -> Chart:
-    """A `Chart` of {name: (colour, xs, ys)}, each named where it ends; a name in parentheses is not written."""
+    """Return a `Chart` of {name: (colour, xs, ys)}, each curve named where it ends.
+
+    A name in parentheses is not written.
+    """
     chart = Chart(x, y, f"{title}: {y.label} over {x.label}; {', '.join(named)}.", right=right, title=title)
     for name, (tone, xs, ys) in named.items():
         chart.line(xs, ys, tone=tone)
@@ -35,7 +38,7 @@ def curves(title: str, x: Axis, y: Axis, named: Mapping[str, tuple], right: int 
 
 
 def misprints(arrays: Mapping[str, Any]) -> Figure:
-    """Eqs (8) and (12), as printed and corrected."""
+    """Figure of eqs (8) and (12), as printed and corrected."""
     forms = (("as printed", PRINTED, "printed"), ("corrected", CORRECT, "right"))
     charts = [
         curves(
@@ -64,7 +67,7 @@ def misprints(arrays: Mapping[str, Any]) -> Figure:
 
 
 def bearings(arrays: Mapping[str, Any]) -> Figure:
-    """Fig. 3, and the definitions of Table 1(a) over the amplitude."""
+    """Figure of Fig. 3, and of the definitions of Table 1(a) over the amplitude."""
     ends, amplitude = np.array([-0.34, 0.34]), Axis("amplitude [m]", 0.0, 0.4)
     limits = {
         name: (LIMIT, ends, (abs(slope) * ends / 0.34 + s * f0) / 1e3)
@@ -91,10 +94,12 @@ def bearings(arrays: Mapping[str, Any]) -> Figure:
     )
 
 
-DAMPINGS = ("var(--ink)", "var(--accent)", "var(--good)", "var(--fair)", "var(--bad)")  # of Fig. 5(b), least first
-FLOOR = 1e-9  # differences below are drawn there
-KEPT = 5  # of so many samples of a smooth history one is drawn
-HARMS = dict(zip(CATEGORIES, ("", "right", "wrong", "falls"), strict=True))  # classes of who stays upright
+# colours of Fig. 5(b), least damping first
+DAMPINGS = ("var(--ink)", "var(--accent)", "var(--good)", "var(--fair)", "var(--bad)")
+FLOOR = 1e-9  # smaller differences are drawn here
+KEPT = 5  # one of so many samples of a smooth history is drawn
+# {which block stays upright: its style class}
+HARMS = dict(zip(CATEGORIES, ("", "right", "wrong", "falls"), strict=True))
 
 NUMBER = Column("number of the paper", "{where}: {quantity}")
 PAPER = COLUMNS["paper"]
@@ -120,21 +125,23 @@ SHARES = (*CATEGORIES, WITHIN, "isolated lifts", "beyond x_max")
 
 
 def page(result: Result) -> Page:
+    """Return the page of a result."""
     return {"paper": _paper, "motion": _motion, "histories": _histories}[result.settings["part"]](result)
 
 
 def _table(caption: str, rows: Iterable[Mapping[str, Any]], *columns: Column) -> Table:
-    """A `table`, the indices of its symbols set low: k_a."""
-    made = table(caption, rows, *columns)
+    """Return a `table` in which the indices of symbols such as k_a are set low."""
+    plain = table(caption, rows, *columns)
 
     def symbols(text):
         low = re.sub(r"\b(\w)_(\w+)", r"\1<sub>\2</sub>", str(escape(text)))
-        return Markup(low.replace("_", "_<wbr>"))  # a record's name may break there
+        return Markup(low.replace("_", "_<wbr>"))  # a record's name may break at underscores
 
-    return Table(caption, tuple(map(symbols, made.columns)), [list(map(symbols, row)) for row in made.rows])
+    return Table(caption, tuple(map(symbols, plain.columns)), [list(map(symbols, row)) for row in plain.rows])
 
 
 def _paper(result):
+    """Page of the result ``caryatid-paper``: what needs no motion."""
     rows = where(result.rows, part="equation")
     reproduced, corrected = (len(where(rows, status=status)) for status in (paper.REPRODUCED, paper.CORRECTED))
     return Page(
@@ -185,6 +192,7 @@ def _paper(result):
 
 
 def _motion(result):
+    """Page of the paper under one motion."""
     label, missing = result.settings["motion"]["label"], missing_words(result.settings["missing"])
     runs = where(result.rows, part={"run", "rocking spectrum", "displacement spectrum"})
     claims = where(result.rows, part="claim")
@@ -210,7 +218,7 @@ def _motion(result):
 
 
 def _motion_details(result, runs, claims, shares, others, mean):
-    """What stands on the page of the paper's motion alone."""
+    """Parts of the page of the paper under one motion."""
     return (
         Head("What is printed, beside what is found"),
         _table(
@@ -257,6 +265,7 @@ def _motion_details(result, runs, claims, shares, others, mean):
 
 
 def _scene(row):
+    """Name of a row's scene."""
     return {
         "run": "{scene} Caryatid",
         "rocking spectrum": "Fig. 5(a), T_r = {period:.3f} s",
@@ -265,11 +274,12 @@ def _scene(row):
 
 
 def _spans(intervals):
+    """Intervals of slenderness, in words."""
     return ", ".join(f"{low:.4f} to {high:.4f}" for low, high in intervals) or "nowhere"
 
 
 def _outcomes(runs):
-    """In how many solvers each scene ends how."""
+    """Words on how many solvers end each scene how."""
     return "; ".join(
         f"{scene} it {end} in {len(where(same, outcome=end))} of {len(same)} solvers"
         for (scene,), same in grouped(runs, "scene").items()
@@ -278,7 +288,10 @@ def _outcomes(runs):
 
 
 def _beside(rows: Iterable[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
-    """A row for each number of the paper: the model's, and in ``engines`` what the engines give, from least to most."""
+    """Yield a row for each number of the paper, with the model's.
+
+    The column ``engines`` has what the engines give, from least to most.
+    """
     for same in grouped(rows, "where", "quantity").values():
         of_model = where(same, engine={None, "analytic"}) or [{"study": None}]
         others = dict.fromkeys(row["study"] for row in same if row["engine"] not in (None, "analytic"))
@@ -290,7 +303,10 @@ def _beside(rows: Iterable[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
 
 
 def _agreement(runs):
-    """What each engine's runs of Fig. 5 differ by from the model's: in their times of overturning or their peaks."""
+    """Figure of the differences of each engine's runs of Fig. 5 from the model's.
+
+    They are differences of overturning times or of peaks.
+    """
     rows = []
     for same in grouped((row for row in runs if row["part"] != "run" and not row["failure"]), SCENE.of).values():
         (model,) = where(same, engine="analytic") or [None]
@@ -313,7 +329,7 @@ def _agreement(runs):
 
 
 def _spectra(result):
-    """Fig. 5 in the analytic model."""
+    """Figure of Fig. 5 in the analytic model."""
     period, overturns = result.arrays["rocking/period"], result.arrays["rocking/overturns"]
     bearings, peaks = where(result.rows, part="equivalent")[0], result.arrays["displacement/peak"]
     tilt = Chart(
@@ -345,6 +361,7 @@ def _spectra(result):
 
 
 def _vulnerable(result):
+    """Figure of the longest rocking period that overturns, over the slenderness."""
     about = paper.VULNERABLE_PERIOD - paper.VULNERABLE_ABOUT, paper.VULNERABLE_PERIOD + paper.VULNERABLE_ABOUT
     values = zip(result.arrays["claims/slenderness"], result.arrays["claims/vulnerable period"], strict=True)
     return lines(
@@ -360,6 +377,7 @@ def _vulnerable(result):
 
 
 def _benefit(result):
+    """Map of which of the two blocks stays upright, over slenderness and intensity."""
     gamma, intensity = (result.arrays[f"benefit/{name}"].astype(float) for name in ("slenderness", "intensity"))
     panels = {"": result.arrays["benefit/category"]}
     (chart,), keys = regions(GAMMA, "intensity: motion times [-]", gamma, intensity, panels, HARMS, right=76)
@@ -380,6 +398,7 @@ def _benefit(result):
 
 
 def _histories(result):
+    """Page of the histories under one motion."""
     arrays, motion, x_max = result.arrays, result.settings["motion"], result.settings["x_max"]
     ended = [row for row in result.rows if not row["failure"]]
     longest = {name: max(row["end"]["time"] for row in where(ended, scene=name)) for name in (FREE, ISOLATED)}

@@ -1,18 +1,13 @@
-"""The Caryatid paper: every equation, figure and table of it reproduced or corrected, and what it leaves out.
+"""The Caryatid paper: each equation, figure and table, reproduced or corrected, and what it omits.
 
-There are three results, all of kind "caryatid": ``caryatid-paper`` (what needs no motion: bearing law, Table 1,
-misprints), ``caryatid-under-<motion>`` (what does, without a single value of the motion itself) and
-``caryatid-under-<motion>-histories`` (Figs 4 and 6 over time: not to be passed on where the record may not be).
-
-What the Caryatid paper prints, as far as it is known here; its simulations in every solver, Figs 4(b) and 6, points
-of Figs 5(a) and 5(b); and each number of the paper beside this study's.
-
-What needs no ground motion: the bearing law of Fig. 3, Table 1 and the misprints, each by a number.
+There are three results, all of kind "caryatid". ``caryatid-paper`` needs no motion: the bearing law of Fig. 3, Table 1
+and the misprints, each by a number. ``caryatid-under-<motion>`` needs one, but stores no single value of the motion
+itself: the paper's simulations in every solver, the slenderness that it can have meant, and other slendernesses,
+intensities and motions. ``caryatid-under-<motion>-histories`` has Figs 4 and 6 over time, which may not be passed on
+where the record may not be.
 
 `branch` and `history_point` are the paper's equations written out literally, misprint included; the corrected ones are
 the model's own.
-
-What the paper leaves out: which slenderness it can have meant, other slendernesses, intensities and motions.
 """
 
 import math
@@ -62,7 +57,7 @@ from ...metrics.agreement import branch, history_point
 from ...schemas.columns import declared, flag_of, list_of, number_of, table_of, whole_of, word_of
 from ..rows import SHARED
 
-# What its rows have; see `comparisons.studies.rows`.
+# The columns of its rows, and by part which of them a row has; see `comparisons.studies.rows`.
 COLUMNS = SHARED | declared(
     word_of("where", "where", "place in the paper"),
     word_of("quantity", "quantity", "name of the quantity, with its unit"),
@@ -158,7 +153,7 @@ PARTS = {
 FREE, ISOLATED = "free-standing", "isolated"
 SHIPPED = {FREE: "caryatid-rigid", ISOLATED: "caryatid-isolated"}
 DAMPING_RATIOS = (0.05, 0.10, 0.15, 0.20, 0.30)  # Fig. 5(b); the paper's own are not at hand
-OSCILLATOR_DAMPING = (0.05, 0.30)  # of those run in the engines
+OSCILLATOR_DAMPING = (0.05, 0.30)  # dampings that are run in the engines
 # A block this stocky stays down on its oscillator: it lifts at 0.84 g.
 STOCKY = 0.7  # rad
 TIME_LIMIT = 120.0  # s
@@ -167,19 +162,19 @@ LEFT_OUT = "impacts", "uplifts", "rests", "energy", "sliding"  # of a response: 
 
 
 def caryatid(name: str, motion: Motion | None) -> Scene:
-    """The free-standing or the isolated Caryatid under `motion`."""
+    """Return the free-standing or the isolated Caryatid under `motion`."""
     return load_scene(SHIPPED[name]).with_(motion=motion, duration=None)
 
 
 def slender_block(motion: Motion, period: float, slenderness: float) -> Scene:
-    """A block on rigid ground whose rocking period T_r is `period` [s], as in Fig. 5(a)."""
+    """Return a block on rigid ground whose rocking period T_r is `period` [s], as in Fig. 5(a)."""
     scene = caryatid(FREE, motion)
     radius = 3 * scene.gravity * (period / (2 * np.pi)) ** 2 / 4  # (1) with J_O = 4/3 m R^2
     return scene.with_(block={"radius": float(radius), "slenderness": slenderness})
 
 
 def oscillator(motion: Motion, period: float, damping: float) -> Scene:
-    """A linear oscillator as a scene: a block that cannot lift, on one linear bearing with a damper."""
+    """Return a linear oscillator as a scene: a block that cannot lift, on one linear bearing with a damper."""
     scene = caryatid(ISOLATED, motion)
     omega = 2 * np.pi / period
     bearing = Bearings(
@@ -198,7 +193,7 @@ def oscillator(motion: Motion, period: float, damping: float) -> Scene:
 
 
 def measure(case: Case, response: Response) -> dict[str, Any]:
-    """The whole response, and of Figs 4(b) and 6 tilt and displacement at multiples of `HISTORY_STEP`."""
+    """Return the whole response, and for Figs 4(b) and 6 tilt and displacement at multiples of `HISTORY_STEP`."""
     measures = response.to_json()
     if case.tag["part"] == "run" and (history := response.history):
         time = np.arange(0.0, history.time[-1], HISTORY_STEP)
@@ -212,7 +207,7 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
 def simulations(
     motion: Motion, engines: Sequence[str], quick: bool = False
 ) -> Generator[Batch, list[Row], tuple[list[dict[str, Any]], dict[str, np.ndarray]]]:
-    """Plan of all runs; returns their rows, and the histories of Figs 4(b) and 6 as arrays."""
+    """Plan all runs; return their rows, and the histories of Figs 4(b) and 6 as arrays."""
     solvers = ("analytic", *engines)
     figures = [
         Case(caryatid(name, motion), solver, tag={"part": "run", "scene": name})
@@ -223,17 +218,17 @@ def simulations(
     for row in (yield Batch([*figures, *_points(motion, solvers, quick)], measure, "Figs 4 to 6", TIME_LIMIT)):
         values = {name: value for name, value in row.values.items() if name not in LEFT_OUT}
         engine = row.case.solver
-        if row.case.scene.base is None:  # the ground's own peak: a value of the motion
+        if row.case.scene.base is None:  # it would be the ground's own peak, a value of the motion
             values.pop("peak_base_acceleration", None)
         for column, numbers in values.pop("history", {}).items():
             histories[f"{row.case.tag['scene']}/{engine}/{column}"] = np.array(numbers, dtype=np.float32)
-        default = {"engine": engine, "variant": row.case.variant}  # of a run that failed
+        default = {"engine": engine, "variant": row.case.variant}  # row of a failed run
         rows.append({**default, **values, **row.case.tag, "failure": row.failure, **row.cost})
     return rows, histories
 
 
 def _points(motion, solvers, quick):
-    """Single blocks and oscillators of Fig. 5, in every solver."""
+    """Cases of the single blocks and oscillators of Fig. 5, in every solver."""
     free = caryatid(FREE, motion)
     slenderness, rocking_period = free.block.slenderness, 2 * np.pi / free.rocking_frequency
     blocks = (rocking_period, 5.0) if quick else (1.5, rocking_period, 3.0, 3.5, 4.5, 5.0, 6.0, 7.0)
@@ -248,7 +243,10 @@ def _points(motion, solvers, quick):
 
 
 def spectra(motion: Motion, quick: bool = False) -> dict[str, np.ndarray]:
-    """Arrays of Fig. 5(a), max tilt over slenderness against T_r, and Fig. 5(b), max displacement against T_bi."""
+    """Return the arrays of Figs 5(a) and 5(b).
+
+    They are max tilt over slenderness against T_r, and max displacement against T_bi.
+    """
     slenderness = caryatid(FREE, motion).block.slenderness
     periods = np.linspace(0.5, 8.0, 151 if quick else 751)
     tilts = rocking_spectrum(motion, periods, slenderness)
@@ -264,7 +262,10 @@ def spectra(motion: Motion, quick: bool = False) -> dict[str, np.ndarray]:
 
 
 def equivalent_oscillators(motion: Motion, properties: BearingProperties, nonlinear: float) -> list[dict[str, Any]]:
-    """What a linear oscillator at T_bi predicts, with the damping in either definition, beside the bearings' own."""
+    """Return rows of what a linear oscillator at T_bi predicts, beside the bearings' own displacement.
+
+    There is a row for either definition of the damping.
+    """
     return [
         {
             "part": "equivalent",
@@ -310,22 +311,22 @@ def value(
     note: str = "",
     engine: str | None = None,
 ) -> dict[str, Any]:
-    """A row: one number of the paper beside this study's, with their difference where both are numbers.
+    """Return a row: one number of the paper beside this study's, with their difference where both are numbers.
 
     Parameters
     ----------
     where : str
         Table, figure or equation.
     quantity : str
-        What, with its unit.
+        What the number is, with its unit.
     printed, study : float or str
-        The paper's and this study's.
+        The paper's value and this study's.
     status : str
         One of those above.
     note : str
-        Why.
+        Reason for the status.
     engine : str or None
-        Whose run gave it, "analytic" among them; None: no run.
+        Solver whose run gave the value, such as "analytic"; None: no run.
     """
     numbers = isinstance(printed, float) and isinstance(study, float) and status != GIVEN
     return {
@@ -344,25 +345,26 @@ def value(
 def judged(
     where: str, quantity: str, printed: float, study: float, within: float, note: str = "", papers_motion: bool = True
 ) -> dict[str, Any]:
-    """A row as `value` makes it, reproduced if it lies within half a printed digit, or what "about" allows.
+    """Return a row of `value`, reproduced if it lies within half a printed digit, or within what "about" allows.
 
-    papers_motion: whether the value comes of the paper's own motion; of another one it is not judged.
+    papers_motion: whether the value comes from the paper's own motion; otherwise it is not judged.
     """
     met = abs(study - printed) <= within
     return value(where, quantity, printed, study, _status(papers_motion, met), note)
 
 
 def _status(papers_motion, met):
+    """Status of a number by whether the motion is the paper's, and whether it is met."""
     return OTHER_MOTION if not papers_motion else REPRODUCED if met else NOT_REPRODUCIBLE
 
 
 def is_papers_motion(motion: Motion) -> bool:
-    """Whether it is a Duzce record, by its name: only then are the paper's numbers the ones to meet."""
+    """Return whether the motion is a Duzce record, by its name: only then can the paper's numbers be met."""
     return "DUZCE" in motion.label.upper() and not motion.label.startswith("synthetic")
 
 
 def motion_values(rows: Sequence[Mapping[str, Any]], motion: SampledMotion, least: float) -> Iterator[dict[str, Any]]:
-    """Rows of the paper's numbers in Figs 4 to 6, each beside what every solver's rows give.
+    """Yield rows of the paper's numbers in Figs 4 to 6, each beside what every solver's rows give.
 
     least: slenderness [rad] that does not rock on the bearings.
     """
@@ -384,7 +386,7 @@ def motion_values(rows: Sequence[Mapping[str, Any]], motion: SampledMotion, leas
 
 
 def _run_values(row, motion, papers_motion):
-    """Figs 4(b) and 6 as one solver's run has them."""
+    """Rows of Figs 4(b) and 6 in one solver's run."""
     what, engine = f"{row['scene']} Caryatid", row["engine"]
 
     def compared(place, quantity, printed, study, status=None, note=""):
@@ -418,7 +420,9 @@ AMPLITUDES = np.linspace(0.02, 0.40, 96)  # m
 
 
 def momentum_after(scene: Scene, jump_length: float, rate: float = -1.0) -> float:
-    """Horizontal momentum after an impact over that before it, for a base velocity jump -e_x phi'-; 1 if conserved.
+    """Return the horizontal momentum after an impact over that before it, for a base velocity jump -e_x phi'-.
+
+    It is 1 if momentum is conserved.
 
     Before: m h w (the base stands). After: m h e_phi w + (m + m_b) jump.
     """
@@ -427,7 +431,7 @@ def momentum_after(scene: Scene, jump_length: float, rate: float = -1.0) -> floa
 
 
 def formulas() -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
-    """(rows, arrays) of the result ``caryatid-paper``."""
+    """Return the rows and arrays of the result ``caryatid-paper``."""
     scene = load_scene("caryatid-isolated").with_(motion=None)
     law = BearingLaw.of(scene.bearings)
     arrays = {**_loops(law), **_reversal(law), **_momentum(scene), **_amplitudes(scene)}
@@ -444,7 +448,7 @@ def formulas() -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
 
 
 def _loops(law):
-    """Fig. 3: the path through `TURNS`, its reversal points, the limit curves."""
+    """Arrays of Fig. 3: the path through `TURNS`, its reversal points, the limit curves."""
     x, f, z = [], [], 0.0
     for start, end in pairwise(TURNS):
         travel = np.linspace(0.0, end - start, POINTS)
@@ -461,7 +465,7 @@ def _loops(law):
 
 
 def _reversal(law):
-    """Loading of the virgin bearing to `REVERSAL` and unloading: right, and with eq. (12) as printed."""
+    """Arrays of loading the virgin bearing to `REVERSAL` and unloading it, correctly and with eq. (12) as printed."""
     loading, unloading = np.linspace(0.0, REVERSAL, POINTS), np.linspace(REVERSAL, -REVERSAL, POINTS)
     force = np.array([law.kb * x + law.start(x) for x in loading])
     z, x_j = law.start(REVERSAL), history_point(law, REVERSAL, force[-1], -1)
@@ -475,7 +479,10 @@ def _reversal(law):
 
 
 def _momentum(scene):
-    """Momentum after an impact over that before, by eq. (8) corrected and printed, over slenderness and over radius."""
+    """Arrays of the momentum after an impact over that before, by eq. (8) corrected and printed.
+
+    They go over slenderness and over radius.
+    """
     arrays = {"impact/slenderness": SLENDERNESSES, "impact/radius": RADII}
     for by in ("slenderness", "radius"):
         scenes = [scene.with_(block={by: float(size)}) for size in arrays[f"impact/{by}"]]
@@ -485,7 +492,7 @@ def _momentum(scene):
 
 
 def _amplitudes(scene):
-    """Secant period and damping in both definitions over the amplitude."""
+    """Arrays of secant period and damping in both definitions over the amplitude."""
     at = [properties(scene.bearings, scene.total_mass, float(amplitude)) for amplitude in AMPLITUDES]
     return {
         "amplitude/x": AMPLITUDES,
@@ -496,7 +503,7 @@ def _amplitudes(scene):
 
 
 def _values(scene, got, designed):
-    """Every number of the paper that needs no motion."""
+    """Rows of every number of the paper that needs no motion."""
     radius = 3 * scene.gravity / (4 * OMEGA_R**2)  # (1) with J_O = 4/3 m R^2
     secant = f"as secant period at x_max; with k_b alone it would be {got.period_kb:.3f} s"
     ours, usual = "damping ξ as W_D/(2π E_s) [%]", "damping ξ as W_D/(4π E_s) [%]"
@@ -556,7 +563,7 @@ def _values(scene, got, designed):
 
 
 def _rows(part, keys, *rows):
-    """Rows of a part, their values in the order of the keys."""
+    """Return rows of a part, with values in the order of the keys."""
     return [{"part": part, **dict(zip(keys, row, strict=True))} for row in rows]
 
 
@@ -600,7 +607,10 @@ def _misprints(scene, got, jumps):
 
 
 def _momentum_residual():
-    """Eq. (2) integrated: (m + m_b)(v + int a_g dt) + int n_d f dt over a run, over the largest of its impulses."""
+    """Return the residual of eq. (2) integrated over a run, over the largest of its impulses.
+
+    It is (m + m_b)(v + int a_g dt) + int n_d f dt.
+    """
     scene = load_scene("caryatid-isolated")
     history = simulate(scene.with_(duration=scene.motion.end), output_step=scene.motion.dt / 8).history
     ground = cumulative_simpson(history.ground_acceleration, x=history.time, initial=0)
@@ -610,15 +620,15 @@ def _momentum_residual():
 
 
 def _impact_by_balances(scene, rate):
-    """(phi'+, jump of x') from linear momentum and the block's angular momentum about its new corner alone."""
+    """Return (phi'+, jump of x') from linear momentum and the block's angular momentum about its new corner alone."""
     m, b, h, about = scene.block.mass, scene.block.half_width, scene.block.half_height, scene.block.centre_inertia
     balances = np.array([[m * h, scene.total_mass], [about + m * (h * h + b * b), m * h]])
     return np.linalg.solve(balances, [m * h * rate, (about + m * (h * h - b * b)) * rate])
 
 
-# A table of the paper's equations: long, as they are many.
+# Long, because the paper has many equations.
 def _equations(scene, law, got, designed, jumps, literal):
-    """Eqs (1) to (14), Fig. 3 and Table 1, each by a number that it must give."""
+    """Rows of eqs (1) to (14), Fig. 3 and Table 1, each with a number that it must give."""
     run = simulate(load_scene("caryatid-isolated").with_(block={"slenderness": 0.15}), history=False)  # it rocks
     rate = -0.7
     spin, base = _impact_by_balances(scene, rate)
@@ -686,8 +696,8 @@ def _equations(scene, law, got, designed, jumps, literal):
 
 LOW, HIGH = 0.10, 0.45  # rad
 TOLERANCE = 1e-5  # rad
-LONGEST = 8.0  # s, of the rocking periods looked at
-# who stays upright
+LONGEST = 8.0  # s, longest rocking period that is tried
+# which block stays upright
 BOTH, ONLY_ISOLATED, ONLY_FREE, NEITHER = range(4)
 CATEGORIES = ("both stay upright", "only the isolated one does", "only the free-standing one does", "both overturn")
 WITHIN = "only the isolated one does, within 0.30 m"
@@ -695,14 +705,17 @@ SEEDS = 12
 
 
 def vulnerable_period(motion: Motion, slenderness: float, step: float = 0.02) -> float:
-    """Largest rocking period T_r [s] up to `LONGEST` at which a block overturns, on a grid of `step`; 0 if none."""
+    """Return the longest rocking period T_r [s] up to `LONGEST` at which a block overturns; 0 if none.
+
+    Periods lie on a grid of `step` [s].
+    """
     periods = np.arange(LONGEST, 0.4, -step)
     overturns = rocking_spectrum(motion, periods, slenderness).overturns
     return round(float(periods[overturns].max(initial=0.0)), 6)
 
 
 def claims(motion: Motion, quick: bool = False) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
-    """Rows: for each of the paper's three claims the intervals of slenderness in which it holds; then where all do.
+    """Return rows on the intervals of slenderness in which each of the paper's three claims holds, and all of them.
 
     Also the arrays of vulnerable period over slenderness.
     """
@@ -747,9 +760,9 @@ def _outcomes(holds, batch):
 
 
 def uplift_slenderness(motion: Motion) -> float:
-    """Least slenderness [rad] that stays down on the bearings, from the acceleration alone: atan(max|a|/g).
+    """Return the least slenderness [rad] that stays down on the bearings, from the acceleration: atan(max|a|/g).
 
-    A block that stays down does not change the acceleration of its base, so any that does gives it.
+    A block that stays down does not change the acceleration of its base, so any such block gives the acceleration.
     """
     scene = caryatid(ISOLATED, motion).with_(block={"slenderness": 1.2})
     return math.atan(simulate(scene, history=False).peak_base_acceleration / scene.gravity)
@@ -763,12 +776,13 @@ def _intervals(transitions, holds_at_low):
 
 
 def _overlap(ones, others):
+    """Intersections of two lists of intervals."""
     pairs = [(max(a[0], b[0]), min(a[1], b[1])) for a in ones for b in others]
     return [[low, high] for low, high in sorted(pairs) if low < high]
 
 
 def grid(quick: bool, fine: bool = True) -> tuple[np.ndarray, np.ndarray]:
-    """(slendernesses [rad], intensities [-])."""
+    """Return the slendernesses [rad] and the intensities [-] of the map."""
     slendernesses, intensities = (15, 12) if quick else (71, 56) if fine else (36, 34)
     return np.linspace(LOW, HIGH, slendernesses), np.linspace(0.25, 3.0, intensities)
 
@@ -776,7 +790,9 @@ def grid(quick: bool, fine: bool = True) -> tuple[np.ndarray, np.ndarray]:
 def benefit(
     motion: Motion, slendernesses: np.ndarray, intensities: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Category (uint8), whether the isolated block lifts, and its peak base displacement [m], shape (n, k).
+    """Compare the free-standing and the isolated block over slenderness and intensity; arrays of shape (n, k).
+
+    They are the category (uint8), whether the isolated block lifts, and its peak base displacement [m].
 
     The displacement is NaN where the isolated block overturns: runs end when that is certain.
     """
@@ -806,7 +822,7 @@ def benefit(
 
 
 def maps(motion: Motion, quick: bool = False) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
-    """(rows, arrays): shares of the map of `motion` and of synthetic motions' maps, and the map itself."""
+    """Return rows and arrays: shares of the map of `motion` and of synthetic motions' maps, and the map itself."""
     fine, coarse = grid(quick), grid(quick, fine=False)
     outcomes = benefit(motion, *fine)
     rows = [_shares("this motion", *outcomes)]
@@ -852,7 +868,7 @@ def plan(
     column: Column = None,
     channel: Channel = None,
 ) -> Plan:
-    """The plan of the study, an answer for each part.
+    """Plan the study; it gives an answer for each part.
 
     Parameters
     ----------
@@ -892,7 +908,7 @@ def plan(
 
 
 def _analytic(motion, runs, quick):
-    """(rows, arrays) of what the analytic model alone answers."""
+    """Return the rows and arrays that the analytic model alone gives."""
     log("spectra")
     arrays = spectra(motion, quick)
     isolated = caryatid(ISOLATED, motion)
@@ -910,7 +926,10 @@ def _analytic(motion, runs, quick):
 
 
 def _slug(motion):
-    """A file's name for the motion: of a record its own, without the ending, and the channel or column."""
+    """Return the name of the motion in file names.
+
+    For a record it is the file's own, without the ending, with the channel or column.
+    """
     file, more = re.match(r"([^,(]*)(.*)", motion.label).groups()
     name = "synthetic" if motion.label.startswith("synthetic") else Path(file.strip()).stem + more
     return re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")

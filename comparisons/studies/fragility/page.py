@@ -1,4 +1,4 @@
-"""What is shown of the fragility study."""
+"""The page of the fragility study: runs under synthetic motions that differ, and fragility curves."""
 
 from typing import Any
 
@@ -16,14 +16,14 @@ from ...plotting.wording import ends, ends_in_words, equal_mark, least_shown, le
 from ...schemas.columns import NAME, Column, number, percent, short
 from .study import COLUMNS
 
-LEVEL = 0.05  # of the test between an engine and the model, and least p of a curve that is shown
+LEVEL = 0.05  # level of the test between an engine and the model, and least p of a curve that is shown
 OVERTURNING = "overturning"
 UNITS = {"PGV": "m/s"}
 TONES = ("var(--faint)", "var(--soft)", "var(--accent)", "var(--ink)", "var(--ghost)")
-MARKS = ("o", "s", "^", "o", "D")  # of the limit states; that of overturning is small, to lie on others
+MARKS = ("o", "s", "^", "o", "D")  # marks of the limit states; that of overturning is drawn small, to lie on others
 TICKS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)
 OUTCOMES = ("both_stand", "both_overturn", "only_a", "only_b")
-RATIOS = (0.5, 0.7, 1.0, 1.4, 2.0)  # of medians, as ticks
+RATIOS = (0.5, 0.7, 1.0, 1.4, 2.0)  # ratios of medians that are ticks
 
 SCENE, STATE = (COLUMNS["scene"], Column("limit state", lambda row: row["state"].replace("displacement", "displ.")))
 MEASURE = Column(
@@ -44,6 +44,7 @@ EFFECT = (
 
 
 def page(result: Result) -> Page:
+    """Return the page of a result."""
     fits, effects = where(result.rows, part="fit"), where(result.rows, part="effect")
     costs = {(row["scene"], NAME.of(row)): row["cpu_per_run"] for row in where(result.rows, part="cost")}
     measures = {row["scene"]: row["measure"] for row in where(fits, state=OVERTURNING)}
@@ -70,7 +71,7 @@ def page(result: Result) -> Page:
 
 
 def _summary(chosen, tones, counts):
-    """What stands on the report's first page, too."""
+    """Parts that the report's first page shows too."""
     return (
         beside(
             _shares(
@@ -96,7 +97,7 @@ def _summary(chosen, tones, counts):
 
 
 def _details(result, fits, effects, costs, chosen, tones):
-    """What stands on the study's own page alone."""
+    """Parts that only the study's own page shows."""
     return (
         table(
             "Overturning: engines against the analytic model on the same runs; 95 % intervals by paired bootstrap",
@@ -112,7 +113,7 @@ def _details(result, fits, effects, costs, chosen, tones):
             NAME,
             MEDIAN_SHIFT,
             "Median intensity over the analytic model's on the same runs, with 95 % intervals by paired bootstrap; "
-            "without an interval no outcome differs, or the runs determine none.",
+            "no interval: no outcome differs, or the runs determine no interval.",
             Axis(MEDIAN_SHIFT.head, RATIOS[0], RATIOS[-1], "log", tuple((ratio, short(ratio)) for ratio in RATIOS)),
             panel=lambda row: f"{row['scene']}: {STATE.of(row)}",
         ),
@@ -150,7 +151,7 @@ def _details(result, fits, effects, costs, chosen, tones):
 
 
 def tallies(result: Result) -> list[dict[str, Any]]:
-    """A row for each variant: the `tally` of its runs of all scenes, runs under one motion taken as one."""
+    """Return a row for each variant: the `tally` of its runs of all scenes; runs under one motion count as one."""
     tiers = {NAME.of(variant): variant["tier"] for variant in result.settings["variants"]}
 
     def turned(row):
@@ -163,12 +164,13 @@ def tallies(result: Result) -> list[dict[str, Any]]:
 
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
-    """How many outcomes differ from the model's, by (engine, variant)."""
+    """Judge how many outcomes differ from the model's, by (engine, variant)."""
     marks = {(row["engine"], row["variant"]): equal_mark(row, left_out(row)) for row in tallies(result) if row["runs"]}
     return (Judgement("outcomes that differ under synthetic motions", marks),)
 
 
 def glance(result: Result) -> Glance:
+    """Return the outcomes of all runs for the report's first screen."""
     tiers = {NAME.of(variant): variant["tier"] for variant in result.settings["variants"]}
     runs = [
         {
@@ -185,7 +187,7 @@ def glance(result: Result) -> Glance:
 
 
 def _differing(counts):
-    """Of every variant, subject engines first, the share of its runs that end otherwise than the model's."""
+    """Figure of the share of each variant's runs that end otherwise than the model's, subject engines first."""
     return ranks(
         sorted((row for row in counts if row["runs"]), key=lambda row: (not subject(row), row["engine"] == REFERENCE)),
         NAME,
@@ -198,11 +200,15 @@ def _differing(counts):
 
 
 def _fits(row):
+    """Return whether a curve fits: its p is at least `LEVEL`."""
     return row["p_value"] is not None and row["p_value"] >= LEVEL
 
 
 def _shares(rows, tones, caption):
-    """Shares of runs over intensity, a panel for each scene and measure; tones: {limit state: its colour}."""
+    """Figure of shares of runs over intensity, a panel for each scene and measure.
+
+    tones: {limit state: its colour}.
+    """
     charts = []
     for (scene, measure), members in grouped(rows, "scene", MEASURE.of).items():
         places = [point["intensity"] for row in members for point in row["points"]]
@@ -246,12 +252,12 @@ def _how(settings):
         f"{settings['x_max']:g} m), at {percent(settings['damping'])} damping. g tan γ: uplift acceleration; ωᵣ: "
         "rocking frequency. The curve P = Φ(ln(x/median)/dispersion) is that of greatest likelihood, p that of "
         "Pearson's test of its fit.",
-        "Left out, of all engines alike: N falls to 0, the friction demand is more than any contact provides, or the "
-        "scene is near an outcome boundary: with a change by 10⁻⁴ the block ends otherwise in the model. Scenes share "
-        "their motions: the interval takes the runs under one motion as one.",
+        "Left out of all engines: scenes in which N falls to 0, the friction demand is more than any contact provides, "
+        "or an outcome boundary is near (with a change by 10⁻⁴ the block ends otherwise in the model). Scenes share "
+        "their motions, so the interval counts the runs under one motion as one.",
         f"Engines run the first {settings['runs_of_engines']} scenes whose PGA is {settings['near'][0]:g} to "
         f"{settings['near'][1]:g} times g tan γ, the variants “defaults” the first {settings['runs_of_defaults']}. "
         f"Exact McNemar test, adjusted after Holm for the limit states, at a level of {LEVEL:g}. “analytic, "
         f"perturbed”: the model with its restitution changed by 1 part in {1 / settings['change']:.0f}; an "
-        "engine that differs no more than that cannot be told from the model.",
+        "engine that differs no more than this variant cannot be distinguished from the model.",
     )

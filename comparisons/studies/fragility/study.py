@@ -1,9 +1,8 @@
-"""The fragility study: a cloud of runs of the analytic model, the first of it in every engine, and curves of both.
+"""The fragility study: many runs of the analytic model, some of them in every engine, and curves.
 
-Blocks and motions of the cloud are random. No two runs share a motion, a block or an intensity, so that runs are
-independent. Accelerations are evenly spread over the logarithm, far below and far above what matters.
-
-Fragility curves: of the analytic model, and what an engine makes of them.
+The runs form a cloud: their blocks and motions are random. No two runs share a motion, a block or an intensity, so runs
+are independent. Accelerations are evenly spread over the logarithm, from far below to far above what matters. Fragility
+curves are fitted to the analytic model, and engines are compared by what they make of them.
 """
 
 import math
@@ -39,7 +38,7 @@ from ...metrics.statistics import (
 from ...schemas.columns import declared, flag_of, list_of, number_of, whole_of, word_of
 from ..rows import SHARED
 
-# What its rows have; see `comparisons.studies.rows`.
+# The columns of its rows, and by part which of them a row has; see `comparisons.studies.rows`.
 COLUMNS = SHARED | declared(
     word_of("state", "state", "limit state"),
     word_of("measure", "measure", "intensity measure"),
@@ -120,14 +119,17 @@ SHIFTS = ("median_shift", "median_interval", "dispersion_shift", "dispersion_int
 
 @dataclass(frozen=True)
 class State:
-    """A limit state: exceeded where a run's value of this key is above the limit; measure: of its curve's intensity."""
+    """A limit state: it is exceeded where a run's value of `key` is above the limit.
+
+    measure: the intensity measure of its curve.
+    """
 
     key: str
     limit: float
     measure: str
 
     def exceeded(self, values: dict[str, np.ndarray]) -> np.ndarray:
-        """1 where a run exceeds it, 0 where not, NaN where it failed; shape (n,)."""
+        """Return 1 where a run exceeds it, 0 where not, NaN where the run failed; shape (n,)."""
         reached = values[self.key]
         return np.where(np.isnan(reached), np.nan, reached > self.limit)
 
@@ -135,10 +137,10 @@ class State:
 def fits(
     measures: dict[str, np.ndarray], states: dict[str, State], values: dict[str, np.ndarray]
 ) -> list[dict[str, Any]]:
-    """A row per limit state.
+    """Fit a curve to each limit state; return a row for each.
 
-    median, dispersion and their intervals (bootstrap over runs); p_value of the curve's fit; points: shares with Wilson
-    intervals. reason: why there is no curve, or None.
+    A row has median, dispersion and their intervals (bootstrap over runs); p_value of the curve's fit; points: shares
+    with Wilson intervals; reason: why there is no curve, or None.
     """
     rows = []
     for name, state in states.items():
@@ -176,11 +178,11 @@ def effects(
     values: tuple[dict[str, np.ndarray], dict[str, np.ndarray]],
     pair: tuple[str, str],
 ) -> list[dict[str, Any]]:
-    """A row per limit state: `compare` of the two on the runs that failed in neither, and what it makes of the curve.
+    """Compare an engine with the model on the runs that failed in neither; return a row for each limit state.
 
     median_shift and dispersion_shift: the engine's median and dispersion over the model's, with intervals by paired
-    bootstrap over runs; detectable_shift: the ratio of medians whose
-    difference of probability the test would have found with 80 % probability. p_holm: p adjusted over limit states.
+    bootstrap over runs; detectable_shift: the ratio of medians whose difference of
+    probability the test would have found with 80 % probability. p_holm: p adjusted over limit states.
 
     Parameters
     ----------
@@ -215,7 +217,7 @@ def _shift(intensity, ours, theirs, detectable):
     medians, spreads = zip(*(resampled(intensity, exceeded, weights) for exceeded in (ours, theirs)), strict=True)
     shift["median_shift"] = engine.median / model.median
     shift["dispersion_shift"] = engine.dispersion / model.dispersion
-    if (ours != theirs).any():  # else bootstrap knows of no difference: no width, which would be certainty
+    if (ours != theirs).any():  # without a difference the bootstrap gives no width, which would mean certainty
         shift["median_interval"] = interval(shift["median_shift"], medians[1] / medians[0])
         shift["dispersion_interval"] = interval(shift["dispersion_shift"], spreads[1] / spreads[0])
     if detectable is not None:
@@ -226,12 +228,12 @@ def _shift(intensity, ours, theirs, detectable):
 
 
 X_MAX = 0.30  # m, what the bearings are built for: Table 1(a) of the paper
-PERIOD = properties(BEARINGS, MASS + BASE.mass, X_MAX).period  # s, of isolation, secant at X_MAX
-DAMPING = 0.05  # of the spectrum, as catalogues have it
-STRETCH = (0.5, 2.0)  # of a motion's time: all synthetic ones have nearly one spectrum
+PERIOD = properties(BEARINGS, MASS + BASE.mass, X_MAX).period  # s, isolation period, secant at X_MAX
+DAMPING = 0.05  # damping of the spectrum, as in catalogues
+STRETCH = (0.5, 2.0)  # factors on a motion's time, as all synthetic motions have nearly one spectrum
 RADII = (0.6, 2.0)  # m
 PEAKS = (0.08, 3.0)  # g
-# name: (shipped scene, least and greatest slenderness [rad])
+# {name: (shipped scene, least and greatest slenderness [rad])}
 SCENES = {"free-standing": ("caryatid-rigid", (0.12, 0.32)), "isolated": ("caryatid-isolated", (0.1, 0.25))}
 DRAWN = ("stretch", "radius", "slenderness", "peak")
 
@@ -241,20 +243,27 @@ UPLIFT, ROCKING, ISOLATED, STROKE = "PGA/(g tan γ)", "ω_r PGV/(g tan γ)", "Sa
 
 @dataclass(frozen=True, eq=False)
 class Cloud:
-    """scenes: of n runs. drawn: {what was drawn: (n,)}. measures: {name: (n,)}, see `measures`."""
+    """Runs of a scene with random blocks and motions.
+
+    scenes: those of n runs. drawn: {what was drawn: values of shape (n,)}. measures: {name: values of shape (n,)}, see
+    `measures`.
+    """
 
     scenes: tuple[Scene, ...]
     drawn: dict[str, np.ndarray]
     measures: dict[str, np.ndarray]
 
     def near(self, least: float, most: float) -> np.ndarray:
-        """Indices of the runs whose PGA/(g tan γ) lies between the two, in their order."""
+        """Return the indices of the runs whose PGA/(g tan γ) lies between the two values, in their order."""
         ratio = self.measures[UPLIFT]
         return np.flatnonzero((ratio >= least) & (ratio <= most))
 
 
 def cloud(shipped: str, slendernesses: tuple[float, float], count: int) -> Cloud:
-    """`count` runs of a shipped scene; run k is under the synthetic motion of seed k. Equal counts begin alike."""
+    """Draw `count` runs of a shipped scene; run k is under the synthetic motion of seed k.
+
+    A smaller cloud is the beginning of a larger one.
+    """
     usual = load_scene(shipped).with_(motion=None, duration=None)
     if usual.bearings is not None:
         usual = usual.with_(bearings={"x_max": X_MAX})
@@ -272,7 +281,10 @@ def cloud(shipped: str, slendernesses: tuple[float, float], count: int) -> Cloud
 
 
 def measures(scenes: list[Scene]) -> dict[str, np.ndarray]:
-    """{name: (n,)} of scenes with sampled motions: those of their limit states; PGV [m/s]; on bearings Sa [g]."""
+    """Return {name: values of shape (n,)} of the intensity measures of scenes with sampled motions.
+
+    They are the measures of the limit states, PGV [m/s], and on bearings Sa [g].
+    """
     gravity = np.array([scene.gravity for scene in scenes])
     steepness = np.tan([scene.block.slenderness for scene in scenes])
     peak = np.array([scene.motion.peak for scene in scenes]) / gravity
@@ -288,19 +300,19 @@ def measures(scenes: list[Scene]) -> dict[str, np.ndarray]:
 
 CHANGE = 1e-4  # relative change of the restitution: the model's own sensitivity
 MODEL, PERTURBED = ("analytic", ""), ("analytic", "perturbed")
-NEAR = (1.3, 6.0)  # PGA/(g tan γ) of the runs that engines get: there outcomes are mixed
+NEAR = (1.3, 6.0)  # PGA/(g tan γ) of the runs that engines make: outcomes are mixed there
 TIME_LIMIT = 60.0  # s, of an engine's run; a stiff corner that hardly lifts may take more, and fails
-# runs: of the analytic model, of the engines' main variants (with 73 motions or more, no difference shows equality),
-# of the kind "defaults" (a few runs show large errors)
+# Numbers of runs of the analytic model, of the engines' main variants (with 73 motions or more, no difference shows
+# equality), and of variants of the kind "defaults" (a few runs show large errors).
 FULL, QUICK = (2000, 80, 20), (200, 6, 2)
-# {limit state of |tilt|/slenderness: measure}; on bearings `ISOLATED` throughout. Of PGA, PGV and Sa, as they are and
-# over g tan γ, these had the curves of least dispersion: a small tilt is an uplift, which PGA alone decides.
+# {limit state of |tilt|/slenderness: measure}; on bearings the measure is always `ISOLATED`. Of PGA, PGV and Sa, each
+# also over g tan γ, these had the curves of least dispersion: a small tilt is an uplift, which PGA alone decides.
 TILTS = {0.1: UPLIFT, 0.5: ROCKING, 1.0: ROCKING}
 KEPT = ("overturns", "tilt", "displacement")
 
 
 def variants_of(engines: Sequence[str]) -> list[tuple[str, str]]:
-    """(engine, variant) compared: the main variant of every engine, then those of the kind "defaults"."""
+    """Return (engine, variant) of all compared: the main variant of every engine, then those of the kind "defaults"."""
     defaults = {name: get_engine(name).default_variant for name in engines}
     return [
         *defaults.items(),
@@ -314,6 +326,7 @@ def variants_of(engines: Sequence[str]) -> list[tuple[str, str]]:
 
 
 def measure(case: Case, response: Response) -> dict[str, Any]:
+    """Return outcome and peaks of a run, and whether its end was decided."""
     return {
         "overturns": response.outcome == "overturns",
         "tilt": response.peak_tilt_ratio,
@@ -323,13 +336,13 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
 
 
 def beside_model(case: Case, response: Response) -> dict[str, Any]:
-    """What is kept of an engine's run: in what it differs from the model, too."""
+    """Measure an engine's run as `measure` does, and in what it differs from the model."""
     differences = compare(case.scene, response).differences
     return {**measure(case, response), "quantities": [difference.quantity for difference in differences]}
 
 
 def plan(request: Request, scenes: dict[str, Any] | None = None, runs: tuple[int, int, int] | None = None) -> Plan:
-    """The plan of the study; an answer with one scene more each time.
+    """Plan the study; it gives an answer after each scene.
 
     Rows by "part": "fit" and "effect" (see `comparisons.studies.fragility.study`), "run" (an engine's, its class by how
     the block ends), "cost" (CPU seconds per run), "check" and "failure". The model with its restitution changed by
@@ -341,7 +354,7 @@ def plan(request: Request, scenes: dict[str, Any] | None = None, runs: tuple[int
     ----------
     request : Request
     scenes, runs : dict and (int, int, int), optional
-        In place of `SCENES`, and of `FULL` or `QUICK`.
+        They stand in place of `SCENES`, and of `FULL` or `QUICK`.
     """
     scenes = scenes or (dict(list(SCENES.items())[:1]) if request.quick else SCENES)
     counts, variants = runs or (QUICK if request.quick else FULL), variants_of(request.engines)
@@ -358,27 +371,29 @@ def plan(request: Request, scenes: dict[str, Any] | None = None, runs: tuple[int
         own_rows = [
             *fits(drawn.measures, states, model),
             {"part": "check", "engine": "analytic", "variant": "", **check},
-            *_runs(MODEL, whole),
+            *_cost_rows(MODEL, whole),
         ]
-        made = {
+        scene_arrays = {
             **drawn.drawn,
             **{key: drawn.measures[key] for key in ("PGV", "Sa") if key in drawn.measures},
-            **_kept("analytic", model),
+            **_stored_arrays("analytic", model),
         }
-        for pair, cases in _compared(drawn, near, counts[2], variants):
+        for pair, cases in _engine_cases(drawn, near, counts[2], variants):
             label = ", ".join(filter(None, pair))
             run = yield Batch(cases, measure if pair == PERTURBED else beside_model, f"{name}: {label}", TIME_LIMIT)
             few, theirs = near[: len(cases)], values_of(run)
             ours = {key: array[few] for key, array in model.items()}
             own_rows += effects(drawn.measures, few, states, (ours, theirs), pair)
-            own_rows += _runs(pair, run)
+            own_rows += _cost_rows(pair, run)
             if pair != PERTURBED:
                 own_rows += [
                     _run_row(pair, row, ends, falls) for row, falls in zip(run, ours["overturns"], strict=True)
                 ]
-            made |= _kept(label, theirs)
+            scene_arrays |= _stored_arrays(label, theirs)
         rows += [{"scene": name, **row} for row in own_rows]
-        arrays |= {f"{name}/{key}": array.astype(np.float32) for key, array in made.items()} | {f"{name}/near": near}
+        arrays |= {f"{name}/{key}": array.astype(np.float32) for key, array in scene_arrays.items()} | {
+            f"{name}/near": near
+        }
         answer = Computed(
             _settings(request, scenes, counts, variants), list(rows), dict(arrays), seed=[0, counts[0] - 1]
         )
@@ -387,7 +402,7 @@ def plan(request: Request, scenes: dict[str, Any] | None = None, runs: tuple[int
 
 
 def states_of(drawn: Cloud) -> dict[str, State]:
-    """Limit states by name."""
+    """Return the limit states by name."""
     bearings = drawn.scenes[0].bearings
     tilts = TILTS if bearings is None else dict.fromkeys(TILTS, ISOLATED)
     states = {f"|φ|/γ > {limit:g}": State("tilt", limit, measure) for limit, measure in tilts.items()}
@@ -398,7 +413,7 @@ def states_of(drawn: Cloud) -> dict[str, State]:
 
 
 def values_of(results: Sequence[Row]) -> dict[str, np.ndarray]:
-    """{each of `KEPT`: (n,)} of rows; NaN where a run failed, the tilt infinite in overturning."""
+    """Return {each of `KEPT`: values of shape (n,)}; NaN where a run failed, the tilt infinite where it overturned."""
     values = {
         key: np.array([np.nan if row.failed else row.values[key] for row in results], dtype=float) for key in KEPT
     }
@@ -410,8 +425,11 @@ def _cases(scenes: Iterable[tuple[int, Scene]], engine: str, variant: str) -> li
     return [Case(scene, engine, variant or None, {"history": False}, {"seed": seed}) for seed, scene in scenes]
 
 
-def _compared(drawn: Cloud, near: np.ndarray, few: int, variants: Iterable[tuple[str, str]]) -> Iterator[tuple]:
-    """((engine, variant), cases): the model with another restitution, then engines; of the kind "defaults" `few`."""
+def _engine_cases(drawn: Cloud, near: np.ndarray, few: int, variants: Iterable[tuple[str, str]]) -> Iterator[tuple]:
+    """Yield ((engine, variant), cases): the model with another restitution, then engines.
+
+    Variants of the kind "defaults" run `few` cases.
+    """
     chosen = [(int(seed), drawn.scenes[seed]) for seed in near]
     yield PERTURBED, _cases([(seed, _more_elastic(scene)) for seed, scene in chosen], *MODEL)
     for engine, variant in variants:
@@ -423,22 +441,24 @@ def _more_elastic(scene):
     return scene.with_(block={"restitution": min(RockingModel.of(scene).restitution * (1 + CHANGE), 1.0)})
 
 
-def _kept(label, values):
+def _stored_arrays(label, values):
     return {f"{label}/{key}": values[key] for key in KEPT[1:]}
 
 
 def _run_row(pair, row, ends, falls):
-    """The row of an engine's run; ends: whether runs of a seed's scene can be judged by how the block ends; falls:
-    whether the model's overturns."""
+    """Row of an engine's run.
+
+    ends: {seed: whether a run of its scene can be judged by how the block ends}. falls: whether the model's overturns.
+    """
     seed = row.case.tag["seed"]
     quantities = row.values.get("quantities")
-    known = {"comparable": ends[seed], "class": class_of(ends[seed], quantities, END), "quantities": quantities}
-    known |= {"model_overturns": bool(falls), "overturns": row.values.get("overturns")}
-    return {"part": "run", "engine": pair[0], "variant": pair[1], "seed": seed, **known}
+    columns = {"comparable": ends[seed], "class": class_of(ends[seed], quantities, END), "quantities": quantities}
+    columns |= {"model_overturns": bool(falls), "overturns": row.values.get("overturns")}
+    return {"part": "run", "engine": pair[0], "variant": pair[1], "seed": seed, **columns}
 
 
-def _runs(pair, results):
-    """What runs cost, and those that failed."""
+def _cost_rows(pair, results):
+    """Rows on what runs cost, and on those that failed."""
     key = {"engine": pair[0], "variant": pair[1]}
     seconds = [row.cost["cpu_seconds"] for row in results if row.cost]
     mean = float(np.mean(seconds)) if seconds else None

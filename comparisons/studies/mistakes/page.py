@@ -1,4 +1,4 @@
-"""What is shown of the mistakes study: the script as it is and with each mistake, costliest first."""
+"""The page of the mistakes study: the script as it is and with each mistake, costliest first."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -16,34 +16,35 @@ MARKS: dict[str, dict[str, Any]] = {
     "graph": {"filled": True},
     "error": {"filled": False},
     "lost": {"mark": "X"},
-}  # of a chart: {what: how its marks look}
+}  # {what is drawn: how its marks look}
 WORDS = {"graph": "tilt", "error": "restitution", "lost": "another outcome, or failed"}
 
 
 def page(result: Result) -> Page:
+    """Return the page of a result."""
     by_engine = {engine: _ranked(result, engine) for (engine,) in grouped(result.rows, "engine")}
-    every = [row for rows in by_engine.values() for row in rows]
-    made = [row for row in every if row["group"] not in (None, result.settings["no_matter"])]
-    lost = [row for row in made if row["lost"]]
-    quiet = [row for row in made if not row["lost"] and row["error"] is not None and row["error"] <= TRUSTED]
-    worst = max(quiet, key=lambda row: row["graph"], default=None)
-    says = [
+    all_rows = [row for rows in by_engine.values() for row in rows]
+    mistakes = [row for row in all_rows if row["group"] not in (None, result.settings["no_matter"])]
+    lost = [row for row in mistakes if row["lost"]]
+    same_outcome = [row for row in mistakes if not row["lost"] and row["error"] is not None and row["error"] <= TRUSTED]
+    worst = max(same_outcome, key=lambda row: row["graph"], default=None)
+    sentences = [
         "The scripts that rocking script writes agree with the analytic model. Here one thing in them is changed to "
         "what a first script may do; all else stays."
     ]
     if worst:
-        says.append(
+        sentences.append(
             f"The error of restitution does not show every mistake: with {worst['mistake']} in {worst['engine']} it is "
             f"{number(worst['error'], 1)} at most, but the tilt is off by {number(worst['graph'], 2)} of the "
             "slenderness."
         )
     return Page(
-        f"What a mistake costs: of {len(made)} in scripts for {listed(list(by_engine)) or 'no engine'}, {len(lost)} "
-        "change an outcome or make a run fail",
-        tuple(says),
+        f"What a mistake costs: of {len(mistakes)} in scripts for {listed(list(by_engine)) or 'no engine'}, "
+        f"{len(lost)} change an outcome or make a run fail",
+        tuple(sentences),
         first=(
             _dots(by_engine, result.settings["no_matter"]),
-            _counts(made, where(every, group=result.settings["no_matter"])),
+            _counts(mistakes, where(all_rows, group=result.settings["no_matter"])),
         ),
         more=tuple(_table(engine, rows) for engine, rows in by_engine.items()),
         how=(
@@ -54,18 +55,18 @@ def page(result: Result) -> Page:
             "Each script runs by itself; what is measured is read from its steps as that of any engine. Error of "
             "restitution: against eq. (7), at impacts of at least a tenth of the fastest rate, root mean square, worst "
             "scene. By energy: from the rates of successive impacts. Tilt: largest difference from the analytic model "
-            "at one time, until either block is beyond its unstable point, so that an impact that is late counts. "
+            "at one time, until either block is beyond its unstable point, so late impacts count. "
             "A run fails if it ends in an error, gains energy, or leaves its place.",
         ),
     )
 
 
-def _counts(made, harmless):
-    """How many mistakes there are of each kind, by engine and in all."""
+def _counts(mistakes, harmless):
+    """Table of how many mistakes there are of each kind, by engine and in all."""
     groups = {
-        engine: (changed, where(harmless, engine=engine)) for (engine,), changed in grouped(made, "engine").items()
+        engine: (changed, where(harmless, engine=engine)) for (engine,), changed in grouped(mistakes, "engine").items()
     }
-    groups |= {"all": (made, harmless)} if len(groups) > 1 else {}
+    groups |= {"all": (mistakes, harmless)} if len(groups) > 1 else {}
     rows = [
         {
             "engine": engine,
@@ -88,7 +89,7 @@ def _counts(made, harmless):
 
 
 def _ranked(result: Result, engine: str) -> list[dict[str, Any]]:
-    """A row for each mistake of an engine, over its scenes: the costliest first, and the script as it is."""
+    """Return a row for each mistake of an engine, over its scenes, and one for the script as it is; costliest first."""
     bearings = set(result.settings["on_bearings"])
     rows = []
     for _, runs in grouped(where(result.rows, engine=engine), "mistake").items():
@@ -99,21 +100,21 @@ def _ranked(result: Result, engine: str) -> list[dict[str, Any]]:
                 "name": runs[0]["mistake"] or AS_IT_IS,
                 "lost": sum(run["outcome"] != run["expected"] for run in runs),
                 "outcomes": _outcomes(runs),
-                "rigid": _most(on_rigid, "error"),
-                "bearings": _most(where(runs, scene=bearings), "error"),
-                **{name: _most(runs, name) for name in ("error", "energy", "graph", "displacement")},
+                "rigid": _largest(on_rigid, "error"),
+                "bearings": _largest(where(runs, scene=bearings), "error"),
+                **{name: _largest(runs, name) for name in ("error", "energy", "graph", "displacement")},
             }
         )
     return sorted(rows, key=lambda row: (-row["lost"], -max(row["graph"] or 0.0, row["error"] or 0.0)))
 
 
-def _most(runs, name):
-    """The largest of the runs that have one."""
+def _largest(runs, name):
+    """Largest of the known values; None without one."""
     return max((run[name] for run in runs if run[name] is not None), default=None)
 
 
 def _outcomes(runs: Sequence[dict[str, Any]]) -> str:
-    """In words where the outcome is not the model's, or why the run failed, each with its scenes."""
+    """Return in words where the outcome is not the model's, or why the run failed, each with its scenes."""
     wrong = [run for run in runs if run["outcome"] != run["expected"]]
     by_words = grouped(
         wrong, lambda run: f"fails: {run['reason']}" if run["reason"] else f"{run['outcome']} for {run['expected']}"
@@ -143,13 +144,13 @@ def _table(engine, rows):
 
 
 def _dots(by_engine: dict[str, list[dict[str, Any]]], no_matter: str) -> Figure | None:
-    """A panel for each engine: error of restitution and of the tilt, a row for each mistake."""
+    """Figure with a panel for each engine: errors of restitution and of the tilt, a row for each mistake."""
     shown = {engine: [row for row in rows if row["group"] != no_matter] for engine, rows in by_engine.items()}
     values = [row[name] for rows in shown.values() for row in rows for name in ("graph", "error") if row[name]]
     if not values:
         return None
     axis = log_axis("error of e; of the tilt over γ [-]", values)
-    axis = replace(axis, ticks=axis.marks()[::2])  # beside names there is room for no more
+    axis = replace(axis, ticks=axis.marks()[::2])  # there is no room for more beside the names
     charts = [_chart(engine, rows, axis) for engine, rows in shown.items()]
     keys = {
         f"{engine}, {WORDS[name]}": key_of(engine, filled=look.get("filled", True), joined=False)

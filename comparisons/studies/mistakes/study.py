@@ -1,4 +1,4 @@
-"""The mistakes study: scripts of a few scenes, each with one mistake, compared with the analytic model."""
+"""The mistakes study: scripts of a few scenes, each with one mistake, beside the analytic model."""
 
 import math
 from typing import Any
@@ -19,7 +19,7 @@ from ...metrics.scripts import NAME, SECONDS, ScriptFailed, as_written, run_scri
 from ...schemas.columns import declared, number_of, whole_of, word_of
 from ..rows import SHARED
 
-# What its rows have; see `comparisons.studies.rows`.
+# The columns of its rows, and by part which of them a row has; see `comparisons.studies.rows`.
 COLUMNS = SHARED | declared(
     word_of("mistake", "mistake", "name of the mistake; null: the script as it is"),
     word_of("done", "done", "what was done, in words"),
@@ -61,7 +61,10 @@ NOTHING = dict.fromkeys(("error", "energy", "graph", "displacement", "steps"))
 
 
 def scenes(quick: bool = False) -> dict[str, Scene]:
-    """{name: scene} of the scripts; quick: a block released on rigid ground alone."""
+    """Return {name: scene} of the scripts.
+
+    quick: only a block released on rigid ground.
+    """
     released = load_scene("free-rocking-rigid").with_(duration=5.0)
     if quick:
         return {"released": released}
@@ -76,13 +79,19 @@ def scenes(quick: bool = False) -> dict[str, Scene]:
 
 
 def changes(engine: Engine, quick: bool = False) -> list[Mistake | None]:
-    """The mistakes in an engine's scripts, after None for the script as it is; quick: few."""
-    known = engine.known_mistakes().values()
-    return [None, *(mistake for mistake in known if not quick or mistake.key in QUICK)] if known else []
+    """Return the mistakes in an engine's scripts, after None for the script as it is.
+
+    quick: only a few.
+    """
+    mistakes = engine.known_mistakes().values()
+    return [None, *(mistake for mistake in mistakes if not quick or mistake.key in QUICK)] if mistakes else []
 
 
 def plan(request: Request) -> Plan:
-    """The plan of the study; quick: few mistakes, on one scene. Engines without mistakes have no rows."""
+    """Plan the study; an engine without mistakes has no rows.
+
+    A quick study has few mistakes, on one scene.
+    """
     cases = []
     for name in request.engines:
         engine = get_engine(name)
@@ -115,7 +124,7 @@ def plan(request: Request) -> Plan:
 
 
 def _described(engine: Engine, key: str | None) -> dict[str, str | None]:
-    """What was done and what it concerns, of the mistake called `key`; None of the script as it is."""
+    """Describe the mistake called `key`: what was done, and what it concerns; None: the script as it is."""
     mistake = engine.known_mistakes()[key] if key else None
     return {"done": mistake.done if mistake else None, "group": mistake.group if mistake else None}
 
@@ -125,7 +134,7 @@ def _failed(reason: str) -> dict[str, Any]:
 
 
 def cost(case: Case, response: Response) -> dict[str, Any]:
-    """Measure: what is wrong in a run of the script with the tag's mistake; the adapter's own run is not looked at."""
+    """Measure what is wrong in a run of the script with the mistake in the tag; the adapter's own run is not used."""
     engine = get_engine(case.solver)
     mistake = engine.known_mistakes().get(case.tag["mistake"])
     try:
@@ -141,11 +150,11 @@ def cost(case: Case, response: Response) -> dict[str, Any]:
 
 
 def errors(scene: Scene, seen: Response, trace: Trace) -> dict[str, float | None]:
-    """Errors of a sound run against the model; None where there is nothing to measure.
+    """Return errors of a sound run against the model; None where there is nothing to measure.
 
-    error: of restitution at strong impacts, rms; energy: the same from the rates of successive impacts, of a block
-    released on rigid ground, rms; graph: largest difference of the tilt at one time, over the slenderness, until
-    either block is beyond its unstable point; displacement: of the base, over the model's peak, as long.
+    error: of restitution at strong impacts, rms. energy: the same from the rates of successive impacts of a block
+    released on rigid ground. graph: largest difference of the tilt at one time, over the slenderness, until either
+    block is beyond its unstable point. displacement: the same of the base, over the model's peak.
     """
     model, free = simulate(scene), scene.base is None and scene.motion is None
     at_impact, swings = impact_errors(scene, seen)["state"], rate_restitution(seen) if free else np.empty(0)

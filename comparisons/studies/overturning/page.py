@@ -1,4 +1,4 @@
-"""What is shown of the overturning study.
+"""The page of the overturning study: maps of outcomes, and boundaries of the model and of engines.
 
 Maps of outcomes with the boundaries of the model and of engines.
 """
@@ -47,7 +47,7 @@ from .study import COLUMNS
 
 
 def model_map(result: Result, ground: str, shape: str) -> Chart:
-    """Outcomes of the analytic model with its boundaries."""
+    """Return a map of outcomes of the analytic model with its boundaries."""
     chart = _outcomes(result, ground, shape, f"Outcomes of the analytic model on {ground} under a {shape} pulse.")
     edges = where(result.rows, part="edge", ground=ground, shape=shape)
     tooltips = [f"amplitude {number(edge['amplitude'], 4)}, N/(m g) {number(edge['min_normal'], 2)}" for edge in edges]
@@ -56,15 +56,18 @@ def model_map(result: Result, ground: str, shape: str) -> Chart:
 
 
 def maps(result: Result, shapes: Iterable[str]) -> Figure | None:
-    """Outcomes of the analytic model with the boundaries of the engines, and outcomes that differ."""
+    """Figure of outcomes of the analytic model, with the boundaries of the engines and the outcomes that differ.
+
+    None without shapes or grounds.
+    """
     chosen = list(shapes)
     panels = [_map(result, ground, shape) for shape, ground in itertools.product(chosen, result.settings["grounds"])]
     if not panels:
         return None
     differ = where(result.rows, part="disagreement", shape=set(chosen))
     caption = (
-        "Analytic model: shaded overturns, blank stands. Marks: boundaries of the engines’ main variants, as far as "
-        "they were found; shifts too small to be seen here are in the table."
+        "Analytic model: shaded overturns, blank stands. Marks: boundaries that the engines’ main variants found; "
+        "shifts too small to be seen here are in the table."
         + f" Crosses: outcomes that differ further than {percent(result.settings['band'], 1)} from every boundary."
         * bool(differ)
     )
@@ -73,6 +76,7 @@ def maps(result: Result, shapes: Iterable[str]) -> Figure | None:
 
 
 def _outcomes(result, ground, shape, says):
+    """Map of outcomes of the analytic model, without marks."""
     frequency, amplitude = result.arrays["frequency"], result.arrays["amplitude"]
     chart = Chart(
         Axis(FREQUENCY.head, float(frequency[0]), float(frequency[-1])),
@@ -86,17 +90,20 @@ def _outcomes(result, ground, shape, says):
 
 
 def _map(result, ground, shape):
+    """Map of outcomes with the engines' boundaries, and their outcomes that differ."""
     says = f"Outcomes on {ground} over frequency and amplitude of a {shape} pulse, with boundaries of the engines."
-    chart, here = _outcomes(result, ground, shape, says), where(result.rows, ground=ground, shape=shape)
+    chart, map_rows = _outcomes(result, ground, shape, says), where(result.rows, ground=ground, shape=shape)
     for engine in result.settings["engines"]:
         variant = result.settings["default_variants"][engine]
-        rows = [row for row in where(here, part="shift", engine=engine, variant=variant) if row["shift"] is not None]
+        rows = [
+            row for row in where(map_rows, part="shift", engine=engine, variant=variant) if row["shift"] is not None
+        ]
         tooltips = [
             f"{engine}: amplitude {number(row['amplitude'], 4)}, shifted by {percent(row['shift'])}" for row in rows
         ]
         amplitudes = [row["amplitude"] * (1 + row["shift"]) for row in rows]
         chart.dots([row["frequency"] for row in rows], amplitudes, engine, filled=False, says=tooltips, beyond=True)
-        rows = where(here, part="disagreement", engine=engine)
+        rows = where(map_rows, part="disagreement", engine=engine)
         tooltips = [f"{engine}: differs at amplitude {AMPLITUDE.text(row)}" for row in rows]
         chart.dots(
             [row["frequency"] for row in rows], [row["amplitude"] for row in rows], engine, says=tooltips, mark="x"
@@ -105,7 +112,7 @@ def _map(result, ground, shape):
 
 
 def _shade(chart, frequency, amplitude, falls):
-    """Runs of amplitudes that overturn, as a polygon for each stretch of frequencies with the same number of runs."""
+    """Shade the amplitudes that overturn: a polygon for each stretch of frequencies with equally many intervals."""
     runs = []
     for column in falls.T:
         ends = np.flatnonzero(np.diff(np.concatenate([[0], column.astype(np.int8), [0]])))
@@ -115,7 +122,7 @@ def _shade(chart, frequency, amplitude, falls):
         columns = list(stretch)
         end = begin + len(columns)
         xs = list(frequency[begin:end])
-        if end < len(runs):  # into the next one, so that no seam is seen
+        if end < len(runs):  # up to the next one, so that no gap shows
             xs.append(1.5 * frequency[end] - 0.5 * frequency[end - 1])
             columns.append(columns[-1])
         for run in zip(*columns, strict=True):
@@ -125,13 +132,13 @@ def _shade(chart, frequency, amplitude, falls):
 
 
 def over_frequency(rows: Sequence[Row]) -> Figure | None:
-    """Shifts of boundaries over the frequency of their pulse, for those that were found."""
+    """Figure of the shifts of boundaries over the frequency of their pulse, for the boundaries that were found."""
     return lines(
         [row for row in rows if row["shift"] is not None],
         FREQUENCY,
         Column(SHIFT.head, lambda row: max(SHIFT.of(row), DECADES[0])),
         "Boundary of the engine over that of the analytic model, less 1, of the main variants; smaller shifts are "
-        f"drawn at {short(DECADES[0])} %, boundaries not found are in the table below.",
+        f"drawn at {short(DECADES[0])} %. Boundaries that were not found are in the table below.",
         panel="ground",
         series=Series(
             by=lambda row: f"overturning {'begins' if row['rises'] else 'ends'}",
@@ -155,12 +162,13 @@ REGIONS = {
 
 
 def page(result: Result) -> Page:
-    s = result.settings
+    """Return the page of a result."""
+    settings = result.settings
     edges, shifts = where(result.rows, part="edge"), where(result.rows, part="shift")
     sound = pressed(result)
-    known = [row for row in shifts if place(row) in sound]
-    main_variants = s["default_variants"]
-    band = percent(s["band"], 1)
+    rated_shifts = [row for row in shifts if place(row) in sound]
+    main_variants = settings["default_variants"]
+    band = percent(settings["band"], 1)
     return Page(
         f"Many pulses: on two grounds, {largest(result)}",
         (
@@ -171,15 +179,15 @@ def page(result: Result) -> Page:
             "when it falls. Boundaries of statues drawn at random stand with these in the table of trust.",
             *under_jumps(result),
         ),
-        first=_summary(result, s, band),
-        more=_details(result, s, edges, shifts, sound, known, main_variants, band),
+        first=_summary(result, settings, band),
+        more=_details(result, settings, edges, shifts, sound, rated_shifts, main_variants, band),
         how=_how(result),
         evidence=failures(result),
     )
 
 
-def _summary(result, s, band):
-    """What stands on the report's first page, too."""
+def _summary(result, settings, band):
+    """Parts that the report's first page shows too."""
     return (
         _shifts(result),
         table(
@@ -201,13 +209,13 @@ def _summary(result, s, band):
             ),
         ),
         table(
-            f"Coarse scan: of {_scanned(s)} pulses those further than {band} from every boundary, with the block "
-            "pressed on its base; the others are left out. 95 % Wilson intervals, pulses of one shape and "
-            "frequency on one ground as one",
+            f"Coarse scan: the {_scanned(settings)} pulses, less those within {band} of a boundary and those that do "
+            "not keep the block pressed on its base. 95 % Wilson intervals count pulses of one shape and frequency "
+            "on one ground as one",
             where(result.rows, part="scan"),
             NAME,
             COLUMNS["runs"],
-            Column("left out [-]", lambda row: _scanned(s) - row["runs"]),
+            Column("left out [-]", lambda row: _scanned(settings) - row["runs"]),
             COLUMNS["only_a"].called("overturning missed"),
             COLUMNS["only_b"].called("overturning added"),
             COLUMNS["failed"],
@@ -216,20 +224,20 @@ def _summary(result, s, band):
     )
 
 
-def _details(result, s, edges, shifts, sound, known, main_variants, band):
-    """What stands on the study's own page alone."""
+def _details(result, settings, edges, shifts, sound, rated_shifts, main_variants, band):
+    """Parts that only the study's own page shows."""
     return (
-        maps(result, s["shapes"]),
+        maps(result, settings["shapes"]),
         Head("Every boundary"),
-        over_frequency([row for row in known if main_variants[row["engine"]] == row["variant"]]),
+        over_frequency([row for row in rated_shifts if main_variants[row["engine"]] == row["variant"]]),
         listing(
             "Boundaries, and the engines' shifts, known to ± "
-            f"{percent(s['tolerance'] / 2, 1)}: block pressed on its base",
+            f"{percent(settings['tolerance'] / 2, 1)}: block pressed on its base",
             [edge for edge in edges if place(edge) in sound],
-            known,
+            rated_shifts,
         ),
         missing(result),
-        *_sliding(s),
+        *_sliding(settings),
         Head("Where the analytic model holds the corner down"),
         *_held_down(edges, shifts),
         Head("Outcomes between the boundaries"),
@@ -263,11 +271,12 @@ def _details(result, s, edges, shifts, sound, known, main_variants, band):
 
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
+    """Judge boundaries by (engine, variant)."""
     return (judged(result, "boundaries"),)
 
 
 def glance(result: Result) -> Glance:
-    """Of the coarse scan, away from the boundaries."""
+    """Return the outcomes of the coarse scan, away from the boundaries."""
     tiers = {NAME.of(variant): variant["tier"] for variant in result.settings["variants"]}
     near = _near_boundaries(result)
     return Glance(
@@ -282,7 +291,7 @@ def glance(result: Result) -> Glance:
 
 
 def _shifts(result):
-    """Beside each other the boundaries at their shifts, and those that are sought in one of the model's maps."""
+    """Figure of all boundaries at their shifts, beside one map of the model that shows what is searched for."""
     settings = result.settings
     model = model_map(result, next(iter(settings["grounds"])), settings["shapes"][0])
     words = "Right: analytic model under one pulse; shaded: overturns; dots: boundaries."
@@ -290,16 +299,20 @@ def _shifts(result):
 
 
 def _scanned(settings):
-    """How many pulses the coarse scan has."""
+    """Return how many pulses the coarse scan has."""
     return math.prod(len(settings[key]) for key in ("grounds", "shapes", "frequencies", "scan"))
 
 
 def _share(row):
+    """Share of the runs of a scan that differ or fail."""
     return (row["only_a"] + row["only_b"] + row["failed"]) / row["runs"]
 
 
 def _near_boundaries(result):
-    """How many points of the scan are left out as near a boundary, not counting others where the block would jump."""
+    """Count the points of the scan that are left out as near a boundary.
+
+    Other points are left out because the block would jump; they are not counted.
+    """
     settings = result.settings
     edges = grouped(where(result.rows, part="edge"), "ground", "shape", "frequency")
     places = itertools.product(settings["grounds"], settings["shapes"], settings["frequencies"])
@@ -310,7 +323,7 @@ def _near_boundaries(result):
 
 
 def _sliding(settings):
-    """On which grounds a built-in friction is too low for a block to lift."""
+    """Yield sentences on the grounds on which a variant's built-in friction is too low for a block to lift."""
     for variant in settings["variants"]:
         mu = variant["friction"]
         for ground, given in settings["grounds"].items() if mu is not None else ():
@@ -322,6 +335,7 @@ def _sliding(settings):
 
 
 def _held_down(edges, shifts):
+    """Yield what is shown of boundaries at which the normal force of the model becomes negative."""
     pulled = [edge for edge in edges if edge["min_normal"] < 0]
     if pulled:
         yield (
@@ -354,13 +368,16 @@ def _confusions(result, band):
 
 
 def _refinement(result):
-    """The boundaries at one frequency at all levels; at the default those that were searched more closely."""
+    """Yield the boundaries at one frequency at all levels.
+
+    At the default level they are those that were searched more closely.
+    """
     variants = {NAME.of(variant): variant for variant in result.settings["variants"]}
     tried = where(result.rows, part="refinement")
     places, shifts = {place(row) for row in tried}, where(result.rows, part="shift")
     closer = [row for row in shifts if place(row) in places and NAME.of(row) in map(NAME.of, tried)]
-    known = {(NAME.of(row), row["level"]) for row in closer}
-    rows = [row for row in tried if (NAME.of(row), row["level"]) not in known] + closer
+    closer_levels = {(NAME.of(row), row["level"]) for row in closer}
+    rows = [row for row in tried if (NAME.of(row), row["level"]) not in closer_levels] + closer
     groups, order = grouped(rows, NAME.of, "level"), list(variants)
     levels = [
         {**variants[name], "level": level, **summary(groups[name, level])}
@@ -371,7 +388,7 @@ def _refinement(result):
         Column("accuracy parameter over its default [-]", lambda row: row["level"] / row["default"]),
         LARGEST,
         "Largest shift where all boundaries are found, one-sine pulses on both grounds; a stiffness refines upward, a "
-        "step downward. Time-stepping: the analytic model's equations by another method, its steps over 0.1 ms.",
+        "step downward. Time-stepping: the analytic model's equations by another method; its steps are over 0.1 ms.",
         log="xy",
         rules=[("y", 100 * LIMIT, "trusted")],
     )
@@ -393,19 +410,20 @@ def _refinement(result):
 
 
 def _how(result):
-    s = result.settings
+    settings = result.settings
     grounds = "; ".join(
         f"{name}: γ = {given['block']['slenderness']:g} rad"
         + (f", {given['bearings']['count']} bearings, base of {given['base']['mass']:g} kg" if given["base"] else "")
-        for name, given in s["grounds"].items()
+        for name, given in settings["grounds"].items()
     )
     return (
-        f"{len(where(result.rows, part='edge'))} boundaries of the analytic model: pulses {', '.join(s['shapes'])} of "
-        f"{min(s['frequencies']):g} to {max(s['frequencies']):g} times the rocking frequency, amplitudes of "
-        f"{s['amplitudes'][0]:g} to {s['amplitudes'][1]:g} g tan γ, on two grounds ({grounds}). Each engine bisects "
-        f"for its own to ± {percent(s['tolerance'] / 2, 1)} at the default level. Where the normal force of the "
-        "analytic model becomes negative, that model is the one not to be trusted, and the boundary is not rated.",
+        f"{len(where(result.rows, part='edge'))} boundaries of the analytic model: pulses "
+        f"{', '.join(settings['shapes'])} of {min(settings['frequencies']):g} to {max(settings['frequencies']):g} "
+        f"times the rocking frequency, amplitudes of {settings['amplitudes'][0]:g} to {settings['amplitudes'][1]:g} "
+        f"g tan γ, on two grounds ({grounds}). Each engine bisects for its own to ± "
+        f"{percent(settings['tolerance'] / 2, 1)} at the default level. Where the normal force of the analytic model "
+        "becomes negative, the model is not to be trusted, and the boundary is not rated.",
         f"Trusted: all boundaries found, shifted by at most {percent(LIMIT, 1)}, no outcome that differs beyond the "
         f"band; usable: all found, at most {percent(FAIR, 1)}. Kind “assisted”: the adapter applies the impact, so "
-        "that the boundaries test the integration alone; no other level is tried.",
+        "the boundaries test only the integration; no other level is tried.",
     )

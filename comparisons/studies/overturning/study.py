@@ -1,4 +1,4 @@
-"""The overturning study: boundaries of the analytic model, those of every engine beside them, and outcomes between."""
+"""The overturning study: boundaries of the model and of every engine, and outcomes between them."""
 
 import itertools
 import math
@@ -33,7 +33,7 @@ from ...metrics.statistics import Confusion, cohen_kappa, confusion, equality
 from ...schemas.columns import declared, flag_of, list_of, number_of, whole_of, word_of
 from ..rows import BOUNDARY, BOUNDARY_ROW, EDGE, PULSE, SHARED, SOUGHT
 
-# What its rows have; see `comparisons.studies.rows`.
+# The columns of its rows, and by part which of them a row has; see `comparisons.studies.rows`.
 COLUMNS = (
     SHARED
     | BOUNDARY
@@ -70,11 +70,11 @@ PARTS = {
     "failure": SOUGHT,
 }
 
-# The isolated Caryatid itself overturns at base displacements far beyond its bearings' 0.30 m only; a more slender
-# block on the same bearings does at amplitudes of a strong earthquake.
+# The isolated Caryatid itself overturns only at base displacements far beyond its bearings' 0.30 m. A more slender
+# block on the same bearings overturns at amplitudes of a strong earthquake.
 GROUNDS = {"rigid ground": ("caryatid-rigid", {}), "isolated base": ("caryatid-isolated", {"slenderness": 0.15})}
 SHAPES = ("one-sine", "one-cosine", "ricker")
-LEVEL_FREQUENCY = 4.0  # at which other levels are run
+LEVEL_FREQUENCY = 4.0  # pulse frequency over omega_r at which other levels are run
 BAND = 0.01  # relative distance from a boundary beyond which no engine may differ
 # the model's equations by another method, beside the variants of engines
 STEPPING = {
@@ -91,9 +91,11 @@ STEPPING = {
 
 @dataclass(frozen=True)
 class Grid:
-    """What the study covers. frequencies over omega_r; scan: amplitudes over g tan(slenderness) of the coarse scan.
+    """Scope of the study.
 
-    size: amplitudes and frequencies of the analytic maps. levels: which levels of a variant.
+    frequencies: over omega_r. scan: amplitudes of the coarse scan over g tan(slenderness).
+
+    size: numbers of amplitudes and frequencies of the analytic maps. levels: which levels of a variant are run.
     """
 
     grounds: tuple[str, ...]
@@ -110,7 +112,9 @@ QUICK = Grid(tuple(GROUNDS), SHAPES[:1], (2.0, 4.0), SCAN[::4], (60, 36), slice(
 
 
 def plan(request: Request, grid: Grid | None = None) -> Plan:
-    """The plan of the study: first an answer at the default levels, then more; grid: in place of FULL or QUICK.
+    """Plan the study: a first answer at the default levels, then answers with more levels.
+
+    grid: what to cover, in place of FULL or QUICK.
 
     Rows by "part": "edge" (a boundary of the analytic model), "shift" (an engine's beside it, of its main variant and
     the kind "defaults"), "scan" (their outcomes over a coarse scan), "refinement" (other levels), "confusion" (counts
@@ -134,34 +138,34 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
     # 2. at default levels: outcomes of engines over a coarse scan, and their boundaries
     default, coarser = usual_settings(request.engines)
     runs, points = Runs(grounds, default), _scan(grounds, grid)
-    known = _judged(grounds, points, boundaries)
+    model_outcomes = _model_outcomes(grounds, points, boundaries)
     for setting in (*default, *coarser):
         answers = yield from runs.ask([(setting, point) for point in points], f"scan: {setting.engine}", scan=True)
-        rows.append({"part": "scan", **setting.row(), **_counted(points, known, answers)})
+        rows.append({"part": "scan", **setting.row(), **_scan_counts(points, model_outcomes, answers)})
     rows += yield from runs.search_usual("shift", request.engines, boundaries)
-    records = _compared(runs.outcomes, default, grounds, boundaries)
+    records = _records(runs.outcomes, default, grounds, boundaries)
     rows += [*_confusions(records, default, grounds), *_disagreements(records)]
     variants = ((name, variant) for name in request.engines for variant in get_engine(name).variants)
-    described = [*itertools.starmap(_described, variants), STEPPING]
+    described = [*itertools.starmap(_described_variant, variants), STEPPING]
     settings = _settings(request, grid, grounds, described)
     yield Computed(settings, rows + runs.failures, arrays)
     # 3. some of these boundaries at other levels
     chosen = [edge for edge in boundaries if edge.shape == SHAPES[0] and edge.frequency == LEVEL_FREQUENCY]
-    for setting in _refined(described, grid.levels):
+    for setting in _other_settings(described, grid.levels):
         rows += yield from runs.search("refinement", [setting], chosen, LEVEL_DISTANCES, LEVEL_TOLERANCE)
         yield Computed(settings, rows + runs.failures, arrays)
     return Computed(settings, rows + runs.failures, arrays)
 
 
-def _described(engine: str, variant: str) -> dict[str, Any]:
-    """A variant as listed in the settings; levels: those that are run."""
+def _described_variant(engine: str, variant: str) -> dict[str, Any]:
+    """Describe a variant as the settings list it; levels: those that are run."""
     spec = get_engine(engine).variants[variant]
     tried = () if spec.applies_impact or spec.kind == "defaults" else spec.levels
     return variant_settings(engine, variant, tried) | {"friction": spec.friction}
 
 
-def _refined(described, levels):
-    """The `Setting`s that are run beside the default ones: the model by another method, then all levels."""
+def _other_settings(described, levels):
+    """Yield the `Setting`s that are run beside the default ones: the model by another method, then all levels."""
     for variant in sorted(described, key=lambda variant: variant["tier"] != "model"):
         for level in variant["levels"][levels] or variant["levels"]:
             yield Setting(variant["engine"], variant["variant"], level, {variant["parameter"]: level})
@@ -207,13 +211,13 @@ def _maps(grounds, grid):
 
 
 def _scan(grounds, grid):
-    """The points of the coarse scan."""
+    """Return the points of the coarse scan."""
     places = itertools.product(grid.grounds, grid.shapes, grid.frequencies, grid.scan)
     return [Point(*place, least_normal(grounds[place[0]], pulse(grounds[place[0]], *place[1:]))) for place in places]
 
 
-def _judged(grounds, points, boundaries):
-    """Whether the block overturns in the model at each point; None near a boundary, and where it would jump."""
+def _model_outcomes(grounds, points, boundaries):
+    """Return whether the block overturns in the model at each point; None near a boundary, and where it would jump."""
     models = [simulate(under(grounds, point), history=False) for point in points]
     return [
         model.outcome == "overturns" if model.min_normal_ratio >= 0 and _distance(boundaries, point) > BAND else None
@@ -221,10 +225,14 @@ def _judged(grounds, points, boundaries):
     ]
 
 
-def _counted(points, known, answers):
-    """Of the points that are judged: how many runs failed, and what the others found; runs of one shape and frequency
-    on one ground count as one in the interval of the share that differs or fails."""
-    chosen = [(*run, point[:3]) for *run, point in zip(known, answers, points, strict=True) if run[0] is not None]
+def _scan_counts(points, model_outcomes, answers):
+    """Count the points that are judged, the failed runs, and the outcomes of the others.
+
+    In the interval of the share that differs or fails, runs of one shape and frequency on one ground count as one.
+    """
+    chosen = [
+        (*run, point[:3]) for *run, point in zip(model_outcomes, answers, points, strict=True) if run[0] is not None
+    ]
     models, engines, groups = zip(*chosen, strict=True)
     both = [(a, b) for a, b in zip(models, engines, strict=True) if b is not None]
     _, interval = equality([a != b for a, b in zip(models, engines, strict=True)], groups)
@@ -233,15 +241,15 @@ def _counted(points, known, answers):
 
 
 def _distance(boundaries, point):
-    """From the nearest boundary of the analytic model, relative."""
+    """Relative distance of a point to the nearest boundary of the analytic model."""
     near = (edge.amplitude for edge in boundaries if (edge.ground, edge.shape, edge.frequency) == point[:3])
     return min((abs(point.amplitude / amplitude - 1) for amplitude in near), default=math.inf)
 
 
-def _compared(outcomes, default, grounds, boundaries):
-    """Records of `Runs.outcomes`, with what the analytic model says there.
+def _records(outcomes, default, grounds, boundaries):
+    """Records of `Runs.outcomes`, each with what the analytic model says at its point.
 
-    scan: whether of the scan. distance: from the nearest boundary of the analytic model, relative.
+    scan: whether the point is one of the scan. distance: relative distance from the nearest boundary of the model.
     """
     rows, records = {setting.engine: setting.row() for setting in default}, []
     for (engine, *place), (overturns, scan) in outcomes.items():
@@ -264,9 +272,10 @@ def _compared(outcomes, default, grounds, boundaries):
 def _confusions(
     records: Sequence[dict[str, Any]], default: Iterable[Setting], grounds: Iterable[str]
 ) -> Iterator[dict[str, Any]]:
-    """Rows of counts, the engines' outcomes against the analytic model's, by engine, ground and region.
+    """Yield rows of counts, the engines' outcomes against the analytic model's, by engine, ground and region.
 
-    Outside the band those are apart ("held down") in which the normal force of the analytic model becomes negative.
+    Outside the band, points at which the normal force of the analytic model becomes negative ("held down") are counted
+    apart.
     """
     regions = {
         "scan": lambda record: record["scan"],
@@ -275,21 +284,21 @@ def _confusions(
         "inside": lambda record: record["distance"] <= BAND,
     }
     for setting, ground, region in itertools.product(default, grounds, regions):
-        whose = {**setting.row(), "ground": ground}
+        identity = {**setting.row(), "ground": ground}
         chosen = [
             (record["analytic_overturns"], record["overturns"])
             for record in records
-            if whose.items() <= record.items() and record["overturns"] is not None and regions[region](record)
+            if identity.items() <= record.items() and record["overturns"] is not None and regions[region](record)
         ]
         if chosen:
             counts = confusion(*np.transpose(chosen))
             kappa, low, high = cohen_kappa(counts.table())
             agreement = {"kappa": kappa, "kappa_low": low, "kappa_high": high}
-            yield {"part": "confusion", **whose, "region": region, **vars(counts), **agreement}
+            yield {"part": "confusion", **identity, "region": region, **vars(counts), **agreement}
 
 
 def _disagreements(records):
-    """A row for each outcome outside the band that differs."""
+    """Yield a row for each outcome outside the band that differs."""
     for record in records:
         if record["distance"] > BAND and record["overturns"] not in (None, record["analytic_overturns"]):
             row = {key: value for key, value in record.items() if key not in ("overturns", "scan")}

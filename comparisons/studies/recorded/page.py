@@ -1,4 +1,4 @@
-"""What is shown of recorded motions: how many runs end otherwise, in which way, and every one of them."""
+"""The page of recorded motions: how many runs end otherwise than the model's, and in which way."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -18,10 +18,10 @@ from ...plotting.wording import NOT_COMPARED, ends, ends_in_words, equal_mark, l
 from ...schemas.columns import NAME, Column, number, percent, short, typeset
 from .study import COLUMNS, ERRORS
 
-MANY = 0.95  # share of the runs whose error a quantile tells
+MANY = 0.95  # level of the quantile of errors
 FALLS = "overturns"
-BOTH = "both"  # of the column "configuration": free-standing and isolated together
-# tilt over slenderness: the axes begin, "overturns" stands, and the model's axis and the engine's end, there "failed"
+BOTH = "both"  # value of "configuration" for free-standing and isolated together
+# Tilt over slenderness at which both axes begin, "overturns" stands, the model's axis ends, and "failed" stands.
 LEAST, FALLEN, MOST, FAILED = 0.01, 4.0, 6.0, 10.0
 TICKS = ((0.01, "≤ 0.01"), (0.1, "0.1"), (1.0, "1"), (FALLEN, "overturns"))
 PEAKS = {"tilt": "peak tilt", "displacement": "peak base displacement"}
@@ -40,6 +40,7 @@ SHARE = Column("share that differs or fails", "share", percent=True, within="int
 
 
 def page(result: Result) -> Page:
+    """Return the page of a result."""
     if absent := where(result.rows, part="absent"):
         return Page("Recorded motions: not computed, no records are installed", (f"{absent[0]['reason']}.",))
     runs = where(result.rows, part="run")
@@ -80,7 +81,7 @@ def page(result: Result) -> Page:
 
 
 def _details(runs, summaries, counts):
-    """What stands on the study's own page alone."""
+    """Parts that only the study's own page shows."""
     return (
         table(
             "By configuration", [row for row in summaries if row["configuration"] != BOTH], NAME, CONFIGURATION, *counts
@@ -112,7 +113,7 @@ def _details(runs, summaries, counts):
 
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
-    """How many outcomes differ from the model's, and the errors of the peaks, by (engine, variant)."""
+    """Judge how many outcomes differ from the model's, and the errors of the peaks, by (engine, variant)."""
     runs = grouped(where(result.rows, part="run"), "engine", "variant")
     rows = {pair: where(summary(members), configuration=BOTH)[0] for pair, members in runs.items()}
     return (
@@ -131,7 +132,7 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
 
 
 def glance(result: Result) -> Glance:
-    """All runs, and how far their peak tilt is off at the one level that was run."""
+    """Return the outcomes of all runs, and the errors of their peak tilt at the one level that was run."""
     runs = [
         {
             **row,
@@ -146,15 +147,18 @@ def glance(result: Result) -> Glance:
 
 
 def _peaks(result, runs):
-    """Of tuned variants. A relative error times the largest tilt, at most the slenderness, is at least the error over
-    slenderness; a failed run keeps no error."""
+    """Yield the errors of peak tilt of each tuned variant, over the slenderness.
+
+    The relative error times the largest tilt, at most the slenderness, is never less than the error over slenderness.
+    The error of a failed run is infinite.
+    """
     for variant in where(result.settings["variants"], tier="tuned"):
-        mine = where(
+        members = where(
             runs, engine=variant["engine"], variant=variant["variant"], **{"class": {"right", "differs", "failed"}}
         )
         errors = [
             math.inf if row["falls"] is None else abs(row["own_tilt_error"]) * min(row["model_tilt"], 1.0)
-            for row in mine
+            for row in members
             if row["falls"] is None or row["own_tilt_error"] is not None
         ]
         yield Peaks(
@@ -168,25 +172,28 @@ def _peaks(result, runs):
 
 
 def summary(rows: Sequence[dict[str, Any]]) -> Iterator[dict[str, Any]]:
-    """Rows of a variant from its runs, one for each configuration and one for both together: their `tally`, the
-    components and configurations of a record taken as one. Each of `ERRORS`: [median, largest, number, 95 % quantile]
-    of its absolute values.
+    """Yield rows of a variant from its runs: one for each configuration, and one for both together.
+
+    Each has the `tally` of its runs, in which the components and configurations of a record count as one. Each of
+    `ERRORS` is [median, largest, number, 95 % quantile] of the absolute values.
     """
     for configuration in (*dict.fromkeys(row["configuration"] for row in rows), BOTH) if rows else ():
-        mine = [row for row in rows if configuration in (row["configuration"], BOTH)]
-        errors = {name: _spread([row.get(name) for row in mine if row["class"] != "left out"]) for name in ERRORS}
+        members = [row for row in rows if configuration in (row["configuration"], BOTH)]
+        errors = {name: _spread([row.get(name) for row in members if row["class"] != "left out"]) for name in ERRORS}
         named = {**{key: rows[0][key] for key in ("engine", "variant", "tier")}, "configuration": configuration}
-        yield named | tally(mine, "record", _turned) | errors
+        yield named | tally(members, "record", _turned) | errors
 
 
 def _turned(row):
+    """Return whether a run overturns and the model does not, or the other way round."""
     return (row["outcome"] == FALLS) != (row["model_outcome"] == FALLS)
 
 
 def _spread(errors: Sequence[float | None]) -> list[float | int] | None:
-    known = np.abs([error for error in errors if error is not None])
-    high = float(np.quantile(known, MANY, method="higher")) if len(known) else None
-    return [float(np.median(known)), float(known.max()), len(known), high] if len(known) else None
+    """Return [median, largest, number, 95 % quantile] of the known errors; None without any."""
+    sizes = np.abs([error for error in errors if error is not None])
+    high = float(np.quantile(sizes, MANY, method="higher")) if len(sizes) else None
+    return [float(np.median(sizes)), float(sizes.max()), len(sizes), high] if len(sizes) else None
 
 
 def _peak_mark(errors):
@@ -198,11 +205,13 @@ def _peak_mark(errors):
 
 
 def _tilts(runs: list[dict[str, Any]], main: Mapping[str, str]) -> Figure | None:
-    """Each run's peak tilt over the model's, of subject engines, tuned and with defaults; a panel for each
-    configuration. Of the tuned ones, those that are not their engine's main variant stand behind, in grey."""
+    """Figure of each run's peak tilt over the model's, for subject engines, tuned and with defaults.
+
+    There is a panel for each configuration. Tuned variants that are not their engine's main one stand behind, in grey.
+    """
     groups = grouped(runs, "engine", "variant", "tier").values()
-    shown = [members for members in groups if subject(members[0])]
-    firsts = [members[0] for members in shown]
+    subject_groups = [members for members in groups if subject(members[0])]
+    firsts = [members[0] for members in subject_groups]
 
     def other(row):
         return not as_it_comes(row) and main[row["engine"]] != row["variant"]
@@ -221,21 +230,22 @@ def _tilts(runs: list[dict[str, Any]], main: Mapping[str, str]) -> Figure | None
         )
         chart.line([LEAST, FALLEN], [LEAST, FALLEN], tone="var(--faint)")
         for members in sorted(
-            shown, key=lambda members_of_panel: (not other(members_of_panel[0]), not as_it_comes(members_of_panel[0]))
+            subject_groups,
+            key=lambda runs_of_variant: (not other(runs_of_variant[0]), not as_it_comes(runs_of_variant[0])),
         ):
             drawn = where(members, configuration=configuration, **{"class": {"right", "differs", "failed"}})
             model, engine = ([_place(row, side) for row in drawn] for side in ("model_", ""))
-            filled, says = not as_it_comes(members[0]), [_says(row) for row in drawn]
-            who = NAME.of(members[0]) if other(members[0]) else kind(members[0])
-            chart.dots(model, engine, who, filled=filled, grey=other(members[0]), says=says)
+            filled, says = not as_it_comes(members[0]), [_tooltip(row) for row in drawn]
+            series = NAME.of(members[0]) if other(members[0]) else kind(members[0])
+            chart.dots(model, engine, series, filled=filled, grey=other(members[0]), says=says)
         charts.append(chart)
     coloured = [row for row in firsts if not other(row)]
     grey = ", ".join(NAME.of(row) for row in firsts if other(row))
     keys = {kind(row): key_of(kind(row), filled=not as_it_comes(row), joined=False) for row in coloured}
-    left_out = "; ".join(NAME.of(members[0]) for members in groups if members not in shown)
+    left_out = "; ".join(NAME.of(members[0]) for members in groups if members not in subject_groups)
     caption = (
         "One mark for each component that is judged. On the line engine and model agree; if only one is at "
-        "“overturns”, the outcomes differ. Open: defaults, with fewer records; upper frame: failed runs."
+        "“overturns”, the outcomes differ. Open marks: defaults, with fewer records; upper edge: failed runs."
         + f" Grey: {grey}." * bool(grey)
         + f" Not drawn, but in the table: {left_out}." * bool(left_out)
     )
@@ -243,16 +253,17 @@ def _tilts(runs: list[dict[str, Any]], main: Mapping[str, str]) -> Figure | None
 
 
 def _place(row, side):
+    """Return the value at which a run's tilt is drawn; overturned and failed runs have places of their own."""
     at = {FALLS: FALLEN, "failed": FAILED}.get(row[f"{side}outcome"])
     return at or max(row[f"{side}tilt"], LEAST)
 
 
-def _says(row):
-    """What a mark tells; of a run that is right its place says enough."""
+def _tooltip(row):
+    """Tooltip of a mark; a run that is right needs none."""
     if row["class"] == "right":
         return ""
-    here, there = (f"{row[f'{side}outcome']} ({number(row.get(f'{side}tilt'), 2)})" for side in ("", "model_"))
-    return f"{NAME.of(row)}, {RECORD.of(row)}: {here}, in the model {there}; {row['class']}"
+    engine, model = (f"{row[f'{side}outcome']} ({number(row.get(f'{side}tilt'), 2)})" for side in ("", "model_"))
+    return f"{NAME.of(row)}, {RECORD.of(row)}: {engine}, in the model {model}; {row['class']}"
 
 
 def _how(result: Result) -> tuple[str, ...]:

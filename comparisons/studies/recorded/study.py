@@ -1,7 +1,7 @@
-"""The study of recorded motions: each component once, free-standing and isolated, in the model and in the engines.
+"""The study of recorded motions: each component free-standing and isolated, in model and engines.
 
-For each component a block, a scale, and under the isolated one a base on bearings are drawn by a fixed seed and the
-component's name alone, so that no result could choose it.
+A block and a scale are drawn for each component, and for the isolated block a base on bearings too. They follow from a
+fixed seed and the component's name alone, so no result could choose them.
 """
 
 import hashlib
@@ -32,7 +32,7 @@ from ...metrics.statistics import EQUAL, class_of
 from ...schemas.columns import declared, number_of, word_of
 from ..rows import SHARED
 
-# What its rows have; see `comparisons.studies.rows`.
+# The columns of its rows, and by part which of them a row has; see `comparisons.studies.rows`.
 COLUMNS = SHARED | declared(
     word_of("record", "record", "name of the record, of both its components"),
     word_of("component", "component", 'component of the record: "a" or "b"'),
@@ -85,7 +85,7 @@ PARTS = {
 SEED = 695
 X_MAX = 0.30  # m, at which period and damping of the bearings hold
 LAWS = ("algebraic", "bouc-wen", "bilinear")
-# Chosen once by the outcomes of the analytic model alone: both kinds mixed, few blocks that do not lift. intensity:
+# Chosen once by the outcomes of the analytic model alone: both outcomes occur, few blocks do not lift. intensity:
 # omega_r PGV/(g tan(slenderness)); base_mass: over the block's; period [s] and damping of the bearings at X_MAX.
 RANGES: dict[str, dict[str, tuple[float, float]]] = {
     "free-standing": {"slenderness": (0.1, 0.3), "intensity": (0.35, 1.8)},
@@ -97,11 +97,14 @@ RANGES: dict[str, dict[str, tuple[float, float]]] = {
         "damping": (0.1, 0.2),
     },
 }
-LOGARITHMIC = ("intensity", "base_mass")  # evenly over the logarithm
+LOGARITHMIC = ("intensity", "base_mass")  # drawn evenly over the logarithm
 
 
 def drawn_scene(configuration: str, name: str, motion: SampledMotion) -> tuple[Scene, dict[str, Any]]:
-    """(the scene of a component, what was drawn for it); name: the component's, motion: as recorded."""
+    """Return the scene of a component, and what was drawn for it.
+
+    name: the component's. motion: as it was recorded.
+    """
     seed = int(hashlib.sha256(f"{configuration} {name}".encode()).hexdigest()[:16], 16)
     rng = np.random.default_rng([SEED, seed])
     drawn: dict[str, Any] = {key: _draw(rng, key, *ends) for key, ends in RANGES[configuration].items()}
@@ -117,31 +120,32 @@ def drawn_scene(configuration: str, name: str, motion: SampledMotion) -> tuple[S
 
 
 def _draw(rng: np.random.Generator, key: str, low: float, high: float) -> float:
+    """Draw a value between `low` and `high`, evenly or evenly over the logarithm."""
     return low * (high / low) ** rng.random() if key in LOGARITHMIC else float(rng.uniform(low, high))
 
 
 def _by_law(bearings: Bearings, law: str) -> Bearings:
-    """Bearings of another law with the stiffnesses and the characteristic strength of algebraic ones."""
+    """Return bearings of another law with the stiffnesses and the characteristic strength of algebraic ones."""
     if law != "bilinear":
         return Bearings(**{**bearings.model_dump(), "law": law})
-    given = BearingLaw.of(bearings)
-    strength = given.f0 / (1 - bearings.given("kb") / bearings.ka)
+    algebraic = BearingLaw.of(bearings)
+    strength = algebraic.f0 / (1 - bearings.given("kb") / bearings.ka)
     return Bearings(law=law, count=bearings.count, ka=bearings.ka, kb=bearings.kb, yield_force=strength, x_max=X_MAX)
 
 
-# records for the tuned variants of subject engines (None: all), and for the other variants
+# numbers of records for the tuned variants of subject engines (None: all), and for the other variants
 FULL, QUICK = (None, 20), (2, 1)
-TIME_LIMIT = 900.0  # s, of a run: motions of 90 s with a fixed step, on a machine that does other things besides
+TIME_LIMIT = 900.0  # s, of a run: motions last up to 90 s, steps are fixed, and the machine may be busy
 NAMES = ("record", "component", "configuration")
 ERRORS = ("tilt_error", "displacement_error", "own_tilt_error", "own_displacement_error")
 
 
 def plan(request: Request, *, records: Folder = None) -> Plan:
-    """The plan of the study; an answer with one variant more each time.
+    """Plan the study; it gives an answer after each variant.
 
-    Rows by "part": "scene", what was drawn for a component in a configuration, and the model's answer; "run", one for
-    each run of an engine, beside that answer; "absent", alone, where there are no records. Of a record the answer keeps
-    its name, the scale, outcomes, peaks and times of falls.
+    Rows by "part": "scene" holds what was drawn for a component in a configuration, and the model's answer; "run" holds
+    one run of an engine beside that answer; "absent" stands alone where there are no records. Of a record the answer
+    keeps its name, the scale, outcomes, peaks and times of falls.
 
     Parameters
     ----------
@@ -160,7 +164,7 @@ def plan(request: Request, *, records: Folder = None) -> Plan:
     names = list(moving)
     model = yield Batch(_model_cases({name: moving[name] for name in names[:many]}), of_model, "analytic model")
     scenes = [(row.case.scene, {**row.case.tag, **row.values}) for row in model if not row.failed]
-    known = [drawn for _, drawn in scenes]
+    scene_rows = [drawn for _, drawn in scenes]
     settings: dict[str, Any] = {
         "quick": request.quick,
         "source": source_of(records),
@@ -170,12 +174,14 @@ def plan(request: Request, *, records: Folder = None) -> Plan:
         "ranges": RANGES,
         "laws": LAWS,
         "x_max": X_MAX,
-        "mix": {name: _mix(name, known) for name in RANGES},
+        "mix": {name: _outcome_counts(name, scene_rows) for name in RANGES},
         "perturbation": PERTURBATION,
         "equal": EQUAL,
         "variants": [],
     }
-    rows: list[dict[str, Any]] = [{"part": "scene", "engine": "analytic", "variant": "", **drawn} for drawn in known]
+    rows: list[dict[str, Any]] = [
+        {"part": "scene", "engine": "analytic", "variant": "", **drawn} for drawn in scene_rows
+    ]
     answer = Computed(settings, rows, seed=SEED)
     for engine, variant, on_all in itertools.chain.from_iterable(map(_variants, request.engines)):
         cases = [
@@ -184,7 +190,7 @@ def plan(request: Request, *, records: Folder = None) -> Plan:
             if on_all or drawn["record"] in names[:few]
         ]
         runs = yield Batch(cases, of_engine, f"{engine}, {variant}", TIME_LIMIT)
-        rows = [*rows, *(_run_row(row, known) for row in runs)]
+        rows = [*rows, *(_run_row(row, scene_rows) for row in runs)]
         settings = {**settings, "variants": [*settings["variants"], variant_settings(engine, variant)]}
         answer = Computed(settings, rows, seed=SEED)
         yield answer
@@ -192,7 +198,10 @@ def plan(request: Request, *, records: Folder = None) -> Plan:
 
 
 def _shuffled(records: str | None) -> tuple[dict[str, list[SampledMotion]], list[str]]:
-    """({record: its components} in an order drawn by `SEED`, what is left out and why) of a folder of records."""
+    """Return the components of a folder's records, and what is left out and why.
+
+    The components are {record: motions}, in an order drawn by `SEED`.
+    """
     folder, left_out = folder_motions(records or PREFIX)
     still = [name for name, motions in folder.items() if not all(motion.peak for motion in motions)]
     left_out += [f"{name}: left out, it does not move" for name in still]
@@ -201,7 +210,7 @@ def _shuffled(records: str | None) -> tuple[dict[str, list[SampledMotion]], list
 
 
 def _variants(name: str) -> Iterator[tuple[str, str, bool]]:
-    """(engine, variant, whether on all records) of an engine: tuned ones, and the defaults of subject engines."""
+    """Yield (engine, variant, whether it runs all records): tuned variants, and the defaults of subject engines."""
     engine = get_engine(name)
     for variant, spec in engine.variants.items():
         if spec.kind == "tuned" or (engine.subject and spec.kind == "defaults"):
@@ -209,7 +218,7 @@ def _variants(name: str) -> Iterator[tuple[str, str, bool]]:
 
 
 def _model_cases(records: dict[str, list[SampledMotion]]) -> list[Case]:
-    """Each component in each configuration, with what was drawn for it."""
+    """Cases of each component in each configuration, with what was drawn for it."""
     return [
         Case(scene, settings={"history": False}, tag=dict(zip(NAMES, (record, component, name), strict=True)) | drawn)
         for record, motions in records.items()
@@ -220,16 +229,21 @@ def _model_cases(records: dict[str, list[SampledMotion]]) -> list[Case]:
 
 
 def of_model(case: Case, response: Response) -> dict[str, Any]:
-    """Measure of the model's run; comparable: "yes", or why no run is compared, of all engines alike."""
+    """Measure the model's run.
+
+    comparable: "yes", or why no engine's run is compared with it.
+    """
     scene, comparable = case.scene, Reference.of(case.scene).end_comparable
     fallen = response.outcome == "overturns"
     horizon = min(sensitivity_horizon(scene).horizon, response.unstable_time if fallen else np.inf)
-    return {**_kept(response), "comparable": comparable, "horizon": float(horizon)}
+    return {**_outcome_and_peaks(response), "comparable": comparable, "horizon": float(horizon)}
 
 
 def of_engine(case: Case, response: Response) -> dict[str, Any]:
-    """Measure of an engine's run: in what it differs from the model, and relative errors of its peaks up to the common
-    horizon, and up to its own."""
+    """Measure an engine's run: its differences from the model, and the relative errors of its peaks.
+
+    The errors are taken up to the horizon common to all engines, and up to the engine's own.
+    """
     step = 2 * np.pi / case.scene.rocking_frequency / SAMPLES_PER_PERIOD
     model = simulate(case.scene, output_step=step)
     own_horizon = solver_horizon(case.scene, response, model).horizon
@@ -244,35 +258,43 @@ def of_engine(case: Case, response: Response) -> dict[str, Any]:
         "differences": [str(difference) for difference in differences],
         "quantities": [difference.quantity for difference in differences],
     }
-    return {**_kept(response), **compared, "own_horizon": own_horizon, **dict(zip(ERRORS, errors, strict=True))}
+    return {
+        **_outcome_and_peaks(response),
+        **compared,
+        "own_horizon": own_horizon,
+        **dict(zip(ERRORS, errors, strict=True)),
+    }
 
 
-def _kept(response):
+def _outcome_and_peaks(response):
+    """Outcome and peaks of a run."""
     peaks = {"tilt": response.peak_tilt_ratio, "displacement": response.peak_base_displacement}
     return {"outcome": response.outcome, **peaks}
 
 
 def _errors(scene: Scene, response: Response, model: Response, until: float) -> Iterator[float | None]:
-    """Relative errors of the peak tilt and of the peak base displacement up to a time; None where the model's does not
-    count."""
+    """Yield the relative errors of peak tilt and peak base displacement up to a time.
+
+    An error is None where the model's peak is too small to count.
+    """
     length = scene.block.slenderness
     for name, least in (
         ("tilt", LEAST_TILT * length),
         ("base_displacement", LEAST_DISPLACEMENT * scene.block.radius * length),
     ):
-        here, there = (_peak(run.history, name, until) for run in (response, model))
-        yield here / there - 1 if there >= least else None
+        peak, model_peak = (_peak(run.history, name, until) for run in (response, model))
+        yield peak / model_peak - 1 if model_peak >= least else None
 
 
 def _peak(history, name, until):
-    """The largest size of a quantity up to a time, at that time too: a growing tilt has its peak there."""
+    """Return the largest size of a quantity up to and at a time; a growing tilt has its peak at that time."""
     values = getattr(history, name)
     return float(np.abs([*values[history.time <= until], np.interp(until, history.time, values)]).max())
 
 
-def _run_row(row: Row, known: Iterable[dict[str, Any]]) -> dict[str, Any]:
+def _run_row(row: Row, scene_rows: Iterable[dict[str, Any]]) -> dict[str, Any]:
     tag = {key: row.case.tag[key] for key in NAMES}
-    (model,) = (scene_row for scene_row in known if tag.items() <= scene_row.items())
+    (model,) = (scene_row for scene_row in scene_rows if tag.items() <= scene_row.items())
     variant = get_engine(row.case.solver).variants[row.case.variant]
     return {
         "part": "run",
@@ -288,12 +310,12 @@ def _run_row(row: Row, known: Iterable[dict[str, Any]]) -> dict[str, Any]:
     }
 
 
-def _mix(configuration, known):
-    """How often each outcome comes in the model."""
-    outcomes = [row["outcome"] for row in known if row["configuration"] == configuration]
+def _outcome_counts(configuration, scene_rows):
+    """Count how often each outcome comes in the model."""
+    outcomes = [row["outcome"] for row in scene_rows if row["configuration"] == configuration]
     return {outcome: outcomes.count(outcome) for outcome in OUTCOMES if outcome in outcomes}
 
 
 def problems(result: Result) -> list[str]:
-    """Why nothing was run, where it was not."""
+    """Return why nothing was run; empty if something was."""
     return [row["reason"] for row in result.rows if row["part"] == "absent"]

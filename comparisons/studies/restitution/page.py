@@ -1,10 +1,8 @@
-"""What is shown of the restitution study.
+"""The page of the restitution study: errors at impacts, and their causes.
 
-Columns of the study's tables and axes.
-
-What is shown of the causes of errors, each changed alone, and of eq. (8).
-
-What is shown of why engines err: the first impact of a block released, taken apart.
+It shows the error of restitution over slenderness and base mass, on bearings and at all levels. Then it takes the first
+impact of a block apart to show why engines err, changes suspected causes one at a time, and compares the base velocity
+jump with eq. (8).
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -22,7 +20,7 @@ from ...plotting.wording import TRUSTED, USABLE, rating, trust, with_counts
 from ...schemas.columns import NAME, Column, Row, number, percent, short
 from .study import COLUMNS
 
-FLOOR = 1e-9  # errors below are drawn here
+FLOOR = 1e-9  # smaller errors are drawn here
 
 ERROR = COLUMNS["rms"]
 DRAWN_ERROR = Column(ERROR.head, lambda row: row["rms"] and max(row["rms"], FLOOR))
@@ -42,12 +40,12 @@ BASE = Column("base mass over block mass [-]", lambda row: "rigid" if row["ratio
 
 
 def ground(row: Row) -> str:
-    """What the block of a row stands on."""
+    """Return what the block of a row stands on, in words."""
     return "rigid ground" if row["ratio"] is None else "sliding base"
 
 
 def causes(result: Result, variants: Mapping[str, Row]) -> Iterator[Figure | Table | str | None]:
-    """Experiments that change one suspected cause: step phase, settings, friction, damping in flight."""
+    """Yield what is shown of experiments that change one cause: step phase, settings, friction, damping in flight."""
     phases, damped = where(result.rows, part="phase"), where(result.rows, part="flight damping")
     yield from _step_phases(result, phases)
     settings = [{**row, "ground": ground(row)} for row in where(result.rows, part="experiment")]
@@ -91,13 +89,13 @@ def causes(result: Result, variants: Mapping[str, Row]) -> Iterator[Figure | Tab
     sought = {row["engine"] for row in (*phases, *damped, *result.settings["experiments"])}
     if without := [engine for engine in result.settings["engines"] if engine not in sought]:
         yield (
-            f"No cause was looked for in {', '.join(without)}: that takes a setting beside the accuracy parameter that "
+            f"No cause was looked for in {', '.join(without)}. It takes a setting beside the accuracy parameter that "
             "the engine's record names as one to change alone, or a tuned variant with a fixed step."
         )
 
 
 def _step_phases(result, phases):
-    """The error over where in a step the impact falls."""
+    """Figure and table of the error over where in a step the impact falls."""
     points = [
         {**row, "phase": phase, "error": error / row["step"], "by": f"step {1e3 * row['step']:g} ms"}
         for row in phases
@@ -124,7 +122,10 @@ def _step_phases(result, phases):
 
 
 def _damping(damped, variants):
-    """Blocks that need more friction than the variant's slide: they are in the table only."""
+    """Figure and table of damping in flight as the cause of the error.
+
+    Blocks that need more friction than the variant has slide, so they are in the table only.
+    """
     rows = [{**variants[NAME.of(row)], **row, "whose": NAME.of(row)} for row in damped]
     stick = [row for row in rows if row["friction"] is None or row["friction_needed"] < row["friction"]]
     predicted = [
@@ -135,8 +136,8 @@ def _damping(damped, variants):
         [*predicted, *({**row, "error": row["measured"], "by": setting_of(row)} for row in stick)],
         GAMMA,
         Column("mean error of restitution [-]", "error"),
-        "Damping in flight, built into the engine: the error it gives the model alone, and the error measured, where "
-        "the block does not slide.",
+        "Damping in flight, built into the engine: the error that it gives the model by itself, and the error "
+        "measured, where the block does not slide.",
         panel="whose",
         series=Series(by="by"),
     )
@@ -154,7 +155,10 @@ def _damping(damped, variants):
 
 
 def equation_8(result: Result, cells: Iterable[Row], ratings: Mapping[str, Row]) -> Iterator[Figure | None]:
-    """The base velocity jump against both forms, over slenderness and over the block's size."""
+    """Yield a figure of the base velocity jump against both forms of eq. (8).
+
+    It goes over slenderness and over the block's size.
+    """
     forms = {"jump_8": "(8) corrected", "jump_8_printed": "(8) as printed"}
     defaults = result.settings["default_variants"]
     main_cells = [row for row in cells if defaults[row["engine"]] == row["variant"] and row["jump_8"] is not None]
@@ -175,9 +179,9 @@ def equation_8(result: Result, cells: Iterable[Row], ratings: Mapping[str, Row])
             over_size,
             size,
             jump,
-            f"Over the block's size, in the variants that may be trusted, it is off by at most {errors[0]} from the "
-            f"corrected form and by up to {errors[1]} from the printed one, which has a factor R cos γ [m] too many. "
-            "The engines know nothing of the equation.",
+            f"Over the block's size: in the variants that may be trusted, the jump is off by at most {errors[0]} "
+            f"from the corrected form, and by up to {errors[1]} from the printed one, which has a factor R cos γ [m] "
+            "too many. The engines know nothing of the equation.",
             series=Series(by="by"),
             log="xy",
         ),
@@ -186,8 +190,8 @@ def equation_8(result: Result, cells: Iterable[Row], ratings: Mapping[str, Row])
 
 RIGID = "rigid ground"
 WINDOW = 20.0  # ms before and after the landing that are drawn
-MARKED = 40  # values of a line, at most, to mark each
-# frame: (its title, key of its values, unit of the page, label)
+MARKED = 40  # most values of a line that has a mark at each
+# {frame: (its title, key of its values, unit of the page over that of the values, label)}
 FRAMES = {
     "straddle": ("1. the steps straddle the impact", "landing", 1e3, "height of the corner [mm]"),
     "penetration": ("2. the corner sinks in", "landing", 1e3, "height of the corner [mm]"),
@@ -198,7 +202,7 @@ CONTACT_ERROR = COLUMNS["error"]
 
 
 def contact(result: Result) -> Page:
-    """The parts of the study's page that say why, as if they were a page of their own."""
+    """Return the page of the impact taken apart, which `page` includes as sections that say why engines err."""
     settings, rows = result.settings["why"], where(result.rows, part="why")
     analysed = [row for row in rows if row["failure"] is None and "why_not" not in row]
     ranked = sorted(analysed, key=lambda row: -abs(row["error"]))
@@ -226,13 +230,13 @@ def contact(result: Result) -> Page:
         first=(
             _frames([row for row in where(analysed, ground=RIGID) if row["best"] or row["tier"] == "defaults"]),
             table(
-                "The first impact: those with a cause, and all of the engines’ main variants",
+                "The first impact: variants with a cause of error, and all main variants of the engines",
                 [*wrong, *sound],
                 *columns,
             ),
         ),
         more=(
-            table("The other impacts", where(ranked, cause=None, best=False), *columns),
+            table("The impacts of other variants", where(ranked, cause=None, best=False), *columns),
             table(
                 "Causes",
                 [{"cause": cause, "words": words} for cause, words in settings["causes"].items()],
@@ -254,7 +258,10 @@ def contact(result: Result) -> Page:
 
 
 def _frames(rows):
-    """The contact in four frames; not as `lines`: hundreds of values are a curve, and their ends lie outside."""
+    """Figure of the contact in four frames.
+
+    It is not drawn by `lines`: hundreds of values form a curve, and their ends lie outside the frame.
+    """
     charts = []
     for name, (title, key, unit, label) in FRAMES.items():
         series = []
@@ -277,12 +284,12 @@ def _frames(rows):
             left=70,
         )
         for row, time, values in series:
-            grey, who, inside = not _coloured(row), kind(row), np.abs(time) <= WINDOW
-            chart.line(time, values, who, grey=grey)
+            grey, series_kind, inside = not _coloured(row), kind(row), np.abs(time) <= WINDOW
+            chart.line(time, values, series_kind, grey=grey)
             if len(values) <= MARKED:
                 says = [f"{NAME.of(row)}: {value:.3g}" for value in values[inside]]
                 filled = not as_it_comes(row)
-                chart.dots(time[inside], values[inside], who, grey=grey, filled=filled, says=says, beyond=True)
+                chart.dots(time[inside], values[inside], series_kind, grey=grey, filled=filled, says=says, beyond=True)
         charts.append(chart)
     caption = (
         "First impact on rigid ground. Coloured: main variants, and defaults of subject engines. Grey: other "
@@ -294,6 +301,7 @@ def _frames(rows):
 
 
 def _coloured(row):
+    """Return whether the row has a colour: main variants and subject engines do."""
     return row["best"] or subject(row)
 
 
@@ -301,6 +309,7 @@ BOUNDS = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1)
 
 
 def page(result: Result) -> Page:
+    """Return the page of a result."""
     variants = {NAME.of(variant): variant for variant in result.settings["variants"]}
     default = where(result.rows, part="summary", scope="all")
     cells = [
@@ -321,10 +330,11 @@ def page(result: Result) -> Page:
             "A released block loses speed at every impact. Eq. (7) gives the loss from angular momentum alone. The "
             "engines are not given this number; it follows from their contact. It is wrong where a step straddles the "
             "impact, or where the corner penetrates or bounces. No corner slips here; for impacts with slip see the "
-            "study of sliding.",
-            "The error is measured by states: the tilt rate after over that before, at the impact, minus eq. (7), as "
-            "root mean square over impacts. By swings, from the energy of the swings before and after, it includes "
-            "what built-in damping dissipates in flight. Of both measures and grounds the worse one rates a variant.",
+            "study of random statues.",
+            "The error is measured by states: the tilt rate after over that before, at the impact, minus eq. (7), "
+            "as root mean square over impacts. By swings, from the energy of the swings before and after, it "
+            "includes what built-in damping dissipates in flight. A variant is rated by the worst of both measures "
+            "on both grounds.",
         ),
         first=_summary(result, cells, ranked),
         more=_details(result, variants, default, cells, levels, orders, ratings, why),
@@ -343,11 +353,11 @@ def page(result: Result) -> Page:
 
 
 def _summary(result, cells, ranked):
-    """What stands on the report's first page, too."""
+    """Parts that the report's first page shows too."""
     return (
         _over_slenderness(cells, result.settings["default_variants"]),
         table(
-            "Restitution without slip, of both grounds the worse, least error by states first",
+            "Restitution without slip, the worse of both grounds; least error by states first",
             ranked,
             NAME,
             Column("rating", lambda row: row["rating"].removeprefix("is ").removeprefix("may be ")),
@@ -362,7 +372,7 @@ def _summary(result, cells, ranked):
 
 
 def _details(result, variants, default, cells, levels, orders, ratings, why):
-    """What stands on the study's own page alone."""
+    """Parts that only the study's own page shows."""
     return (
         Head("Slenderness and base mass"),
         *_maps(cells),
@@ -394,7 +404,7 @@ def _details(result, variants, default, cells, levels, orders, ratings, why):
         *_on_bearings(result),
         Head("Levels"),
         *_refinement(levels),
-        Head(why.title, "why"),  # the report's first page leads to it
+        Head(why.title, "why"),  # the report's first page links to it
         *why.lead,
         *why.first,
         *why.more,
@@ -406,9 +416,10 @@ def _details(result, variants, default, cells, levels, orders, ratings, why):
 
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
-    """Error of restitution at the impact, free and on bearings, and of the base velocity jump, by (engine, variant).
+    """Judge the error of restitution, free and on bearings, and that of the base velocity jump, by (engine, variant).
 
-    Free rocking is rated by the worse of that and the error by swings, which has what an engine loses in flight.
+    Free rocking is rated by the worse of two errors: that by states, and that by swings, which includes what an engine
+    loses in flight.
     """
     rows, borne = rated(result), where(result.rows, part="bearings", factor="all")
     return (
@@ -430,45 +441,52 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
 
 
 def _free_mark(row):
+    """Mark of free rocking: it shows the error by states; the worse of both measures gives the rating."""
     mark = _mark(row, "rms_state", "worst_state")
-    return replace(mark, level=rating(_error(row), _wrong(row)), note=f"{mark.note}; by swings {number(row['rms'], 2)}")
+    return replace(
+        mark, level=rating(_worse_error(row), _failures(row)), note=f"{mark.note}; by swings {number(row['rms'], 2)}"
+    )
 
 
-def _error(row):
-    """The worse of both measures of free rocking; None where one of them is not known."""
+def _worse_error(row):
+    """Return the worse of both measures of free rocking; None where one of them is not known."""
     return None if None in (row["rms"], row["rms_state"]) else max(row["rms"], row["rms_state"])
 
 
-def _wrong(row):
+def _failures(row):
+    """Number of failed runs and missed impacts."""
     return row["failed"] + row["lost"]
 
 
 def _mark(row, error, worst):
-    """A missed impact is an error: it takes the rating away as a failed run does."""
+    """Mark of an error.
+
+    A missed impact counts as an error: it takes the rating away, as a failed run does.
+    """
     if row[error] is None:
         return Mark("none measured", "bad", f"{row['failed']} of {row['runs']} runs failed")
     wrong = {"failed": row["failed"], "missed": row["lost"]}
     words = with_counts(number(row[error], 2), wrong)
-    level = rating(row[error], _wrong(row))
+    level = rating(row[error], _failures(row))
     note = f"{row['impacts']} impacts of {row['runs']} runs, worst {number(row[worst], 2)}"
     return Mark(words, level, note, row[error])
 
 
 def rated(result: Result) -> list[dict[str, Any]]:
-    """A row for each variant at its default level, with the worse of both grounds, by which the first screen rates it.
+    """Return a row for each variant at its default level, with the worse of both grounds.
 
-    Settings, rms, worst, rms_state, worst_state, jump_rms, jump_worst, impacts, lost, failed, runs, orders and, in
-    words, rating.
+    The first screen rates variants by it. It has the variant's settings, rms, worst, rms_state, worst_state, jump_rms,
+    jump_worst, impacts, lost, failed, runs, orders and, in words, rating.
     """
     variants = {NAME.of(variant): variant for variant in result.settings["variants"]}
     orders = grouped(where(result.rows, part="order"), NAME.of)
     return [
-        _rated(variants[name], rows, orders[name,])
+        _worse_of_grounds(variants[name], rows, orders[name,])
         for (name,), rows in grouped(where(result.rows, part="summary", scope="all"), NAME.of).items()
     ]
 
 
-def _rated(variant, rows, orders):
+def _worse_of_grounds(variant, rows, orders):
     def most(key):
         return max((row[key] for row in rows if row[key] is not None), default=None)
 
@@ -480,12 +498,12 @@ def _rated(variant, rows, orders):
         "level": variant["default"],
         **summary,
         "orders": [row["order"] for row in orders if row["order"] is not None],
-        "rating": trust(_error(summary), _wrong(summary)).removesuffix(" where a per cent does not matter"),
+        "rating": trust(_worse_error(summary), _failures(summary)).removesuffix(" where a per cent does not matter"),
     }
 
 
 def _title(ranked):
-    good = [row for row in ranked if rating(_error(row), _wrong(row)) == "good"]
+    good = [row for row in ranked if rating(_worse_error(row), _failures(row)) == "good"]
     answer = f"{len(good)} of {len(ranked)} engine variants reproduce restitution without slip to within {TRUSTED:g}"
     return f"One impact: {answer}"
 
@@ -504,7 +522,7 @@ def _over_slenderness(cells, defaults):
         worst,
         GAMMA,
         STATE,
-        "Error of restitution by states, rms; on the base, for the worst base mass. Coloured: main variants, and "
+        "Error of restitution by states, rms. On the sliding base: the worst base mass. Coloured: main variants, and "
         "defaults of subject engines. Open marks: defaults. Grey: other variants. No mark: all runs failed.",
         panel=lambda row: f"{row['ground']}: restitution",
         series=Series(by=lambda row: row["variant"] if grey(row) else row["tier"], grey=grey, opened=as_it_comes),
@@ -520,8 +538,8 @@ def _maps(cells):
             BASE,
             GAMMA,
             Column(error.head, error.value, digits=1),
-            f"{error.head.capitalize()}, at default levels, over all starts and impacts. ✗: runs that failed, of "
-            "those made; they are not part of the error.",
+            f"{error.head.capitalize()}, at default levels, over all starts and impacts. ✗: failed runs of all "
+            "runs; they are not part of the error.",
             bounds=BOUNDS,
             panel=NAME.of,
             failed=lambda row: FAILED.of(row).replace(" of ", "/") if row["failed"] else "",
@@ -542,7 +560,7 @@ def _on_bearings(result):
                 [{**row, factor: row["of"]} for row in where(rows, factor=factor) if row["rms_state"]],
                 axis,
                 STATE,
-                f"On bearings: error of restitution over {axis.head.partition(' [')[0]}, the other values together.",
+                f"On bearings: error of restitution over {axis.head.partition(' [')[0]}, all other values together.",
                 series=Series(grey=lambda row: defaults[row["engine"]] != row["variant"]),
                 log="y" if factor == "slenderness" else "xy",
                 rules=[("y", TRUSTED, "trusted")],
@@ -551,7 +569,7 @@ def _on_bearings(result):
         )
     )
     yield table(
-        "On bearings, apart by law and by what moves the block",
+        "On bearings, by law and by what moves the block",
         where(rows, factor={"law", "excitation"}),
         NAME,
         Column("law or excitation", lambda row: "released" if row["of"] == "let go" else row["of"]),
@@ -591,7 +609,7 @@ def _how(settings):
         f"Blocks of slenderness {min(gammas):g} to {max(gammas):g} rad, tilted to {min(starts):g} to {max(starts):g} "
         f"of it ({len(starts)} starts) and released, on rigid ground and on bases of {bases} times their mass that "
         f"slide without friction. The first {settings['impacts']} impacts of every run are measured. Restitution by "
-        "swings is the root of the ratio of a swing's energy after an impact to that before it, so that anything that "
+        "swings is the root of the ratio of a swing's energy after an impact to that before it, so anything that "
         "dissipates energy counts. The base velocity jump is compared with the one that conserves momentum at the "
         "run's own rates.",
         f"On bearings: {grid}, in all combinations; the bearing laws alternate. The block is released at half of the "

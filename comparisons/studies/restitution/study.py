@@ -1,10 +1,9 @@
-"""The restitution study: what is measured in a run, and rows of errors of each cell, each level and each experiment.
+"""The restitution study: blocks released from rest, in every engine, variant and level.
 
-The runs of the restitution study: blocks released from rest, in every engine, variant and level.
-
-Four parts: the grid (slenderness x base x level), blocks on bearings, released or under a pulse (slenderness x base x
-isolation period, laws in turn), experiments that change one suspected cause of error at a time, and the first impact of
-a block, to be taken apart.
+There are four parts: the grid (slenderness x base x level), blocks on bearings, released or under a pulse (slenderness
+x base x isolation period, laws in turn), experiments that change one suspected cause of error at a time, and the first
+impact of a block, taken apart. Each run is measured at its first impacts; rows hold the errors of each cell, each level
+and each experiment.
 """
 
 import math
@@ -37,7 +36,7 @@ from ...metrics.errors import SLOWEST_IMPACT, impact_errors, lost_impacts, rms, 
 from ...schemas.columns import declared, flag_of, number_of, table_of, whole_of, word_of
 from ..rows import SHARED
 
-# What its rows have; see `comparisons.studies.rows`.
+# The columns of its rows, and by part which of them a row has; see `comparisons.studies.rows`.
 COLUMNS = SHARED | declared(
     number_of("ratio", "base mass over block mass", "base mass over block mass; null: rigid ground"),
     word_of("scope", "scope", 'what a summary covers: "all" cells at the default level, or the "levels"'),
@@ -139,12 +138,13 @@ PARTS = {
 }
 
 CARYATID_BASE = BASE.mass / MASS  # its m_b/m
-IMPACTS = 3  # used of each run; on rigid ground the slowest is about as fast as the first from a third of the tilt
+# impacts used of each run; on rigid ground the slowest is about as fast as the first from a third of the tilt
+IMPACTS = 3
 
 
 @dataclass(frozen=True)
 class Grid:
-    """What the study covers: slendernesses [rad], m_b/m (None: rigid ground), starts (tilt over slenderness).
+    """Scope of the study: slendernesses [rad], m_b/m (None: rigid ground), starts (tilt over slenderness).
 
     refined: (slenderness, m_b/m) where the accuracy parameters run through their levels. bearings: slendernesses [rad],
     m_b/m and isolation periods [s] of blocks on bearings.
@@ -154,7 +154,7 @@ class Grid:
     ratios: tuple
     starts: tuple
     refined: tuple
-    phase_starts: int  # of the experiment on the phase of the steps
+    phase_starts: int  # starts in the experiment on the phase of the steps
     bearings: tuple
 
 
@@ -183,18 +183,20 @@ PULSE = (0.5, 3.0)
 EXPERIMENT_SLENDERNESS = 0.2
 EXPERIMENT_RATIOS = (None, CARYATID_BASE)
 PHASE_STEPS = (4e-3, 1e-3, 2.5e-4)  # s
-SCALES = (0.25, 1.0, 4.0)  # of the block, to tell (8) from (8) as printed
+SCALES = (0.25, 1.0, 4.0)  # sizes of the block, to tell (8) from (8) as printed
 
-# Of the block whose first impact is taken apart: tilt over slenderness; duration [s], past the swing after that impact.
+# The block whose first impact is taken apart: tilt over slenderness; duration [s], past the swing after that impact.
 IMPACT_START, IMPACT_SECONDS = 0.6, 1.6
 GROUNDS = {"rigid ground": None, "sliding base": Base(mass=BASE.mass)}
 
 
 def free_scene(slenderness: float, ratio: float | None, start: float, scale: float = 1.0) -> Scene:
-    """A block on rigid ground (ratio None) or on a freely sliding base of ratio times its mass, tilted and released.
+    """Return a block on rigid ground or on a freely sliding base, tilted and released.
 
-    It ends past the peak of the swing after the third impact of the model, or a little after coming to rest.
+    slenderness [rad]. ratio: mass of the base over the block's; None: rigid ground. start: tilt over slenderness.
     scale: size of the block over the Caryatid's.
+
+    The scene ends past the peak of the swing after the third impact of the model, or a little after coming to rest.
     """
     scene = Scene(
         block=Block(mass=MASS, radius=RADIUS * scale, slenderness=slenderness),
@@ -206,7 +208,7 @@ def free_scene(slenderness: float, ratio: float | None, start: float, scale: flo
 
 
 def _cut(scene, times, rest):
-    """The scene up to past the peak of the swing after the impact number `IMPACTS`, or `rest` [s] after the last."""
+    """Shorten a scene: it ends past the swing after impact number `IMPACTS`, or `rest` [s] after the last impact."""
     if len(times) > IMPACTS:
         before, after = times[IMPACTS - 1 : IMPACTS + 1]
         return scene.with_(duration=before + 0.75 * (after - before))
@@ -214,10 +216,10 @@ def _cut(scene, times, rest):
 
 
 def bearing_scene(slenderness: float, ratio: float, period: float, law: str, excitation: str) -> Scene:
-    """The Caryatid's block of a slenderness on bearings of a period [s], at the stiffness after yielding.
+    """Return the Caryatid's block with a slenderness, on bearings of a period [s] at the stiffness after yielding.
 
-    It is released at `LET_GO`, the ground at rest or under a pulse, (amplitude over g tan(slenderness), frequency over
-    omega_r) in `PULSE`. It ends as `free_scene` does.
+    It is released at `LET_GO`, with the ground at rest or under a pulse. `PULSE` holds the pulse's amplitude over g
+    tan(slenderness) and its frequency over omega_r. The scene ends as in `free_scene`.
     """
     base = Base(mass=ratio * MASS)
     kb = (MASS + base.mass) * (2 * math.pi / period) ** 2 / BEARINGS.count
@@ -237,7 +239,7 @@ def bearing_scene(slenderness: float, ratio: float, period: float, law: str, exc
 
 
 def bearing_cases(grid: Grid, engines: Sequence[str]) -> Iterator[Case]:
-    """Blocks on bearings, at default levels; the laws take turns, so that each is combined with all other values."""
+    """Yield blocks on bearings at default levels; the laws take turns, so each is combined with all other values."""
     for places in product(*map(enumerate, grid.bearings)):
         ranks, (slenderness, ratio, period) = zip(*places, strict=True)
         law = LAWS[sum(ranks) % len(LAWS)]
@@ -249,24 +251,24 @@ def bearing_cases(grid: Grid, engines: Sequence[str]) -> Iterator[Case]:
 
 
 def impact_scene(ground: str) -> Scene:
-    """The block whose first impact is taken apart, released on a ground of `GROUNDS`."""
+    """Return the block whose first impact is taken apart, released on a ground of `GROUNDS`."""
     scene = free_scene(EXPERIMENT_SLENDERNESS, None, IMPACT_START)
     return scene.with_(name="one impact", base=GROUNDS[ground], duration=IMPACT_SECONDS)
 
 
 def impact_cases(engines: Sequence[str], grounds: Iterable[str]) -> Iterator[Case]:
-    """That block in every variant, tagged with the ground."""
+    """Yield the block of `impact_scene` in every variant, tagged with the ground."""
     for (engine, variant, _), ground in product(variants_of(engines), grounds):
         yield Case(impact_scene(ground), engine, variant, tag={"ground": ground})
 
 
 def variants_of(engines: Sequence[str]) -> list[tuple[str, str, Variant]]:
-    """(engine, name, record) of every variant."""
+    """Return (engine, name, record) of every variant."""
     return [(engine, name, kind) for engine in engines for name, kind in get_engine(engine).variants.items()]
 
 
 def grid_cases(grid: Grid, engines: Sequence[str]) -> Iterator[Case]:
-    """The grid as cases, tagged with part, ratio, slenderness, start and level."""
+    """Yield the cases of the grid, tagged with part, ratio, slenderness, start and level."""
     for ratio in grid.ratios:
         for slenderness in grid.slendernesses:
             scenes = {start: free_scene(slenderness, ratio, start) for start in grid.starts}
@@ -279,7 +281,7 @@ def grid_cases(grid: Grid, engines: Sequence[str]) -> Iterator[Case]:
 
 
 def experiments_of(engines: Sequence[str]) -> list[tuple[str, str, str, str, tuple[float, ...]]]:
-    """(name, engine, variant, setting, values) of the settings that variants name as worth changing one at a time."""
+    """Return (name, engine, variant, setting, values) of the settings that variants say to change one at a time."""
     return [
         (setting.replace("_", " "), engine, variant, setting, values)
         for engine, variant, kind in variants_of(engines)
@@ -288,7 +290,10 @@ def experiments_of(engines: Sequence[str]) -> list[tuple[str, str, str, str, tup
 
 
 def experiment_cases(grid: Grid, engines: Sequence[str]) -> Iterator[Case]:
-    """One suspected cause at a time; tagged with part, experiment, ratio, slenderness, start and value."""
+    """Yield cases that change one suspected cause.
+
+    They are tagged with part, experiment, ratio, slenderness, start and value.
+    """
 
     def case(name, ratio, start, value, engine, variant, settings, scale=1.0):
         tag = {"ratio": ratio, "slenderness": EXPERIMENT_SLENDERNESS, "start": start, "value": value}
@@ -300,7 +305,8 @@ def experiment_cases(grid: Grid, engines: Sequence[str]) -> Iterator[Case]:
             for start in grid.starts[::2]:
                 for value in values:
                     yield case(name, ratio, start, value, engine, variant, {setting: value})
-    # where the impact is decided with care at one step: starts so close that impacts lie within the longest step
+    # The phase is studied where one fixed step decides the impact. The starts are so close together that all impacts
+    # lie within the longest step.
     for engine, variant, spec in variants_of(engines):
         if spec.kind == "tuned" and spec.accuracy_parameter == "step":
             for start in map(float, np.linspace(0.600, 0.604, grid.phase_starts)):
@@ -311,15 +317,15 @@ def experiment_cases(grid: Grid, engines: Sequence[str]) -> Iterator[Case]:
             yield case("size", CARYATID_BASE, 0.6, scale, engine, get_engine(engine).default_variant, {}, scale)
 
 
-FACTORS = ("slenderness", "ratio", "period", "law", "excitation")  # of blocks on bearings
+FACTORS = ("slenderness", "ratio", "period", "law", "excitation")  # factors of blocks on bearings
 DIGITS = 4
 EXACT = ("level", "value", "ratio", "slenderness", "step", "tag", "last_state")  # not rounded
 
 
 def measure(case: Case, response: Response) -> dict[str, Any]:
-    """What is measured in one run: the errors of its first `IMPACTS` impacts, and when the model's are [s].
+    """Measure one run: the errors of its first `IMPACTS` impacts, and the times [s] of the model's.
 
-    Error "late": time of an impact over the model's, less 1.
+    The error "late" is the time of an impact over the model's, less 1.
     """
     errors = impact_errors(case.scene, response, IMPACTS)
     reference = simulate(case.scene, history=False)
@@ -336,14 +342,16 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
 
 
 def taken_apart(case: Case, response: Response) -> dict[str, Any]:
-    """The `diagnosis` of the first impact; the run is made once more, for its steps."""
+    """Return the `diagnosis` of the first impact; the run is made once more, for its steps."""
     return diagnosis(case.solver, case.variant, case.scene)
 
 
 def plan(request: Request, grid: Grid | None = None) -> Plan:
-    """The plan of the study; grid: what to cover, in place of FULL or QUICK; quick: impacts apart on rigid ground only.
+    """Plan the study.
 
-    Rows of the part "why": `diagnosis`, or the failure, with the ground.
+    grid: what to cover, in place of FULL or QUICK. A quick study takes impacts apart on rigid ground only.
+
+    Rows of the part "why" hold the `diagnosis` or the failure, and the ground.
     """
     grid = grid or (QUICK if request.quick else FULL)
     cases = [
@@ -359,11 +367,11 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
     phases = {key: members for key, members in experiments.items() if key[2] == "phase"}
     phase_rows, arrays = _phases(phases)
     rows = [
-        *(_row("cell", _named(key, "level", "ratio", "slenderness"), members) for key, members in cells.items()),
+        *(_row("cell", _columns_of(key, "level", "ratio", "slenderness"), members) for key, members in cells.items()),
         *_summaries(cells, request.engines, grid),
         *_on_bearings(runs),
         *(
-            _row("experiment", _named(key, "experiment", "ratio", "value"), members)
+            _row("experiment", _columns_of(key, "experiment", "ratio", "value"), members)
             for key, members in experiments.items()
             if key not in phases
         ),
@@ -372,18 +380,18 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
         *_failures(runs),
     ]
     settings = {"quick": request.quick, **_settings(grid, request.engines)}
-    return Computed(settings, [*map(_short, rows), *map(_why, impacts)], arrays)
+    return Computed(settings, [*map(_rounded, rows), *map(_impact_row, impacts)], arrays)
 
 
-def _why(run):
-    """The row of an impact that was taken apart."""
+def _impact_row(run):
+    """Row of an impact that was taken apart."""
     values = {} if run.failed else run.values
     identity = {"part": "why", "engine": run.case.solver, "variant": run.case.variant}
     return {**identity, **run.case.tag, "failure": run.failure, **values}
 
 
 def _grouped(runs, part, *tags):
-    """{(engine, variant, tags ...): runs} of a part."""
+    """Return {(engine, variant, tags ...): runs} of a part."""
     groups: dict[tuple, list] = {}
     for run in runs:
         if run.case.tag["part"] == part:
@@ -392,7 +400,7 @@ def _grouped(runs, part, *tags):
     return groups
 
 
-def _named(key, *tags):
+def _columns_of(key, *tags):
     return dict(zip(("engine", "variant", *tags), key, strict=True))
 
 
@@ -410,7 +418,8 @@ def _settings(grid, engines):
         "variants": [variant_settings(engine, variant) for engine, variant, _ in variants_of(engines)],
         "default_variants": {engine: get_engine(engine).default_variant for engine in engines},
         "experiments": [
-            _named(experiment[1:4], "setting") | {"experiment": experiment[0]} for experiment in experiments_of(engines)
+            _columns_of(experiment[1:4], "setting") | {"experiment": experiment[0]}
+            for experiment in experiments_of(engines)
         ],
         "experiment_slenderness": EXPERIMENT_SLENDERNESS,
         "why": {"slenderness": EXPERIMENT_SLENDERNESS, "start": IMPACT_START, "least": LEAST, "causes": CAUSES},
@@ -437,12 +446,13 @@ def _sound(runs):
 
 
 def _errors(runs, name):
-    """Errors of all impacts of some runs, those that are known."""
+    """Array of the known errors of all impacts of some runs."""
     errors = np.array([error for run in runs for error in run.values["errors"].get(name, ())], dtype=float)
     return errors[np.isfinite(errors)]
 
 
 def _row(part, key, runs):
+    """Row of errors, counts and costs of some runs; key: the columns that say which runs."""
     sound = _sound(runs)
     simulated = sum(run.values["end"] for run in sound)
 
@@ -476,9 +486,9 @@ def _row(part, key, runs):
 
 
 def _summaries(cells, engines, grid):
-    """All cells of a variant together, on rigid ground and on bases: at its default, and at each of its levels.
+    """Rows of all cells of a variant together, by ground: at its default level, and at each of its levels.
 
-    A row "order" holds the slope of log error over log accuracy parameter along the levels.
+    A row of the part "order" holds the slope of log error over log accuracy parameter along the levels.
     """
     for engine, variant, kind in variants_of(engines):
         for ground in GROUNDS:
@@ -505,14 +515,14 @@ def _summaries(cells, engines, grid):
 
 
 def _on_bearings(runs):
-    """Errors by states of blocks on bearings: of a variant all together, and apart for each value of each factor."""
+    """Rows of errors by states on bearings: one of all runs of a variant, and one for each value of each factor."""
     for (engine, variant), members in _grouped(runs, "bearings").items():
-        parted = {("all", None): members}
+        groups = {("all", None): members}
         for factor in FACTORS:
             for run in members:
-                parted.setdefault((factor, run.case.tag[factor]), []).append(run)
-        for (factor, value), alike in parted.items():
-            row = _row("bearings", {"engine": engine, "variant": variant, "factor": factor, "of": value}, alike)
+                groups.setdefault((factor, run.case.tag[factor]), []).append(run)
+        for (factor, value), group_runs in groups.items():
+            row = _row("bearings", {"engine": engine, "variant": variant, "factor": factor, "of": value}, group_runs)
             yield {key: row[key] for key in BEARING_COLUMNS}
 
 
@@ -523,7 +533,9 @@ BEARING_COLUMNS = (
 
 
 def _phases(groups):
-    """Error of the first impact against where in the step the model's impact falls, by engine, variant and step.
+    """Rows and arrays of the error of the first impact over where in the step the model's impact falls.
+
+    There is one row for each engine, variant and step.
 
     `explained`: share of the error's variance that a sawtooth of that phase explains; `least`, `most`: its ends,
     error over step [1/s].
@@ -531,7 +543,7 @@ def _phases(groups):
     rows, arrays = [], {}
     for (engine, variant, _, _, step), runs in groups.items():
         sound = [run for run in _sound(runs) if run.values["errors"].get("swing")]
-        if len(sound) < 3:  # nothing to fit; the failures have rows of their own
+        if len(sound) < 3:  # too few to fit; failures have rows of their own
             continue
         phase = np.array([run.values["model"][0] / step % 1.0 for run in sound])
         error = np.array([run.values["errors"]["swing"][0] for run in sound], dtype=float)
@@ -562,7 +574,7 @@ def _phases(groups):
 
 
 def _flight_damping(cells):
-    """Damping in flight as the cause of a variant's error on rigid ground: predicted beside measured."""
+    """Rows of damping in flight as the cause of a variant's error on rigid ground: predicted beside measured."""
     for (engine, variant, level, ratio, gamma), runs in cells.items():
         kind, sound = get_engine(engine).variants[variant], _sound(runs)
         measured = _errors(sound, "swing")
@@ -582,7 +594,7 @@ def _flight_damping(cells):
 
 
 def damped_error(scene: Scene, damping: float) -> np.ndarray:
-    """Error of restitution by swing energies, shape (impacts,), of a block on rigid ground that is damped in flight.
+    """Error of restitution by swing energies of a block on rigid ground that is damped in flight; shape (impacts,).
 
     J_O phi'' = -m g R sin(gamma - phi) - d phi' [J_O + (m R^3 + I_c) |phi'|], d = damping [1/s]; impacts by eq. (7).
     """
@@ -605,12 +617,12 @@ def damped_error(scene: Scene, damping: float) -> np.ndarray:
         down = solve_ivp(fall, (0, 30), (tilt, 0.0), events=Event(landing), rtol=1e-9, atol=1e-12)
         up = solve_ivp(fall, (0, 30), (1e-12, -e * down.y[1, -1]), events=Event(peak), rtol=1e-9, atol=1e-12)
         tilt = up.y[0, -1]
-    kept = np.array(energies)
-    return np.sqrt(kept[1:] / kept[:-1]) - e
+    energy = np.array(energies)
+    return np.sqrt(energy[1:] / energy[:-1]) - e
 
 
 def friction_needed(scene: Scene) -> float:
-    """Friction that an impact of the model needs: horizontal over vertical impulse on the block.
+    """Return the friction that an impact of the model needs: horizontal over vertical impulse on the block.
 
     Centre of mass: before, velocity (h, -b) |w|, after, (e h, e b) |w|, less the base's jump.
     """
@@ -621,7 +633,7 @@ def friction_needed(scene: Scene) -> float:
 
 
 def _failures(runs: Sequence[Row]) -> Iterator[dict[str, Any]]:
-    """Each distinct reason of failure with its count, one message and where it first happened."""
+    """Rows of each distinct reason of failure, with its count, one message and where it first happened."""
     failed: dict[tuple, list[Row]] = {}
     for run in runs:
         if run.failed:
@@ -629,7 +641,7 @@ def _failures(runs: Sequence[Row]) -> Iterator[dict[str, Any]]:
     for key, (first, *others) in failed.items():
         yield {
             "part": "failure",
-            **_named(key, "reason"),
+            **_columns_of(key, "reason"),
             "count": 1 + len(others),
             "message": first.failure["message"],
             "tag": first.case.tag,
@@ -637,8 +649,8 @@ def _failures(runs: Sequence[Row]) -> Iterator[dict[str, Any]]:
         }
 
 
-def _short(row):
-    """Numbers to `DIGITS` significant digits, but for the coordinates of the grid."""
+def _rounded(row):
+    """Round the numbers of a row to `DIGITS` significant digits, but for the coordinates of the grid."""
     return {
         key: float(f"{value:.{DIGITS}g}")
         if isinstance(value, float) and key not in EXACT and math.isfinite(value)

@@ -1,4 +1,4 @@
-"""What is shown of the study of what changes the outcome."""
+"""The page of the sensitivity study: how often small changes of motion and block change the outcome."""
 
 from ...execution.provenance import Result
 from ...metrics.statistics import wilson
@@ -8,12 +8,12 @@ from ...plotting.parts import Head, Page, grouped, table, where
 from ...schemas.columns import NAME, Column, percent, short
 from .study import COLUMNS
 
-LEAST = 5e-4  # share at which smaller ones are drawn
+LEAST = 5e-4  # share at which smaller shares are drawn
 TICKS = ((LEAST, "0"), (0.01, "1 %"), (0.1, "10 %"), (1.0, "100 %"))
 BOUNDS = (0.01, 0.03, 0.1, 0.2, 0.3)
 
 SCENE, RUNS = COLUMNS["scene"], COLUMNS["runs"].called("runs")
-ROTATED = {"direction turned by 30°": "motion rotated by 30°"}  # changes that rows name otherwise
+ROTATED = {"direction turned by 30°": "motion rotated by 30°"}  # {name of a change in rows: its name on the page}
 WHAT = Column("change or engine", lambda row: ROTATED.get(row["change"], row["change"]) or NAME.of(row))
 SHARE = Column(
     "outcomes changed",
@@ -27,6 +27,7 @@ FASTER = COLUMNS["faster"]
 
 
 def page(result: Result) -> Page:
+    """Return the page of a result."""
     ranked = {scene: _ranked(where(result.rows, part="change", scene=scene)) for scene in result.settings["scenes"]}
     defaults, vertical = result.settings["default_variants"], where(result.rows, part="vertical")
     shown = [
@@ -74,7 +75,7 @@ def page(result: Result) -> Page:
 
 
 def _details(vertical, tables):
-    """What stands on the study's own page alone."""
+    """Parts that only the study's own page shows."""
     return (
         *tables[1:],
         Head("Vertical motion"),
@@ -89,7 +90,7 @@ def _details(vertical, tables):
             panel="scene",
         ),
         table(
-            "Vertical motion: outcomes changed, and runs in which N reaches zero, where the model ends",
+            "Vertical motion: outcomes changed, and runs in which N reaches zero; the model ends there",
             vertical,
             SCENE,
             RATIO,
@@ -102,24 +103,26 @@ def _details(vertical, tables):
 
 
 def _ranked(rows):
+    """Rows in order of the share of outcomes changed, largest first."""
     return sorted(rows, key=lambda row: (-(SHARE.of(row) or 0), not row["runs"], WHAT.of(row)))
 
 
-def _most(rows):
+def _largest_share(rows):
+    """Row with the largest share of outcomes changed; None without rows."""
     return max(rows, key=lambda row: SHARE.of(row) or 0, default=None)
 
 
 def _title(shown):
-    """What alters most in the first scene, and the engine that alters most in any."""
-    first = _most(grouped(where(shown, engine=REFERENCE), "scene")[shown[0]["scene"],])
+    """Title of the page: what alters most outcomes in the first scene, and the engine that alters most in any."""
+    first = _largest_share(grouped(where(shown, engine=REFERENCE), "scene")[shown[0]["scene"],])
     title = f"What matters more than the engine: {WHAT.of(first)} changes {percent(SHARE.of(first))} of outcomes"
-    if most := _most([row for row in shown if row["engine"] != REFERENCE and row["runs"]]):
+    if most := _largest_share([row for row in shown if row["engine"] != REFERENCE and row["runs"]]):
         title += f", a main variant at most {percent(SHARE.of(most))} (95 % upper bound {percent(most['high'])})"
     return title
 
 
 def _against_engines(scene, shown):
-    """How many changes are certain to alter more outcomes than the engine of the widest interval."""
+    """Sentence on how many changes certainly alter more outcomes than the engine whose interval ends highest."""
     changes = where(shown, engine=REFERENCE)
     engines = [row for row in shown if row["engine"] != REFERENCE and row["runs"]]
     if not engines:
@@ -146,5 +149,5 @@ def _how(settings):
         f"{best} motions in their main variant, {others} in others, whose peak is at least {settings['lifting']:g} "
         "g tan γ" + (f"; where none changes, the 95 % upper bounds are {' and '.join(unseen)}." if unseen else "."),
         "The vertical motion is that of another seed. Bearings are vertically rigid in the model; real ones vibrate at "
-        "10 to 20 Hz, so that twice the usual vertical motion is run, too.",
+        "10 to 20 Hz, so twice the usual vertical motion is run too.",
     )

@@ -1,7 +1,7 @@
-"""The study of what changes the outcome: motions near the boundary of overturning, each changed in every way.
+"""The study of what changes the outcome: motions near the boundary of overturning, each changed.
 
-The factors of the motions lie about the one at which half of them overturn the block: how often a change changes the
-outcome depends on how near the boundary the motions are, and this is said with the answer.
+The factors of the motions lie about the one at which half of them overturn the block. How often a change changes the
+outcome depends on how near the boundary the motions are, so the answer states it.
 """
 
 import math
@@ -24,7 +24,7 @@ from ...metrics.statistics import confusion, mcnemar, wilson
 from ...schemas.columns import declared, number_of, whole_of, word_of
 from ..rows import SHARED
 
-# What its rows have; see `comparisons.studies.rows`.
+# The columns of its rows, and by part which of them a row has; see `comparisons.studies.rows`.
 COLUMNS = SHARED | declared(
     word_of("change", "change", "how the scene was changed; null: an engine in place of the model"),
     whole_of("outcomes_changed", "outcomes changed", "runs with another outcome than before the change"),
@@ -49,8 +49,8 @@ PARTS = {
     "vertical": f"scene faster ratio lifts_off {CHANGED}",
 }
 
-ARIAS = 0.95  # of the intensity, after which a tail is cut off
-# name, quantity, relative change
+ARIAS = 0.95  # share of the intensity after which the motion is cut off
+# (name, quantity, relative change)
 BLOCK = (
     ("slenderness ±1 %", "slenderness", 0.01),
     ("size ±1 %", "radius", 0.01),
@@ -66,9 +66,9 @@ BEARINGS = (
 
 
 def changes(scene: Scene, seed: int) -> Iterator[tuple[str, Scene]]:
-    """(name, changed scene) of all changes that the scene has room for; both signs have one name.
+    """Yield (name, changed scene) for all changes that the scene has room for; both signs of a change have one name.
 
-    scene : with a sampled motion, made of the synthetic one of this seed times a factor.
+    scene: its motion is sampled, the synthetic one of this seed times a factor.
     """
     motion = scene.motion
     samples, dt = motion.samples, motion.dt
@@ -78,7 +78,7 @@ def changes(scene: Scene, seed: int) -> Iterator[tuple[str, Scene]]:
 
     for ratio in (USUAL_RATIO, 2 * USUAL_RATIO):
         yield f"vertical motion, V/H {ratio:.2f}", scene.with_(motion=with_vertical(motion, seed, ratio))
-    # the plane in which the block rocks, turned against two horizontal components of one peak
+    # the plane in which the block rocks is turned against two horizontal components of equal peak
     other = synthetic_motion(seed=seed + OTHERS)
     other = other.scaled(motion.peak / other.peak)
     turned = math.cos(math.pi / 6) * samples + math.sin(math.pi / 6) * other.samples
@@ -88,9 +88,9 @@ def changes(scene: Scene, seed: int) -> Iterator[tuple[str, Scene]]:
     intensity = np.cumsum(samples**2)
     kept = int(np.searchsorted(intensity, ARIAS * intensity[-1])) + 1
     yield "cut off at 95 % intensity", shaken(samples[:kept])
-    for shift in (-1e-3 * motion.peak, 1e-3 * motion.peak):  # as a baseline corrected otherwise
+    for shift in (-1e-3 * motion.peak, 1e-3 * motion.peak):  # as if the baseline was corrected in another way
         yield "baseline off 0.1 % of peak", shaken(samples + shift)
-    # every fourth sample, as many catalogues have it
+    # every fourth sample, as in many catalogues
     yield "record's time step 0.02 s", scene.with_(motion=SampledMotion(4 * dt, samples[::4], motion.label))
     for name, key, share in BLOCK:
         value = RockingModel.of(scene).restitution if key == "restitution" else getattr(scene.block, key)
@@ -102,7 +102,7 @@ def changes(scene: Scene, seed: int) -> Iterator[tuple[str, Scene]]:
 
 
 def _bearings(scene):
-    """Other values of the bearings, and other laws of the same two stiffnesses and characteristic strength."""
+    """Yield other values of the bearings, and other laws of the same two stiffnesses and characteristic strength."""
     bearings = scene.bearings
     for name, key in BEARINGS:
         for factor in (0.9, 1.1):
@@ -113,10 +113,10 @@ def _bearings(scene):
 
 
 SPREAD = 0.4  # standard deviation of the logarithm of the motions' factors
-TRIED = np.geomspace(0.1, 4.0, 40)  # factors among which the one is found that overturns half
-# name: (shipped scene, slendernesses [rad])
+TRIED = np.geomspace(0.1, 4.0, 40)  # factors among which the one that overturns half is searched for
+# {name: (shipped scene, slendernesses [rad])}
 SCENES = {"free-standing": ("caryatid-rigid", (0.15, 0.2, 0.28)), "isolated": ("caryatid-isolated", (0.12, 0.15, 0.18))}
-# motions for the changes, for the engines' main variants, for others (engines run the middle slenderness)
+# numbers of motions for the changes, for main variants, and for other variants (engines run the middle slenderness)
 FULL, QUICK = (300, 60, 12), (16, 2, 1)
 LIFTING = 1.3  # least peak over g tan γ of the engines' motions: a stiff corner that hardly lifts takes minutes
 TIME_LIMIT = 60.0  # s, of an engine's run
@@ -125,7 +125,7 @@ FASTER = (1, 2, 4)  # how many times as fast as the horizontal motion: vertical 
 
 
 def measure(case: Case, response: Response) -> dict[str, Any]:
-    """What is kept of a run."""
+    """Return what is kept of a run."""
     return {
         "overturns": response.outcome == "overturns",
         "tilt": response.peak_tilt_ratio,
@@ -135,9 +135,10 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
 
 
 def plan(request: Request, scenes: dict[str, Any] | None = None, motions: tuple[int, int, int] | None = None) -> Plan:
-    """The plan of the study; an answer with one scene more each time.
+    """Plan the study; it gives an answer after each scene.
 
-    Rows by "part", outcomes over all motions and slendernesses, `low` and `high` the 95 % interval of their share:
+    Rows by "part" count outcomes over all motions and slendernesses; `low` and `high` bound the 95 % interval of the
+    share:
 
     - "change": one for each change of the scene in the analytic model (`variant` "") and for each engine and variant
       (`change` None). outcomes_changed, and to_overturning among them; p_value: McNemar's; tilt, displacement: median
@@ -157,12 +158,12 @@ def plan(request: Request, scenes: dict[str, Any] | None = None, motions: tuple[
     for name, (shipped, slendernesses) in scenes.items():
         usual = load_scene(shipped).with_(motion=None, duration=None)
         steep = [usual.with_(block={"slenderness": slenderness}) for slenderness in slendernesses]
-        halves = [_half(name, scene, min(count, 50)) for scene in steep]
+        halves = [_half_factor(name, scene, min(count, 50)) for scene in steep]
         bases = [_ensemble(scene, half, count) for scene, half in zip(steep, halves, strict=True)]
-        changed = yield Batch(_changed(bases), measure, f"{name}: changes")
-        run = yield Batch(_by_engines(bases, request.engines, counts), measure, f"{name}: engines", TIME_LIMIT)
-        raised = yield Batch(_raised(bases, max(count // 3, 1)), measure, f"{name}: vertical motions")
-        scene_rows = [*_change_rows(changed, run), *_vertical_rows(_as_it_is(changed), raised)]
+        changed = yield Batch(_changed_cases(bases), measure, f"{name}: changes")
+        run = yield Batch(_engine_cases(bases, request.engines, counts), measure, f"{name}: engines", TIME_LIMIT)
+        raised = yield Batch(_vertical_cases(bases, max(count // 3, 1)), measure, f"{name}: vertical motions")
+        scene_rows = [*_change_rows(changed, run), *_vertical_rows(_unchanged_runs(changed), raised)]
         rows += [{"scene": name, **row} for row in scene_rows]
         described[name] = {
             "scene": shipped,
@@ -185,8 +186,8 @@ def plan(request: Request, scenes: dict[str, Any] | None = None, motions: tuple[
     return answer
 
 
-def _half(name, scene, count):
-    """The factor at which half of the motions overturn a block."""
+def _half_factor(name, scene, count):
+    """Find the factor at which half of the motions overturn a block."""
     log(f"{name}: slenderness {scene.block.slenderness:g}, the factor that overturns half")
     scenes = [scene.with_(motion=synthetic_motion(seed=seed)) for seed in range(count) for _ in TRIED]
     runs = simulate_many(scenes, scales=np.tile(TRIED, count))
@@ -198,7 +199,10 @@ def _half(name, scene, count):
 
 
 def _ensemble(scene, half, count):
-    """The scene under every motion, with factors lognormal about the half one, evenly spread and in no order."""
+    """Return the scene under every motion.
+
+    The factors are lognormal about `half`, evenly spread and in no order.
+    """
     spread = norm.ppf((np.random.Generator(np.random.PCG64(7)).permutation(count) + 0.5) / count)
     return [
         scene.with_(motion=synthetic_motion(seed=seed).scaled(float(half * np.exp(SPREAD * spread[seed]))))
@@ -210,8 +214,11 @@ def _case(scene, engine="analytic", variant=None, **tag):
     return Case(scene, engine, variant, {"history": False}, tag)
 
 
-def _changed(bases):
-    """Every scene as it is (change None) and changed in every way, in the model; bases: an ensemble per slenderness."""
+def _changed_cases(bases):
+    """Cases of every scene as it is (change None) and changed in every way, in the model.
+
+    bases: an ensemble for each slenderness.
+    """
     return [
         _case(scene, change=change, seed=seed, place=place)
         for place, ensemble in enumerate(bases)
@@ -220,8 +227,11 @@ def _changed(bases):
     ]
 
 
-def _by_engines(bases, engines, counts):
-    """The first scenes of the middle ensemble that lift, in every (engine, variant); most in an engine's default."""
+def _engine_cases(bases, engines, counts):
+    """Cases of the first scenes of the middle ensemble that lift, in every (engine, variant).
+
+    An engine's main variant runs more of them than the others.
+    """
     place = len(bases) // 2
     lifting = [
         (seed, base)
@@ -236,8 +246,8 @@ def _by_engines(bases, engines, counts):
     ]
 
 
-def _raised(bases, count):
-    """The first `count` scenes of every ensemble under every vertical motion, in the analytic model."""
+def _vertical_cases(bases, count):
+    """Cases of the first `count` scenes of every ensemble under every vertical motion, in the analytic model."""
     return [
         _case(
             base.with_(motion=with_vertical(base.motion, seed, ratio, faster)),
@@ -253,8 +263,8 @@ def _raised(bases, count):
     ]
 
 
-def _as_it_is(changed):
-    """{(place, seed): values} of the model's runs of the scenes as they are."""
+def _unchanged_runs(changed):
+    """Return {(place, seed): values} of the model's runs of the unchanged scenes."""
     return {_motion(row): row.values for row in changed if row.case.tag["change"] is None and not row.failed}
 
 
@@ -263,7 +273,7 @@ def _motion(row):
 
 
 def _paired(usual, results, key):
-    """{key of a run: its pairs (values of the scene as it is, values), None where a run failed}."""
+    """Return {key of a run: list of pairs (values of the unchanged scene, values)}; None for a run that failed."""
     groups = {}
     for row in results:
         sound = not row.failed and _motion(row) in usual
@@ -272,17 +282,17 @@ def _paired(usual, results, key):
 
 
 def _outcomes(pairs):
-    """The table of outcomes before and after, and what rows say of it."""
+    """Return the table of outcomes before and after, and the columns on it."""
     table = confusion(*([values["overturns"] for values in side] for side in zip(*pairs, strict=True)))
     low, high = wilson(table.discordant, table.size)
     return table, {"runs": table.size, "outcomes_changed": table.discordant, "low": low, "high": high}
 
 
 def _change_rows(changed, run):
-    """A row for every change and every engine's variant, against the model of the scene as it is."""
+    """Yield a row for every change and every engine's variant, against the model of the unchanged scene."""
     results = [*(row for row in changed if row.case.tag["change"] is not None), *run]
     groups = _paired(
-        _as_it_is(changed), results, lambda row: (row.case.solver, row.case.variant, row.case.tag["change"])
+        _unchanged_runs(changed), results, lambda row: (row.case.solver, row.case.variant, row.case.tag["change"])
     )
     for (engine, variant, change), members in groups.items():
         pairs = list(filter(None, members))
@@ -295,18 +305,18 @@ def _change_rows(changed, run):
             continue
         table, outcomes = _outcomes(pairs)
         upright = [(a, b) for a, b in pairs if not a["overturns"] and not b["overturns"]]
-        moved = {peak: _moved(upright, peak) for peak in ("tilt", "displacement")}
+        moved = {peak: _peak_change(upright, peak) for peak in ("tilt", "displacement")}
         yield row | outcomes | {"to_overturning": table.only_b, "p_value": mcnemar(table), **moved}
 
 
-def _moved(pairs, peak):
-    """Median relative change of a peak, where there is one."""
+def _peak_change(pairs, peak):
+    """Median relative change of a peak; None without one."""
     moved = [abs(b[peak] / a[peak] - 1) for a, b in pairs if a[peak] > 0]
     return float(np.median(moved)) if moved else None
 
 
 def _vertical_rows(usual, raised):
-    """A row without vertical motion, then one for every (faster, ratio)."""
+    """Yield a row without vertical motion, then one for every (faster, ratio)."""
     groups = _paired(usual, raised, lambda row: (row.case.tag["faster"], row.case.tag["ratio"]))
     sound = {key: list(filter(None, members)) for key, members in groups.items()}
     without = [(before, before) for before, _ in next(filter(None, sound.values()), [])]

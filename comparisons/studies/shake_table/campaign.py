@@ -1,20 +1,20 @@
-"""A campaign of shake-table tests: specimens, and tests with the motion of the table and what overturned.
+"""A campaign of shake-table tests: specimens, motions of the table, and what overturned.
 
     campaign = read_campaign("folder")
 
-Of two layouts. That of the tests of two granite boulders, as their authors publish them, or the checkout of their
-repository: "Virtual Shake Robot: Simulating Dynamics of Precariously Balanced Rocks for Overturning and
-Large-displacement Processes", Seismica 3(1), 2024. Nothing of the data is here: their licence is another (GPL-3.0).
-What is here describes the two boulders, by the authors' meshes.
+A folder has one of two layouts. The first is that of the tests of two granite boulders, as their authors publish them,
+or the checkout of their repository: "Virtual Shake Robot: Simulating Dynamics of Precariously Balanced Rocks for
+Overturning and Large-displacement Processes", Seismica 3(1), 2024. None of the data is here: they have another licence
+(GPL-3.0). What is here describes the two boulders, by the authors' meshes.
 
-Or one's own: a scene file ``scene.toml`` of the block, and ``tests.csv`` with a line for each test, its
-columns ``motion`` (a record file in the folder), ``overturned`` (1 or 0) and, if there are any, ``units`` (of a file
-that states none), ``name`` and ``record``: tests under one record at several scales say the same there, and count as
-one where intervals are told. Its motions are taken as they are. The scene has no motion, start, duration or restitution
-of its own.
+The second is for one's own tests: a scene file ``scene.toml`` of the block, and ``tests.csv`` with a line for each
+test. Its columns are ``motion`` (a record file in the folder), ``overturned`` (1 or 0) and, if needed, ``units`` (of a
+file that states none), ``name`` and ``record``. Tests under one record at several scales have the same ``record``, and
+count as one in intervals. Motions are taken as they are. The scene has no motion, start, duration or restitution of its
+own.
 
-All that is computed of a campaign later is asked of it here, before anything is run: two records or more, as each is
-held out in turn, five tests or more, and motions that have a PGA and a PGV.
+What later computations need is checked here, before anything is run: two records or more, as each is held out in turn,
+five tests or more, and motions that have a PGA and a PGV.
 """
 
 import csv
@@ -36,15 +36,18 @@ from analytic.records import UNITS, read_record
 
 from ...ensembles import peak_velocity
 
-GRID = 61  # slendernesses of a grid
-ALL = "all"  # specimens together
-FEWEST = 5  # tests of a sum that is disclosed, see `disclosed`
+GRID = 61  # number of slendernesses in a grid
+ALL = "all"  # all specimens together
+FEWEST = 5  # least number of tests in a sum that is disclosed, see `disclosed`
 
 
 @dataclass(frozen=True, eq=False)
 class Specimen:
-    """A block that was tested. scene: it and its support; the slenderness there is that of a drawing, or stands in
-    place of one. span: slendernesses [rad] among which the fitted one is sought. note: what else is known of it."""
+    """A block that was tested.
+
+    scene: the block and its support; its slenderness is that of a drawing, or stands in place of one. span:
+    slendernesses [rad] among which the fitted one is searched for. note: what else is known of it.
+    """
 
     name: str
     scene: Scene
@@ -52,15 +55,18 @@ class Specimen:
     note: str = ""
 
     def slendernesses(self) -> np.ndarray:
-        """Those of the grid [rad], from `GRID` one to the next."""
+        """Return the `GRID` slendernesses of the grid [rad], evenly spaced."""
         return np.linspace(*self.span, GRID)
 
 
 @dataclass(frozen=True, eq=False)
 class TableTest:
-    """A test. record: what the table played, at any scale. overturned: by specimen; None: not tested. authors: what a
-    simulation of others said, {specimen: {its setting: overturned}}. motion: of the table as measured; None: there is
-    none, and nothing can be run."""
+    """One test.
+
+    record: what the table played, at any scale. overturned: by specimen; None: not tested. authors: outcomes of the
+    authors' simulations by specimen, {setting: overturned}. motion: that of the table as measured; None: there is none,
+    and nothing can be run.
+    """
 
     name: str
     record: str
@@ -72,8 +78,11 @@ class TableTest:
 
 @dataclass(frozen=True, eq=False)
 class Campaign:
-    """name: as pages call it. cite: how to cite it, and where it is to be had. missing: tests without a motion.
-    published: sampling of the files as published [Hz], 0 where there is no other."""
+    """Specimens and tests of a campaign.
+
+    name: as on pages. cite: how to cite it, and where it is available. missing: tests without a motion. published:
+    sampling rate of the files as published [Hz]; 0: they are as published.
+    """
 
     name: str
     specimens: tuple[Specimen, ...]
@@ -83,7 +92,7 @@ class Campaign:
     published: float = 0
 
     def digest(self) -> str:
-        """Of names, motions and outcomes: whether another has the same at hand."""
+        """Return a digest of names, motions and outcomes: it tells whether another copy is the same."""
         content = hashlib.sha256()
         for test in self.tests:
             content.update(repr((test.name, test.record, test.overturned)).encode())
@@ -92,7 +101,7 @@ class Campaign:
 
 
 def flag(file: str | PathLike[str], number: int, column: str, row: dict) -> bool:
-    """What a list of tests says of an outcome: 1 or 0.
+    """Read an outcome in a list of tests: 1 or 0.
 
     Raises
     ------
@@ -106,34 +115,37 @@ def flag(file: str | PathLike[str], number: int, column: str, row: dict) -> bool
 
 
 def disclosed(sums: dict[str, Any], *sizes: int) -> dict[str, Any]:
-    """The one rule of what is stored or shown of a campaign, whose data may not be passed on: sums over at least
-    `FEWEST` tests.
+    """Return `sums` if they may be stored or shown, else {name: None}.
 
-    Where one of the `sizes` is smaller, and not 0, all of `sums` are None. sizes: tests of the sums, and of what
-    follows from them by a difference of two.
+    The data of a campaign may not be passed on. The one rule is that sums over at least `FEWEST` tests are disclosed:
+    where one of the `sizes` is smaller, and not 0, all of `sums` are None. sizes: numbers of tests in the sums, and in
+    what follows from them as a difference of two.
     """
     return dict.fromkeys(sums) if any(0 < size < FEWEST for size in sizes) else sums
 
 
 def thinned(tests: Sequence[TableTest], every: int) -> Sequence[TableTest]:
-    """The first of so many tests, of fewer where those were under one record or fewer than `FEWEST`."""
+    """Return one in `every` tests, from the first.
+
+    More tests are returned if those were under one record or fewer than `FEWEST`.
+    """
     while every > 1 and (len(tests[::every]) < FEWEST or len({test.record for test in tests[::every]}) < 2):
         every -= 1
     return tests[::every]
 
 
 def outcomes_of(tests: Sequence[TableTest], specimen: int) -> np.ndarray:
-    """What overturned, bool, shape (tests,)."""
+    """Return what overturned, bool, shape (tests,)."""
     return np.array([bool(test.overturned[specimen]) for test in tests])
 
 
-CORNER = 0.2  # Hz, below which a measured acceleration is drift
+CORNER = 0.2  # Hz; below it a measured acceleration is drift
 TABLE = "PGV of the table"
-PADDED = 9  # samples by which the filter extends a motion at either end: it has to be longer
+PADDED = 9  # samples by which the filter extends a motion at either end; the motion has to be longer
 
 
 def unfit(motion: SampledMotion) -> str | None:
-    """Why a motion has no PGA or PGV whose logarithm can be taken, and the remedy; None: it has both."""
+    """Return why a motion has no PGA or PGV whose logarithm can be taken, and the remedy; None: it has both."""
     if (count := len(motion.samples)) <= PADDED:
         return f"holds {count} samples, PGV needs {PADDED + 1} or more; give the whole record, or remove the test"
     if not motion.dt < 0.5 / CORNER:
@@ -147,8 +159,11 @@ def unfit(motion: SampledMotion) -> str | None:
 
 
 def measures_of(campaign: Campaign) -> dict[str, np.ndarray]:
-    """Of each test PGA [g] and PGV [m/s]: as the campaign states them of what the table was to play, and PGV of what
-    was measured beside it; without such a statement both as measured."""
+    """Return PGA [g] and PGV [m/s] of each test, arrays of shape (tests,).
+
+    They are what the campaign states for the motion sent to the table, with the PGV of the measured motion beside them.
+    If nothing is stated, both are those of the measured motion.
+    """
     tests, gravity = campaign.tests, campaign.specimens[0].scene.gravity
     table = np.array([_peak_velocity(test.motion) for test in tests])
     if not all({"peak", "ratio"} <= test.stated.keys() for test in tests):
@@ -158,7 +173,7 @@ def measures_of(campaign: Campaign) -> dict[str, np.ndarray]:
 
 
 def _peak_velocity(motion):
-    """Peak velocity [m/s] of a measured acceleration, whose integral would gather its drift."""
+    """Peak velocity [m/s] of a measured acceleration, without the drift that its integral would gather."""
     steady = motion.samples - motion.samples.mean()
     high = butter(2, CORNER, "highpass", fs=1 / motion.dt, output="sos")
     return peak_velocity(SampledMotion(motion.dt, sosfiltfilt(high, steady, padlen=PADDED), motion.label))
@@ -177,7 +192,7 @@ MEASURED = "Experimental Results for response-Specimen {}"
 STATED = {"PGV/PGA": "ratio", "Scaled PGA (g)": "peak"}
 COLUMN = 2  # of a motion file: Plot 0, the acceleration of the table along the motion [g]
 PUBLISHED = 800.0  # Hz
-SECONDS = 1.0  # s at the beginning, where the table is at rest: what its accelerometer says then is its offset
+SECONDS = 1.0  # s at the beginning, in which the table is at rest: its accelerometer then shows its offset
 
 # From the meshes, by the density 2700 kg/m3: mass [kg], height of the centre of mass over the lowest point [m]. The
 # smallest angle [deg] between the vertical and the line from the nearest edge of the footprint to the centre of mass,
@@ -185,14 +200,14 @@ SECONDS = 1.0  # s at the beginning, where the table is at rest: what its accele
 DENSITY = 2700.0
 BOULDERS = {"boulder 1": (331.0, 0.294, (5.8, 10.1, 12.9)), "boulder 2": (335.0, 0.292, (8.5, 11.1, 13.8))}
 # m5: moment of inertia about the centre of mass over the density. The meshes have about .0074 and .0064 about their two
-# horizontal axes, both boulders alike. Which of them the boulders rocked about is not said: their mean.
+# horizontal axes, both boulders alike. It is not said about which they rocked, so this is the mean.
 INERTIA = 0.0069
-SPAN = (2.0, 14.0)  # deg: beyond what the meshes say on either side
-UPRIGHT = np.radians(10.0)  # stands in the scene until a slenderness is fitted: no drawing says it
+SPAN = (2.0, 14.0)  # deg: wider on either side than the angles of the meshes
+UPRIGHT = np.radians(10.0)  # in the scene until a slenderness is fitted: no drawing gives it
 
 
 def specimens() -> tuple[Specimen, ...]:
-    """The two boulders as planar blocks."""
+    """Return the two boulders as planar blocks."""
     blocks = []
     for name, (mass, height, footprints) in BOULDERS.items():
         radius = float(height / np.cos(UPRIGHT))
@@ -207,18 +222,18 @@ def specimens() -> tuple[Specimen, ...]:
     return tuple(blocks)
 
 
-def _place_in(folder: Path) -> Path | None:
-    """Where the published files are in a folder or in a checkout of the repository; None: not there."""
+def _published_folder(folder: Path) -> Path | None:
+    """Find the published files in a folder or in a checkout of the repository; None: they are not there."""
     return next((place for place in (folder, folder / BELOW) if (place / RESULTS).is_file()), None)
 
 
 def _read_published(place: Path, every: int, progress: Callable[[int, int], None]) -> Campaign:
-    """The published campaign in a folder; see `read_campaign`."""
-    results = _table(place / RESULTS, NUMBER, SHEET)
-    records = {row["Test No."]: (at, row) for at, row in _table(place / RECORDS, "Test No.")}
+    """Read the published campaign in a folder; see `read_campaign`."""
+    results = _read_table(place / RESULTS, NUMBER, SHEET)
+    records = {row["Test No."]: (at, row) for at, row in _read_table(place / RECORDS, "Test No.")}
     names = list(BOULDERS)
-    authors = [_settings(results, number) for number in range(1, len(names) + 1)]
-    files, known, missing = {}, [], []
+    authors = [_author_settings(results, number) for number in range(1, len(names) + 1)]
+    files, with_motion, missing = {}, [], []
     for at, row in results:
         number = row[NUMBER]
         if type(number) is not int or number not in records:
@@ -236,12 +251,12 @@ def _read_published(place: Path, every: int, progress: Callable[[int, int], None
                 f"{place / RECORDS}, row {line}, {zero} = {record[zero]!r}: not above 0; fetch the file again"
             )
         test = TableTest(str(number), record_of(record[RECORD]), measured, None, authors_answers, stated)
-        if (file := _file(place, number)) is None:
+        if (file := _motion_file(place, number)) is None:
             missing.append(test)
         else:
             files[test.name] = file
-            known.append(test)
-    chosen, tests = thinned(known, every), []
+            with_motion.append(test)
+    chosen, tests = thinned(with_motion, every), []
     for count, test in enumerate(chosen, 1):
         tests.append(replace(test, motion=motion_of(files[test.name])))
         progress(count, len(chosen))
@@ -250,7 +265,10 @@ def _read_published(place: Path, every: int, progress: Callable[[int, int], None
 
 
 def motion_of(file: Path) -> SampledMotion:
-    """The table's acceleration [m/s2] at the sampling of the file, less its offset: the median of the first second."""
+    """Return the table's acceleration [m/s2] at the sampling of the file, less its offset.
+
+    The offset is the median of the first second.
+    """
     try:
         motion = read_record(file, "g", column=COLUMN)
     except SceneError as error:
@@ -263,26 +281,27 @@ def motion_of(file: Path) -> SampledMotion:
 
 
 def record_of(written: Any) -> str:
-    """A record's name without the marks about it: both components of a station's record are one record."""
+    """Return a record's name without the marks about it: both components of a station's record are one record."""
     words = re.sub(r"x?\.xlsx$|\.AT2$", "", str(written).strip(" '\""), flags=re.I)
     number = re.match(r"RSN(\d+)", words, re.I)
     return f"RSN{number[1]}" if number else words
 
 
-def _file(place, number):
+def _motion_file(place, number):
+    """Find the motion file of a test; None: there is none."""
     names = (f"Test{number:03d}.txt", f"Test{number:03d}.txt.gz")
     return next((place / name for name in names if (place / name).is_file()), None)
 
 
-def _settings(results: Sequence[tuple[int, dict]], specimen: int) -> dict[str, str]:
-    """{setting of the authors' discrete elements: title of its column}."""
+def _author_settings(results: Sequence[tuple[int, dict]], specimen: int) -> dict[str, str]:
+    """Return {setting of the authors' discrete elements: title of its column}."""
     pattern = re.compile(rf"Specimen {specimen}-Numerical (.+)")
     return {match[1]: title for title in results[0][1] if (match := pattern.fullmatch(title))} if results else {}
 
 
-def _table(path: Path, first: str, sheet: str | None = None) -> list[tuple[int, dict]]:
-    """(number of the row, {title: value}) of a sheet whose titles begin with a column `first`."""
-    rows = _cells(path, sheet)
+def _read_table(path: Path, first: str, sheet: str | None = None) -> list[tuple[int, dict]]:
+    """Read a sheet with a column `first` as [(number of the row, {title: value})]."""
+    rows = _read_cells(path, sheet)
     at = next((k for k, row in enumerate(rows) if any(_title(cell) == first for cell in row)), None)
     if at is None:
         raise SettingError(f"{path}: no column {first!r}; fetch the file again")
@@ -301,8 +320,8 @@ def _title(cell):
     return str(cell).strip()
 
 
-def _cells(path, sheet):
-    """The rows of a sheet, or of the only one."""
+def _read_cells(path, sheet):
+    """Read the rows of a sheet, or of the only one."""
     try:
         from openpyxl import load_workbook
     except ImportError as error:
@@ -311,8 +330,8 @@ def _cells(path, sheet):
         with path.open("rb") as file:
             book = load_workbook(file, read_only=True, data_only=True)
             if sheet is not None and sheet not in book.sheetnames:
-                known = ", ".join(book.sheetnames)
-                raise SettingError(f"{path}: no sheet {sheet!r}, but {known}; fetch the file again")
+                names = ", ".join(book.sheetnames)
+                raise SettingError(f"{path}: no sheet {sheet!r}, but {names}; fetch the file again")
             return [tuple(row) for row in book[sheet or book.sheetnames[0]].iter_rows(values_only=True)]
     except SettingError:
         raise
@@ -323,15 +342,16 @@ def _cells(path, sheet):
 SCENE, TESTS = "scene.toml", "tests.csv"
 LARGEST = 10_000_000  # bytes of a list of tests
 STEEPEST = 1.5  # rad
-OWN_SPAN = (0.5, 1.5)  # of the slenderness of one's own scene
+OWN_SPAN = (0.5, 1.5)  # over the slenderness of one's own scene
 OWN_COLUMNS = ("motion", "overturned", "name", "record", "units")
 
 
 def read_campaign(
     folder: str | PathLike[str], every: int = 1, progress: Callable[[int, int], None] = lambda done, total: None
 ) -> Campaign:
-    """The campaign in a folder; every: only the first of so many tests that have a motion, or of fewer, see
-    `thinned`.
+    """Read the campaign in a folder.
+
+    every: only one in so many of the tests that have a motion is read; see `thinned`.
 
     Raises
     ------
@@ -344,10 +364,10 @@ def read_campaign(
     place = Path(folder)
     if not place.is_dir():
         raise SettingError(f"--data {folder}: no such folder; give the one that holds the tests")
-    if (published := _place_in(place)) is not None:
+    if (published := _published_folder(place)) is not None:
         campaign, listed = _read_published(published, every, progress), published / RECORDS
     elif (place / TESTS).is_file():
-        campaign, listed = _own(place, every, progress), place / TESTS
+        campaign, listed = _read_own(place, every, progress), place / TESTS
     else:
         raise SettingError(
             f"--data {folder}: holds neither {RESULTS} (as published) nor {TESTS} (your own tests); "
@@ -368,51 +388,52 @@ def read_campaign(
     return campaign
 
 
-def _own(place, every, progress):
-    scene, rows = _scene(place), _rows(place / TESTS)
+def _read_own(place, every, progress):
+    """Read a campaign of one's own tests."""
+    scene, rows = _read_scene(place), _read_tests(place / TESTS)
     tests, rows_of = [], {}
     for count, (number, row) in enumerate(rows, 1):
         name = row.get("name") or str(number - 1)
         record, fell = row.get("record") or name, flag(place / TESTS, number, "overturned", row)
-        motion = _motion(place, number, row, scene)
-        first, known = rows_of.setdefault(motion.digest(), (number, record))
-        if known != record:
+        motion = _read_motion(place, number, row, scene)
+        first, first_record = rows_of.setdefault(motion.digest(), (number, record))
+        if first_record != record:
             raise SettingError(
                 f"{place / TESTS}, row {number}, record = {record!r}: its motion is that of row {first}, under the "
-                f"record {known!r}; tests under one motion tell the same: give both one record"
+                f"record {first_record!r}; tests under one motion tell the same: give both one record"
             )
         tests.append(TableTest(name, record, (fell,), motion))
         progress(count, len(rows))
     names = [test.name for test in tests]
-    if twice := next((name for name in names if names.count(name) > 1), None):
-        raise SettingError(f"{place / TESTS}: two tests are called {twice!r}; give each a name of its own")
-    drawn = scene.block.slenderness
-    span = (OWN_SPAN[0] * drawn, min(OWN_SPAN[1] * drawn, STEEPEST))
-    note = f"slenderness of its scene file: {drawn:.4g} rad"
+    if repeated := next((name for name in names if names.count(name) > 1), None):
+        raise SettingError(f"{place / TESTS}: two tests are called {repeated!r}; give each a name of its own")
+    slenderness = scene.block.slenderness
+    span = (OWN_SPAN[0] * slenderness, min(OWN_SPAN[1] * slenderness, STEEPEST))
+    note = f"slenderness of its scene file: {slenderness:.4g} rad"
     return Campaign(place.resolve().name, (Specimen(scene.name, scene, span, note),), tuple(thinned(tests, every)))
 
 
-def _scene(place):
-    """The block and its support; what a test brings itself, or a solver, is refused."""
+def _read_scene(place):
+    """Read the block and its support; refuse what a test or a solver brings itself."""
     try:
         scene = load_scene(place / SCENE)
     except SceneError as error:
         raise SettingError(f"--data {place}: {error}") from error
     moves = {f"start.{name}": value or None for name, value in scene.start.model_dump().items()}
-    given = {
+    refused = {
         "block.restitution": (scene.block.restitution, "engines that are judged decide it"),
         "motion": (scene.motion and scene.motion.label, "each test has its own"),
         "run.duration": (scene.duration, "a test is run until its outcome is decided"),
         **{name: (value, "a tested block stands at rest before its motion") for name, value in moves.items()},
     }
-    for name, (value, why) in given.items():
+    for name, (value, why) in refused.items():
         if value is not None:
             raise SettingError(f"{place / SCENE}: {name} = {value!r}: {why}; leave it out")
     return scene
 
 
-def _rows(path):
-    """(number of the line, {column: text}) of a list of tests."""
+def _read_tests(path):
+    """Read a list of tests as [(number of the line, {column: text})]."""
     try:
         text = read_plain(path, LARGEST).decode("utf-8-sig")
         lines = list(csv.reader(io.StringIO(text)))
@@ -423,8 +444,8 @@ def _rows(path):
         raise SettingError(f"{path}, row 1: no column {absent[0]!r}; it needs {OWN_COLUMNS[0]} and {OWN_COLUMNS[1]}")
     if unknown := [name for name in head if name not in OWN_COLUMNS]:
         raise SettingError(f"{path}, row 1: column {unknown[0]!r} is none of {', '.join(OWN_COLUMNS)}; remove it")
-    if twice := next((name for name in head if head.count(name) > 1), None):
-        raise SettingError(f"{path}, row 1: two columns are called {twice!r}; remove one")
+    if repeated := next((name for name in head if head.count(name) > 1), None):
+        raise SettingError(f"{path}, row 1: two columns are called {repeated!r}; remove one")
     rows = []
     for number, line in enumerate(lines[1:], 2):
         if not any(word.strip() for word in line):
@@ -435,8 +456,8 @@ def _rows(path):
     return rows
 
 
-def _motion(place, number, row, scene):
-    """The table's motion of a test, as its file has it; the scene can be run with it."""
+def _read_motion(place, number, row, scene):
+    """Read the table's motion of a test as its file has it, and check that the scene can be run with it."""
     where = f"{place / TESTS}, row {number}"
     if row.get("units", "") not in ("", *UNITS):
         raise SettingError(

@@ -1,9 +1,9 @@
-"""What predicts the outcomes of a campaign, and how well: the model, and what is simpler, each judged on tests that it
-was not fitted to.
+"""What predicts the outcomes of a campaign, and how well: the model, and simpler forecasts.
 
-Of the model one number is fitted, the slenderness in the plane of motion, and its spread: a boulder has no drawing, and
-does not stand twice alike. Its probability of overturning is the share of a normal spread of slendernesses at which it
-overturns. Both are those of the least Brier score on the tests they are fitted to. All else of the model is as given.
+Each forecast is judged on tests that it was not fitted to. Of the model the slenderness in the plane of motion and its
+spread are fitted, because a boulder has no drawing and does not stand twice alike. The model's probability of
+overturning is the share of a normal spread of slendernesses at which it overturns. Mean and spread are those of the
+least Brier score on the tests they are fitted to. All else of the model is as given.
 """
 
 from collections.abc import Callable, Sequence
@@ -29,19 +29,19 @@ from ...metrics.statistics import (
 from .campaign import ALL, Campaign, measures_of, outcomes_of
 
 BY_RECORD, BY_HALVES, IN_SAMPLE = "held out by record", "fitted to every other test", "fitted to the same tests"
-SPREADS = np.arange(1, 21) / 60  # of the normal spread, over the width of the grid of slendernesses
+SPREADS = np.arange(1, 21) / 60  # of the normal distribution, over the width of the grid of slendernesses
 MODEL, ONE, BOTH = "model", "model, one slenderness", "model and PGV, logistic"
 PGV, THRESHOLD = "PGV, logistic", "PGV, threshold"
 CURVE, BEYOND = "PGA and PGV, curve", "curve and model"
 FREQUENT, EACH = "the more frequent outcome", "a threshold of PGA for each record"
 OTHER, AUTHORS = "the other specimen", "authors’ discrete elements"
 AS_IT_IS = "as it is"  # the model without a change
-SURE = 1e-3  # nearest to 0 and 1 that a probability is taken where its odds are asked for
+SURE = 1e-3  # least distance of a probability from 0 and 1 where its odds are taken
 
 
 @dataclass(frozen=True, eq=False)
 class Outcomes:
-    """What the model overturns, bool, shape (tests, slendernesses), and what overturned, shape (tests,)."""
+    """Outcomes of the model, bool, shape (tests, slendernesses), and measured ones, bool, shape (tests,)."""
 
     slendernesses: np.ndarray
     model: np.ndarray
@@ -49,13 +49,13 @@ class Outcomes:
 
     @cached_property
     def settings(self) -> np.ndarray:
-        """(mean, spread) [rad] of all spreads that are tried, shape (settings, 2)."""
+        """All (mean, spread) [rad] of normal spreads that are tried, shape (settings, 2)."""
         width = np.ptp(self.slendernesses)
         return np.array([(mean, spread * width) for mean in self.slendernesses for spread in SPREADS])
 
     @cached_property
     def probabilities(self) -> np.ndarray:
-        """Shape (tests, settings)."""
+        """Probabilities of overturning, shape (tests, settings)."""
         mean, spread = self.settings.T
         weights = np.exp(-0.5 * ((self.slendernesses[:, None] - mean) / spread) ** 2)
         return self.model @ (weights / weights.sum(axis=0))
@@ -65,26 +65,29 @@ class Outcomes:
         return brier(self.probabilities, self.measured[:, None])
 
     def fitted(self, chosen: np.ndarray) -> int:
-        """The place among the settings of the least Brier score on the tests chosen."""
+        """Return the index of the setting with the least Brier score on the tests chosen."""
         return int(self._errors[chosen].mean(axis=0).argmin())
 
     def best(self, chosen: np.ndarray) -> int:
-        """The place of the one slenderness right most often on the tests chosen; of several the one in the middle."""
+        """Return the index of the slenderness right most often on the tests chosen; of several, the middle one."""
         score = (self.model[chosen] == self.measured[chosen, None]).sum(axis=0)
         return middle(np.flatnonzero(score == score.max()))
 
     def spread(self, chosen: np.ndarray) -> np.ndarray:
-        """Probabilities of all tests, fitted to those chosen."""
+        """Return probabilities of all tests, fitted to those chosen."""
         return self.probabilities[:, self.fitted(chosen)]
 
     def alone(self, chosen: np.ndarray) -> np.ndarray:
-        """0 or 1 of all tests, by the slenderness fitted to those chosen."""
+        """Return 0 or 1 for all tests, by the slenderness fitted to those chosen."""
         return self.model[:, self.best(chosen)].astype(float)
 
 
 @dataclass(frozen=True, eq=False)
 class Forecast:
-    """name. fit: tests chosen -> probabilities of all tests. sure: they are 0 or 1."""
+    """A way to predict outcomes.
+
+    fit: function from the tests chosen to the probabilities of all tests. sure: whether these are 0 or 1.
+    """
 
     name: str
     fit: Callable[[np.ndarray], np.ndarray]
@@ -94,8 +97,11 @@ class Forecast:
 def forecasts(
     outcomes: Outcomes, measures: dict[str, np.ndarray], other: np.ndarray | None, authors: dict[str, np.ndarray]
 ) -> list[Forecast]:
-    """Of one specimen. measures: {"PGA", "PGV", and others: (tests,)}; other: outcomes of the other specimen, or None;
-    authors: {setting: outcomes} of their simulations."""
+    """Return all forecasts of one specimen.
+
+    measures: {"PGA", "PGV", and others: array of shape (tests,)}. other: outcomes of the other specimen, or None.
+    authors: {setting: outcomes} of their simulations.
+    """
     measured = outcomes.measured
     logs = {name: np.log(values)[:, None] for name, values in measures.items()}
 
@@ -127,8 +133,10 @@ def forecasts(
 
 
 def of_each_record(values: np.ndarray, measured: np.ndarray, records: Sequence[str]) -> np.ndarray:
-    """0 or 1 by a threshold of a measure for each record, fitted to its own tests: how far the outcome under a record
-    is one of its scale alone."""
+    """Return 0 or 1 by a threshold of a measure for each record, fitted to its own tests.
+
+    It shows how far the outcome under a record depends on its scale alone.
+    """
     names, answers = np.array(records), np.zeros(len(measured))
     for name in dict.fromkeys(records):
         under_record = names == name
@@ -145,12 +153,13 @@ def _logistic(features, measured):
 
 
 def _most_often(settings, measured, chosen):
+    """Outcomes of the authors' setting that is right most often on the tests chosen."""
     score = (settings[:, chosen] == measured[chosen]).sum(axis=1)
     return settings[middle(np.flatnonzero(score == score.max()))].astype(float)
 
 
 def judged(forecast: Forecast, records: Sequence[str], how: str = BY_RECORD) -> np.ndarray:
-    """Its probabilities, each as `how` says."""
+    """Return the probabilities of a forecast, fitted to the tests that `how` says."""
     count = len(records)
     if how == IN_SAMPLE:
         return forecast.fit(np.ones(count, dtype=bool))
@@ -158,8 +167,11 @@ def judged(forecast: Forecast, records: Sequence[str], how: str = BY_RECORD) -> 
 
 
 def score(probability: np.ndarray, measured: np.ndarray, records: Sequence[str], sure: bool = False) -> dict[str, Any]:
-    """Right answers with the 95 % interval of their share by record, misses and false alarms, and the Brier score with
-    its interval, which an answer that is sure of itself has not."""
+    """Return counts and the Brier score of a forecast.
+
+    They are right answers with the 95 % interval of their share by record, misses, false alarms, and the Brier score
+    with its interval. A sure forecast has no Brier score.
+    """
     hit = right(probability, measured)
     low, high = clustered(hit, records)
     counts: dict[str, Any] = {
@@ -171,36 +183,39 @@ def score(probability: np.ndarray, measured: np.ndarray, records: Sequence[str],
         "false_alarms": int((~measured & ~hit).sum()),
     }
     errors = brier(probability, measured)
-    known = None if sure else (float(errors.mean()), clustered(errors, records))
-    return {**counts, "brier": known and known[0], "brier_interval": known and known[1]}
+    brier_score = None if sure else (float(errors.mean()), clustered(errors, records))
+    return {**counts, "brier": brier_score and brier_score[0], "brier_interval": brier_score and brier_score[1]}
 
 
 def paired(first: np.ndarray, second: np.ndarray, measured: np.ndarray, records: Sequence[str]) -> dict[str, Any]:
-    """How much smaller the Brier score of one is than the other's, and in how many more tests it is right, each with
-    its interval by record; and who is right where they disagree."""
+    """Compare two forecasts test by test.
+
+    The values are how much smaller the Brier score of the first is and in how many more tests it is right, each with
+    its interval by record, and which is right where they disagree.
+    """
     less = brier(second, measured) - brier(first, measured)
     more = right(first, measured).astype(int) - right(second, measured)
-    apart = (first >= HALF) != (second >= HALF)
+    disagree = (first >= HALF) != (second >= HALF)
     return {
         "difference": float(less.mean()),
         "interval": clustered(less, records),
         "more_right": int(more.sum()),
         "more_interval": [len(more) * end for end in clustered(more, records)],
-        "disagree": int(apart.sum()),
-        "right": int(right(first, measured)[apart].sum()),
+        "disagree": int(disagree.sum()),
+        "right": int(right(first, measured)[disagree].sum()),
     }
 
 
-TWICE = (MODEL, ONE, "PGA, threshold", THRESHOLD, "PGA and PGV, logistic", CURVE)  # judged in both ways
+TWICE = (MODEL, ONE, "PGA, threshold", THRESHOLD, "PGA and PGV, logistic", CURVE)  # forecasts judged by both rules
 PAIRS = ((MODEL, THRESHOLD), (MODEL, PGV), (MODEL, CURVE), (BEYOND, CURVE), (BOTH, MODEL), (MODEL, ONE))
 
 
 def rows_of(
     campaign: Campaign, k: int, kinds: Sequence[Outcomes], names: Sequence[str]
 ) -> tuple[dict[str, np.ndarray], list[dict]]:
-    """(probabilities of each forecast of specimen k, held out by record; its rows).
+    """Return the probabilities of each forecast of specimen k, held out by record, and the rows on them.
 
-    kinds, names: outcomes of the model over slenderness, of each kind.
+    kinds, names: outcomes of the model over slenderness and the name, for each kind of model.
     """
     tests, main = campaign.tests, kinds[0]
     measured, records, measures = main.measured, [test.record for test in tests], measures_of(campaign)
@@ -210,8 +225,8 @@ def rows_of(
     authors = {name: np.array([test.authors[k][name] for test in tests]) for name in settings}
     probabilities, rows = {}, []
     for forecast in forecasts(main, measures, others[0] if others else None, authors):
-        ways = (BY_RECORD, *((BY_HALVES,) if forecast.name in TWICE else ()))
-        for how in (*ways, *((IN_SAMPLE,) if forecast.name in (AUTHORS, ONE) else ())):
+        rules = (BY_RECORD, *((BY_HALVES,) if forecast.name in TWICE else ()))
+        for how in (*rules, *((IN_SAMPLE,) if forecast.name in (AUTHORS, ONE) else ())):
             probability = judged(forecast, records, how)
             probabilities.setdefault(forecast.name, probability)
             scores = score(probability, measured, records, forecast.sure)
@@ -223,9 +238,11 @@ def rows_of(
 
 
 def pairs_of(campaign: Campaign, probabilities: Sequence[dict[str, np.ndarray]]) -> list[dict[str, Any]]:
-    """Rows of forecasts in pairs, of each specimen and of all together; under one record they may err alike.
+    """Return rows that compare forecasts in pairs, for each specimen and for all together.
 
-    found: probabilities of each forecast, by specimen.
+    Forecasts may err alike under one record, so intervals count records.
+
+    probabilities: those of each forecast, by specimen.
     """
     records, rows = [test.record for test in campaign.tests], []
     shared = {"part": "paired", "engine": "analytic", "variant": ""}
@@ -242,13 +259,13 @@ def pairs_of(campaign: Campaign, probabilities: Sequence[dict[str, np.ndarray]])
 
 
 def _fit(shared, name, outcomes, records):
-    """The model of a kind: what is fitted to all tests, and how good it is held out by record."""
+    """Row of the model of a kind: what is fitted to all tests, and how good it is held out by record."""
     whole = np.ones(len(records), dtype=bool)
     mean, spread = outcomes.settings[outcomes.fitted(whole)]
     alone = outcomes.best(whole)
     probability = judged(Forecast(MODEL, outcomes.spread), records)
     scores = score(probability, outcomes.measured, records)
-    kept = {key: scores[key] for key in ("size", "right", "brier", "brier_interval", "misses", "false_alarms")}
+    shown = {key: scores[key] for key in ("size", "right", "brier", "brier_interval", "misses", "false_alarms")}
     best = outcomes.model[:, alone]
     beside = [place for place in (alone - 1, alone + 1) if 0 <= place < len(outcomes.slendernesses)]
     return {
@@ -260,5 +277,5 @@ def _fit(shared, name, outcomes, records):
         "spread": float(spread),
         "alone_right": int((best == outcomes.measured).sum()),
         "neighbours": [int((outcomes.model[:, place] != best).sum()) for place in beside],
-        **kept,
+        **shown,
     }

@@ -1,4 +1,4 @@
-"""What is shown of a shake table: how often the outcome is predicted, by what, and how surely."""
+"""The page of the shake-table study: how often outcomes are predicted, by what, and how surely."""
 
 import math
 from collections.abc import Sequence
@@ -20,8 +20,10 @@ from .study import COLUMNS
 
 
 def agreement(specimens: Sequence[dict[str, Any]], right: dict[str, np.ndarray]) -> Figure | None:
-    """Right answers over the slenderness, a line for each restitution; right: {kind of model: by specimen and
-    slenderness}."""
+    """Figure of right answers over the slenderness, a line for each restitution.
+
+    right: {kind of model: numbers by specimen and slenderness}.
+    """
     looks = {name: curve(place) for place, name in enumerate(right)}
     low, high = (float(find([find(counts) for counts in right.values()])) for find in (np.min, np.max))
     charts = []
@@ -46,6 +48,8 @@ def agreement(specimens: Sequence[dict[str, Any]], right: dict[str, np.ndarray])
 
 
 def title(scores: Sequence[dict[str, Any]], settings: dict[str, Any]) -> str:
+    """Title of the page: the model's right answers beside those of a threshold."""
+
     def right(name):
         return listed([str(row["right"]) for row in where(scores, forecast=name, judged=BY_RECORD)])
 
@@ -54,13 +58,13 @@ def title(scores: Sequence[dict[str, Any]], settings: dict[str, Any]) -> str:
 
 
 def sentence(result: Result, engines: Sequence[dict[str, Any]]) -> str:
-    """How large the error of engines is beside that of the model."""
+    """Return sentences on the errors of engines beside those of the model."""
     scores = where(result.rows, part="score", judged=BY_RECORD, forecast=MODEL)
     wrong = listed([str(row["size"] - row["right"]) for row in scores])
     names = listed([row["specimen"] for row in scores])
     words = [f"The model is wrong in {wrong} of {len(result.settings['tests'])} tests ({names})."]
-    every = where(engines, specimen=ALL) or engines
-    if tuned := where(every, tier="tuned"):
+    engine_rows = where(engines, specimen=ALL) or engines
+    if tuned := where(engine_rows, tier="tuned"):
         counts = [f"{apart(row)} of {row['size']} ({row['engine']})" for row in tuned]
         fits = [count for row in where(result.rows, part="fit", change=AS_IT_IS) for count in row["neighbours"]]
         first, second, *_ = result.settings["specimens"][0]["grid"]
@@ -69,7 +73,7 @@ def sentence(result: Result, engines: Sequence[dict[str, Any]]) -> str:
             f"{number(math.degrees(second - first), 1)} deg smaller or larger changes {min(fits)} to {max(fits)} of "
             f"{len(result.settings['tests'])} outcomes of the model itself."
         )
-    if unsafe := [row for row in where(every, tier="defaults") if _unsafe(row)]:
+    if unsafe := [row for row in where(engine_rows, tier="defaults") if _unsafe(row)]:
         chances = listed([f"{number(row['p_records'], 2)} in {row['engine']}" for row in unsafe])
         words.append(
             "With defaults, engines err on the unsafe side: they miss more overturnings than they add (p by record: "
@@ -79,35 +83,39 @@ def sentence(result: Result, engines: Sequence[dict[str, Any]]) -> str:
 
 
 def at_a_glance(result: Result) -> str:
-    """How often the model is right about real blocks, beside what is simpler and, fitted alike, beside engines; ""
-    where it was not judged."""
+    """Return sentences on how often the model is right about real blocks; "" where it was not judged.
+
+    Beside it stand simpler forecasts and, fitted by one rule with the model, engines.
+    """
     specimens = [specimen["name"] for specimen in result.settings["specimens"]]
     held = where(result.rows, part="score", judged=BY_RECORD)
     if not (model := where(held, forecast=MODEL)):
         return ""
     rivals = {CURVE: "The curve is right", THRESHOLD: "one threshold of PGV", FREQUENT: FREQUENT}
-    rivals_right = [f"{words} in {_right(where(held, forecast=name))}" for name, words in rivals.items()]
-    alike = where(result.rows, part="score", judged=IN_SAMPLE, forecast=ONE)
+    rivals_right = [f"{words} in {_right_in_words(where(held, forecast=name))}" for name, words in rivals.items()]
+    same_rule = where(result.rows, part="score", judged=IN_SAMPLE, forecast=ONE)
     engines = grouped(where(result.rows, part="engine", specimen=set(specimens)), "engine", "variant").values()
-    fitted = [f"{_right(rows, False)} ({name_of(rows[0])})" for rows in engines]
-    words = f"on a shake table the model is right in {_right(model)} of {model[0]['size']} tests ({listed(specimens)})."
+    fitted = [f"{_right_in_words(rows, False)} ({name_of(rows[0])})" for rows in engines]
+    model_right, size = _right_in_words(model), model[0]["size"]
+    words = f"on a shake table the model is right in {model_right} of {size} tests ({listed(specimens)})."
     if pairs := where(result.rows, part="paired", forecast=MODEL, beside=CURVE):
-        words += f" {_beside((where(pairs, specimen=ALL) or pairs)[-1], sum(row['size'] for row in model))}"
+        words += f" {_against_curve((where(pairs, specimen=ALL) or pairs)[-1], sum(row['size'] for row in model))}"
     return (
-        f"{words} {listed(rivals_right)}. All of these are held out by record. Engines go by another rule, one "
-        f"slenderness fitted to all tests. By this rule {listed([f'{_right(alike, False)} (the model)', *fitted])} are "
-        "right. Restitution was not measured."
+        f"{words} {listed(rivals_right)}. All of these are held out by record. Engines are judged by another rule, "
+        "with one slenderness fitted to all tests. By this rule "
+        f"{listed([f'{_right_in_words(same_rule, False)} (the model)', *fitted])} are right. Restitution was not "
+        "measured."
     )
 
 
-def _right(rows, shares=True):
-    """Right answers of each specimen, with their shares; "–" where they are not disclosed."""
+def _right_in_words(rows, shares=True):
+    """Right answers of each specimen, with their shares, in words; "–" where they are not disclosed."""
     right = listed(["–" if row["right"] is None else str(row["right"]) for row in rows])
     return f"{right} ({listed([percent(row['right'] / row['size']) for row in rows])})" if shares else right
 
 
-def _beside(pair, size):
-    """Whether the model is shown to be better than the curve."""
+def _against_curve(pair, size):
+    """Sentence on whether the model is shown to be better than the curve."""
     low, high = pair["more_interval"]
     words = "better" if low > 0 else "worse" if high < 0 else "not shown to be better"
     more = f"{pair['more_right']} more of {size} (95 % interval {low:.0f} to {high:.0f})".replace("-", "−")
@@ -115,41 +123,45 @@ def _beside(pair, size):
 
 
 def together(result: Result) -> list[dict[str, Any]]:
-    """The rows of engines, of all specimens together."""
+    """Return the rows of engines for all specimens together."""
     rows = where(result.rows, part="engine")
     return where(rows, specimen=ALL) or rows
 
 
 def near_boundaries(result: Result) -> str:
-    """How many outcomes tuned engines change in all runs, and how many of these are near an outcome boundary."""
+    """Return a sentence on the outcomes that tuned engines change, and on how many are near an outcome boundary.
+
+    It is "" without tuned engines.
+    """
     rows = where(together(result), tier="tuned")
-    missed, added, failed, size, near, there = (
+    missed, added, failed, size, near, on_edge = (
         sum(row[key] for row in rows) for key in ("only_a", "only_b", "failed", "size", "near", "on_edge")
     )
     if not rows:
         return ""
     return (
         f"On the shake table, with these runs, tuned engines miss {missed} overturnings, add {added} and fail {failed} "
-        f"times in {size} runs. Of these {missed + added + failed}, {there} are in the {near} runs near a boundary."
+        f"times in {size} runs. Of these {missed + added + failed}, {on_edge} are in the {near} runs near a boundary."
     )
 
 
 def _unsafe(row):
+    """Return whether an engine misses significantly more overturnings than it adds."""
     return row["only_a"] > row["only_b"] and row["p_records"] is not None and row["p_records"] < 0.05
 
 
 def apart(row: dict[str, Any]) -> int:
-    """Runs that an engine ends differently, failed ones too."""
+    """Return the number of runs that an engine ends differently from the model, failed ones included."""
     return row["only_a"] + row["only_b"] + row["failed"]
 
 
 def name_of(row: dict[str, Any]) -> str:
-    """An engine with the kind of its variant."""
+    """Return an engine's name with the kind of its variant."""
     return f"{row['engine']}, {row['tier']}"
 
 
 def bounds(result: Result) -> str:
-    """What a model can be asked for at most."""
+    """Return sentences on the most that can be expected of a model."""
     settings = result.settings
     names = listed([specimen["name"] for specimen in settings["specimens"]])
     count = len(settings["tests"])
@@ -157,15 +169,15 @@ def bounds(result: Result) -> str:
         f"{settings['campaign'].capitalize()}: {count} tests under {settings['records']} records at many scales; "
         f"{listed([str(specimen) for specimen in settings['overturned']])} overturned ({names})."
     )
-    each = where(result.rows, part="score", forecast=EACH)
+    thresholds = where(result.rows, part="score", forecast=EACH)
     model = where(result.rows, part="score", forecast=MODEL, judged=BY_RECORD)
     words += (
         " A PGA threshold for each record, fitted to the same tests, is right in "
-        f"{listed([str(row['right']) for row in each])}"
+        f"{listed([str(row['right']) for row in thresholds])}"
     )
     not_by_chance = all(
         2 * (specimen["size"] - specimen["right"]) < row["size"] - row["right"]
-        for specimen, row in zip(each, model, strict=True)
+        for specimen, row in zip(thresholds, model, strict=True)
     )
     words += ". Most of the model’s errors are therefore its own, not chance." if not_by_chance else "."
     if settings["agree"] is not None:
@@ -177,18 +189,18 @@ def bounds(result: Result) -> str:
 
 
 def more_right(row: dict[str, Any]) -> str:
-    """Of a pair of forecasts: in how many more tests the first is right, with the interval."""
+    """Return in how many more tests the first of a pair of forecasts is right, with the interval, in words."""
     low, high = row["more_interval"]
     return f"{row['more_right']} ({low:.0f} to {high:.0f})".replace("-", "−")
 
 
 def not_shown(result: Result) -> tuple[str, str]:
-    """What the figures show, and what they do not."""
+    """Return two paragraphs: what the figures show, and what they do not show."""
     pairs = {(row["specimen"], row["beside"]): row for row in where(result.rows, part="paired", forecast=MODEL)}
     last = list(dict.fromkeys(name for name, _ in pairs))[-1]  # all specimens together, if there are several
 
     runs = len(result.settings["tests"]) * len(result.settings["specimens"])
-    boulders = bool(result.settings["cite"])  # the published campaign; of one's own nothing more is known
+    boulders = bool(result.settings["cite"])  # the published campaign; nothing more is known of one's own
     slopes = " with five slopes, which was added when a referee asked for it" if boulders else " with five slopes"
     stone = (
         ", of one kind of stone, on one axis. The model’s block is symmetric; a boulder has another angle to either "
@@ -200,24 +212,24 @@ def not_shown(result: Result) -> tuple[str, str]:
         f"What this shows: of {runs} outcomes the model is right in {more_right(pairs[last, THRESHOLD])} more than a "
         f"threshold of PGV, and in {more_right(pairs[last, CURVE])} more than a curve in PGA and PGV{slopes}. That "
         "curve holds for these blocks alone. Model and curve joined are compared with the curve above.",
-        f"What it does not show: it is one campaign{stone if boulders else '.'} Outcomes do not tell slenderness and "
-        "restitution apart: the fitted slenderness stands for what the model lacks. Intervals go by record, hold the "
-        "fits fixed, are not adjusted for their number, and say nothing of records unlike these. The slenderness of "
-        "the engines’ runs is the one at which the model is right most often, which favours the model over them."
-        f"{granite}",
+        f"What it does not show: it is one campaign{stone if boulders else '.'} Outcomes cannot separate slenderness "
+        "from restitution: the fitted slenderness stands for all that the model lacks. Intervals count records, "
+        "hold the fits fixed, are not adjusted for their number, and say nothing of records unlike these. The "
+        "slenderness of the engines’ runs is the one at which the model is right most often, which favours the "
+        f"model over them.{granite}",
     )
 
 
 def _left_out(settings):
-    """Of the tests without a motion: whether they are like the others."""
+    """Sentence on the tests without a motion: whether they are like the others."""
     missing, names = settings["missing"], listed([item["name"] for item in settings["specimens"]])
     if not missing["tests"]:
         return ""
     words = f"{missing['tests']} tests have no motion at hand and are left out"
     if missing["overturned"]:
-        here = len(settings["tests"])
+        count = len(settings["tests"])
         shares = [percent(item / missing["tests"]) for item in missing["overturned"]]
-        others = [percent(item / here) for item in settings["overturned"]]
+        others = [percent(item / count) for item in settings["overturned"]]
         words += f": {listed(shares)} of them overturned ({names}), of the others {listed(others)}"
     if missing["ratios"]:
         words += (
@@ -227,39 +239,44 @@ def _left_out(settings):
 
 
 def how(result: Result) -> tuple[str, ...]:
-    s = result.settings
-    steps = listed([f"{round(1 / step):g} Hz" for step in s["steps"]])
+    """Return paragraphs on the data, the motions and the statistics."""
+    settings = result.settings
+    steps = listed([f"{round(1 / step):g} Hz" for step in settings["steps"]])
     blocks = "; ".join(
         f"{specimen['name']}: centre of mass {specimen['height']:.3g} m up, "
         f"radius of gyration {specimen['gyration']:.3g} m"
-        for specimen in s["specimens"]
+        for specimen in settings["specimens"]
     )
-    resampled = s["published"] and any(abs(1 / step / s["published"] - 1) > 1e-3 for step in s["steps"])
-    published = f" (published at {s['published']:g} Hz; resampled by whoever made these files)" if resampled else ""
-    speed = f"{s['model_runs']:,} runs of the model took {short(s['cpu_seconds'])} s of CPU time"
-    rigid = f"{_left_out(s)}Rigid planar block on rigid ground; {blocks}."
+    resampled = settings["published"] and any(
+        abs(1 / step / settings["published"] - 1) > 1e-3 for step in settings["steps"]
+    )
+    published = (
+        f" (published at {settings['published']:g} Hz; resampled by the makers of these files)" if resampled else ""
+    )
+    speed = f"{settings['model_runs']:,} runs of the model took {short(settings['cpu_seconds'])} s of CPU time"
+    rigid = f"{_left_out(settings)}Rigid planar block on rigid ground; {blocks}."
     intervals = (
         f"Intervals: percentiles of a bootstrap over records (seed {result.provenance['seed']}). “Fitted to every "
         "other test” may have a record on both sides."
     )
     runs = (
-        f"Subject engines run all tests, other engines one in {s['others']}, at the slenderness that is right most "
-        "often in the model. A failed run counts as wrong and as differing."
+        f"Subject engines run all tests, other engines one in {settings['others']}, at the slenderness that is right "
+        "most often in the model. A failed run counts as wrong and as differing."
     )
-    if not s["cite"]:
+    if not settings["cite"]:
         return (
-            f"Motions: as their files have them, at {steps}. {rigid} {speed}.",
-            f"{intervals} PGA and PGV: of these motions, PGV of what they have above {CORNER} Hz.",
+            f"Motions: as in their files, at {steps}. {rigid} {speed}.",
+            f"{intervals} PGA and PGV are those of these motions; PGV is taken above {CORNER} Hz.",
             runs,
         )
     return (
-        f"Data: {s['cite']}. Nothing of them is stored or shown but sums over at least five tests.",
+        f"Data: {settings['cite']}. Only sums over at least five tests are stored or shown.",
         f"Motions: the measured acceleration of the table at {steps}{published}, less the median of the first second. "
         f"{rigid} The moment of inertia is the mean about the two horizontal axes of the mesh. {speed}.",
-        f"{intervals} PGA and PGV are those the campaign states for the motion sent to the table; “of the table” are "
-        f"those of its measured acceleration above {CORNER} Hz. The other specimen’s outcome is that under the same "
-        "motion. The setting of the authors’ discrete elements is chosen in the same way; none was fitted to these "
-        "outcomes as the slenderness is.",
+        f"{intervals} PGA and PGV are as the campaign states them for the motion sent to the table; “of the table” "
+        f"means values of its measured acceleration above {CORNER} Hz. The other specimen’s outcome is that under "
+        "the same motion. The setting of the authors’ discrete elements is chosen in the same way; none was fitted "
+        "to these outcomes as the slenderness is.",
         runs,
     )
 
@@ -272,10 +289,11 @@ SHARE_RIGHT = Column(
 RIGHT = Column("right", lambda row: f"{row['right']}, {SHARE_RIGHT.text(row)}")
 ERRORS = Column("missed / false alarms", "{misses} / {false_alarms}")
 BRIER = COLUMNS["brier"]
-BARS = (BEYOND, MODEL, CURVE, AUTHORS, THRESHOLD, "PGA, threshold", FREQUENT)  # besides the solvers
+BARS = (BEYOND, MODEL, CURVE, AUTHORS, THRESHOLD, "PGA, threshold", FREQUENT)  # forecasts shown beside the solvers
 
 
 def page(result: Result) -> Page:
+    """Return the page of a result."""
     if absent := where(result.rows, part="absent"):
         return Page("Shake table: not computed, the tests are not at hand", (f"{absent[0]['reason']}.",))
     engines, settings = where(result.rows, part="engine"), result.settings
@@ -311,7 +329,7 @@ def page(result: Result) -> Page:
 
 
 def _by_specimen(caption: str, rows: Sequence[dict[str, Any]], names: Sequence[Column], *columns: Column) -> Table:
-    """A line for rows that differ in their specimen alone, with these columns of each specimen."""
+    """Table with one line for rows that differ only in their specimen, and these columns for each specimen."""
     specimens = list(dict.fromkeys(row["specimen"] for row in rows))
     lines = [
         {row["specimen"]: row for row in members} for members in grouped(rows, *(name.text for name in names)).values()
@@ -329,8 +347,8 @@ def _by_specimen(caption: str, rows: Sequence[dict[str, Any]], names: Sequence[C
 
 
 def _scores(caption, rows):
-    ways = {row["judged"] for row in rows}
-    judged = (COLUMNS["judged"],) if len(ways) > 1 else ()
+    rules = {row["judged"] for row in rows}
+    judged = (COLUMNS["judged"],) if len(rules) > 1 else ()
     columns = (RIGHT, BRIER) if judged else (RIGHT, ERRORS, BRIER)
     return _by_specimen(caption, rows, (FORECAST, *judged), *columns)
 
@@ -340,8 +358,8 @@ def _pairs(result):
         row for members in grouped(where(result.rows, part="paired"), "forecast", "beside").values() for row in members
     ]
     return table(
-        "Paired: how many more answers of the first are right, and by how much its Brier score is smaller (a yes or no "
-        "is a probability of 1 or 0), with 95 % intervals by record; and who is right where the two disagree",
+        "Paired: how many more answers of the first are right, by how much its Brier score is smaller (a yes or no "
+        "is a probability of 1 or 0), with 95 % intervals by record, and which is right where the two disagree",
         rows,
         FORECAST,
         COLUMNS["beside"],
@@ -353,21 +371,25 @@ def _pairs(result):
 
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
-    """Whether an engine ends as the model does under a table's motions, by (engine, variant)."""
+    """Judge whether engines end as the model does under a table's motions, by (engine, variant)."""
     marks = {(row["engine"], row["variant"]): equal_mark(tally_of(row)) for row in together(result)}
     heading = "outcomes that differ under shake-table motions, near outcome boundaries too"
     return (Judgement(heading, marks),) if marks else ()
 
 
 def glance(result: Result) -> Glance:
+    """Return the sentences and outcomes for the report's first screen."""
     endings = tuple(_endings(row, result.settings["records"]) for row in together(result))
     sentences = {"real": at_a_glance(result), "near": near_boundaries(result)}
     return Glance(says={key: words for key, words in sentences.items() if words}, endings=endings)
 
 
 def _endings(row, records):
-    """Away from the model's outcome boundaries. Where runs near one differ too, it is not stored which way the others
-    do; each record is taken to have runs away from them."""
+    """Outcomes of an engine's runs away from the model's outcome boundaries.
+
+    It is not stored which way the outcomes near a boundary differ. If some do, the directions of all others are unknown
+    too. Each record is taken to have runs away from the boundaries.
+    """
     runs, differing = row["size"] - row["near"], apart(row) - row["on_edge"]
     hidden, groups = row["on_edge"] > 0, min(records, runs)
     return Endings(
@@ -388,23 +410,25 @@ def _endings(row, records):
 
 
 def tally_of(row: dict[str, Any]) -> dict[str, Any]:
-    """The row of an engine as `wording.equal_mark` reads it."""
+    """Return the row of an engine in the form that `wording.equal_mark` reads."""
     tally = {"runs": row["size"], "differing": apart(row), "share": apart(row) / row["size"]}
     return tally | {key: row[key] for key in ("failed", "equal", "interval")}
 
 
 def _score(rows, **wanted):
+    """First of the rows that have these values; None without one."""
     return next(iter(where(rows, **wanted)), None)
 
 
 def _bars(result: Result, engines: Sequence[dict[str, Any]]) -> Figure | None:
+    """Figure of the share of outcomes that each forecast and each engine predicts."""
     scores, rows = where(result.rows, part="score"), []
     for specimen in result.settings["specimens"]:
-        mine = where(scores, specimen=specimen["name"])
+        specimen_scores = where(scores, specimen=specimen["name"])
         for name in BARS:
-            if (row := _score(mine, forecast=name, judged=BY_RECORD)) is not None:
+            if (row := _score(specimen_scores, forecast=name, judged=BY_RECORD)) is not None:
                 rows.append(_bar(row, name))
-        same = _score(mine, forecast=ONE, judged=IN_SAMPLE)
+        same = _score(specimen_scores, forecast=ONE, judged=IN_SAMPLE)
         rows.append(_bar(same, "model, as engines"))
         for row in where(engines, specimen=specimen["name"]):
             failed = f" ({row['failed']} failed)" if row["failed"] else ""
@@ -412,14 +436,14 @@ def _bars(result: Result, engines: Sequence[dict[str, Any]]) -> Figure | None:
                 rows.append(_bar(row, name_of(row) + failed))
     agree = result.settings["agree"]
     rules = () if agree is None else ((agree / len(result.settings["tests"]), "the other boulder"),)
-    first = min(math.floor(10 * min(low for row in rows for low in row["within"])), 9)  # tenths
+    first = min(math.floor(10 * min(low for row in rows for low in row["within"])), 9)  # tenths of the axis
     marked = range(first, 11, 1 if first >= 5 else 2)
     return ranks(
         rows,
         Column("predicted by", "name"),
         SHARE,
         "Share of outcomes predicted, with 95 % intervals by record. “model, as engines” and the engines use one "
-        "slenderness, fitted to all tests; the rest are held out by record. A failed run is not right.",
+        "slenderness, fitted to all tests. All others are judged on held-out records. A failed run is not right.",
         Axis(SHARE.head, first / 10, 1.0, ticks=tuple((tenth / 10, str(10 * tenth)) for tenth in marked)),
         panel="specimen",
         rules=rules,
@@ -432,11 +456,11 @@ def _bar(row, name):
 
 
 def _table_of_engines(result, engines):
-    judged = wilson(0, result.settings["records"])[1] < EQUAL  # else no engine can be equal, whatever it does
+    judged = wilson(0, result.settings["records"])[1] < EQUAL  # otherwise no engine can be equal, whatever it does
     equal = Column("equal", lambda row: "inconclusive" if row["equal"] == TOO_FEW else row["equal"])
     return table(
         "Engines and the model at the same slenderness. At most: the upper end of the 95 % interval (Wilson, by "
-        f"record). {'Equal: at most 5 %. ' if judged else ''}In brackets: records in which most differences go "
+        f"record). {'Equal: at most 5 %. ' if judged else ''}In brackets: records most of whose differences go "
         "that way. Last column: differences among the runs in which a change of the scene by 10⁻⁴ changes the model’s "
         "own outcome or time of a fall",
         where(engines, specimen=ALL) or engines,
@@ -468,22 +492,24 @@ def _right_of_engines(engines):
 
 
 def _fitted(result):
+    """Sentences on the slenderness that fits each specimen best."""
     fits = []
     for row in where(result.rows, part="fit", change=AS_IT_IS):
         angles = [number(math.degrees(row[name]), 2) for name in ("slenderness", "centre", "spread")]
-        (specimen,) = (each for each in result.settings["specimens"] if each["name"] == row["specimen"])
+        (specimen,) = where(result.settings["specimens"], name=row["specimen"])
         fits.append(
             f"{row['specimen']}: {angles[0]} deg by itself, {angles[1]} deg with a spread of {angles[2]} deg "
             f"({specimen['note']})."
         )
     return (
-        "The one exception to the rule that no constant is fitted, as nobody knows on which points a block stands. "
+        "This is the one exception to the rule that no constant is fitted, because nobody knows on which points a "
+        "block stands. "
         "Slenderness that fits all tests best: " + " ".join(fits)
     )
 
 
 def _by_restitution(result):
-    """{kind of model: right answers by specimen and slenderness}, of every other factor on the restitution."""
+    """Return {kind of model: right answers by specimen and slenderness}, for every other factor on the restitution."""
     names = [kind for kind in result.settings["kinds"] if kind == AS_IT_IS or kind.startswith("restitution")][::2]
     return {name: result.arrays[f"right/{name}"] for name in names}
 
@@ -494,8 +520,8 @@ def _degrees(name):
 
 def _fits(result):
     return _by_specimen(
-        "The model with one thing changed. Slenderness by itself, and mean and spread, fitted to all tests; right "
-        "answers and Brier score held out by record",
+        "The model with one thing changed. Slenderness by itself, and mean and spread, are fitted to all tests; right "
+        "answers and Brier score are held out by record",
         where(result.rows, part="fit"),
         (CHANGE,),
         Column("slenderness [deg]", _degrees("slenderness")),

@@ -1,12 +1,12 @@
-"""The study of a shake table: what the model and the engines say of blocks that were really shaken.
+"""The shake-table study: what the model and the engines say of blocks that were really shaken.
 
-Statistics, fixed before this run, though after a prototype on the same tests: right answers with the 95 % interval of a
-bootstrap over records, as tests under one record at several scales are alike; misses and false alarms; of engines the
-sign of their differences to the model (exact test); of probabilities the Brier score, and differences of
-forecasts in pairs by the same bootstrap; who is right where two disagree. An engine is equal to the model where the
-upper end of the interval of the share of tests that it ends differently is below `EQUAL`.
+Each engine that ran a campaign's tests has a row beside the model and beside what was measured.
 
-Rows of the engines that ran a campaign's tests, beside the model's and beside what was measured.
+The statistics were fixed before this run, though after a prototype on the same tests. Right answers have the 95 %
+interval of a bootstrap over records, as tests under one record at several scales are alike; misses and false alarms are
+counted. Engines have the sign of their differences to the model (exact test). Probabilities have the Brier score;
+forecasts are compared in pairs by the same bootstrap, and by which is right where two disagree. An engine is equal to
+the model where the upper end of the interval of the share of tests that it ends differently is below `EQUAL`.
 """
 
 import time
@@ -35,7 +35,7 @@ from ..rows import SHARED
 from .campaign import ALL, WHERE, Campaign, disclosed, outcomes_of, read_campaign
 from .judging import AS_IT_IS, Outcomes, pairs_of, rows_of
 
-# What its rows have; see `comparisons.studies.rows`.
+# The columns of its rows, and by part which of them a row has; see `comparisons.studies.rows`.
 COLUMNS = SHARED | declared(
     word_of("specimen", "specimen", "block that was tested"),
     word_of("test", "test", "name of the test in the campaign"),
@@ -117,7 +117,7 @@ OVERTURNS, STANDS, FAILED = "1", "0", "x"
 def leaning(
     scene: Scene, slenderness: float, *, restitution: float = 1, inertia: float = 1, friction: float | None = None
 ) -> Scene:
-    """A scene whose block has another slenderness [rad], its centre of mass as high as before.
+    """Return a scene whose block has another slenderness [rad], with its centre of mass as high as before.
 
     restitution: factor on that of the block. inertia: factor on the moment about the centre of mass. friction: in place
     of the scene's.
@@ -132,7 +132,7 @@ def leaning(
 
 
 def over_slendernesses(case: Case, response: Response) -> dict[str, Any]:
-    """Measure: a digit for each slenderness, for each kind of model."""
+    """Measure a digit for each slenderness, for each kind of model."""
     kinds, grid = case.tag["kinds"], case.tag["slendernesses"]
     scenes = [leaning(case.scene, slenderness, **kind) for kind in kinds for slenderness in grid]
     began = time.process_time()
@@ -146,12 +146,12 @@ def over_slendernesses(case: Case, response: Response) -> dict[str, Any]:
 
 
 def ended(case: Case, response: Response) -> dict[str, Any]:
-    """Measure: how a run ended, and its peak tilt over the slenderness."""
+    """Measure how a run ended, and its peak tilt over the slenderness."""
     return {"outcome": response.outcome, "tilt": response.peak_tilt_ratio}
 
 
 def ended_near(case: Case, response: Response) -> dict[str, Any]:
-    """Measure of the model's run: `ended`, and whether a change of the scene by 1e-4 changes the outcome."""
+    """Measure the model's run as `ended` does, and whether a change of the scene by 1e-4 changes the outcome."""
     return {**ended(case, response), "near": "outcome" in Reference.of(case.scene).near}
 
 
@@ -159,8 +159,11 @@ NOT_RUN = "-"
 
 
 def engine_rows(campaign: Campaign, model_runs: Sequence[Row], engine_runs: Sequence[Row]) -> list[dict[str, Any]]:
-    """Rows of an engine beside the model, of each specimen and of all together: in what their outcomes differ, and
-    right answers where they are disclosed. model_runs, engine_runs: of one slenderness each."""
+    """Return rows of an engine beside the model, for each specimen and for all together.
+
+    They say in what their outcomes differ, and give right answers where these are disclosed. model_runs, engine_runs:
+    runs at one slenderness each.
+    """
     case, records, rows = engine_runs[0].case, [test.record for test in campaign.tests], []
     variant = case.variant or ""
     first = {"part": "engine", "engine": case.solver, "variant": variant}
@@ -183,18 +186,18 @@ def engine_rows(campaign: Campaign, model_runs: Sequence[Row], engine_runs: Sequ
 
 
 def _digits(campaign, rows):
-    """A digit for each test."""
+    """Array of a digit for each test."""
     digits = {"failed": FAILED, "overturns": OVERTURNS}
     digit_of = {row.case.tag["test"]: digits.get(row.values["outcome"], STANDS) for row in rows}
     return np.array([digit_of.get(test.name, NOT_RUN) for test in campaign.tests])
 
 
 def differences(engine: np.ndarray, model: np.ndarray, near: np.ndarray, records: Sequence[str]) -> dict[str, Any]:
-    """In what an engine's outcomes differ from the model's, which way, and whether the two are equal.
+    """Count how an engine's outcomes differ from the model's, in which direction, and whether the two are equal.
 
-    p_value: of a sign test over tests. records_a, records_b, p_records: of one over records, each by what most of its
-    differences say, as those under one record are alike. A failed run is no difference of a sign, but differs. near: of
-    each test, whether the model's own end is sensitive, see `ended_near`; on_edge: differences there.
+    p_value: of a sign test over tests. records_a, records_b, p_records: of a sign test over records, each of which has
+    the sign of most of its differences, as those under one record are alike. A failed run has no sign, but differs.
+    near: tests in which the model's own end is sensitive, see `ended_near`; on_edge: differences in these.
     """
     sound, run_tests = np.isin(engine, [STANDS, OVERTURNS]), engine != NOT_RUN
     names = np.array(records)
@@ -221,8 +224,10 @@ def differences(engine: np.ndarray, model: np.ndarray, near: np.ndarray, records
 
 
 def answers(engine: np.ndarray, model: np.ndarray, measured: np.ndarray, records: Sequence[str]) -> dict[str, Any]:
-    """Right answers of an engine, and of the model on the same tests, with the interval of their share; a failed run is
-    not right. Their difference is a sum over the tests that differ; misses and false alarms say how failed ones ended.
+    """Return right answers of an engine, and of the model on the same tests, with the interval of their share.
+
+    A failed run is not right. Their difference is a sum over the tests that differ; misses and false alarms show how
+    failed runs ended.
     """
     truth, run_tests = np.where(measured, OVERTURNS, STANDS), engine != NOT_RUN
     hit = (truth == engine)[run_tests]
@@ -237,7 +242,7 @@ def answers(engine: np.ndarray, model: np.ndarray, measured: np.ndarray, records
 
 
 def _tilts(model_runs, engine_runs):
-    """Median of the peak tilts of an engine over the model's, where both rock and stay upright; None: nowhere."""
+    """Median of an engine's peak tilts over the model's where both rock and stay upright; None if nowhere."""
     model = {row.case.tag["test"]: row.values for row in model_runs}
     pairs = ((row.values, model[row.case.tag["test"]]) for row in engine_runs if not row.failed)
     ratios = [a["tilt"] / b["tilt"] for a, b in pairs if a["outcome"] == b["outcome"] == "rocks"]
@@ -245,10 +250,11 @@ def _tilts(model_runs, engine_runs):
 
 
 SEED = 0  # of the bootstrap
-QUICK = 20  # of so many tests one
-OTHERS = 6  # of so many tests engines that are no subject, and further variants of subject engines, run one
+QUICK = 20  # a quick study has one of so many tests
+OTHERS = 6  # other engines, and further variants of subject engines, run one of so many tests
 TIME_LIMIT = 900.0  # s, of an engine's run
-# What is changed in the model, one at a time; the first is as it is. Friction: granite on a steel table is not known.
+# What is changed in the model, one at a time; the first is without a change. The friction of granite on a steel table
+# is not known.
 KINDS: tuple[dict[str, float], ...] = (
     {},
     *({"restitution": factor} for factor in (0.98, 0.95, 0.9, 0.85, 0.8)),
@@ -262,11 +268,11 @@ Data = Annotated[
 
 
 def plan(request: Request, *, data: Data = None) -> Plan:
-    """The plan of the study; an answer with one variant more each time.
+    """Plan the study; it gives an answer after each variant.
 
     Rows by "part": "score" (of a forecast, see `judging`), "paired", "fit" (of the model to all tests), "engine"
     (beside the model) and "failure"; "absent", alone, without data. Arrays ``right/<kind>``: right answers of the model
-    by specimen and slenderness. What is stored of the tests: `campaign.disclosed`.
+    by specimen and slenderness. `campaign.disclosed` decides what is stored of the tests.
 
     Parameters
     ----------
@@ -281,30 +287,32 @@ def plan(request: Request, *, data: Data = None) -> Plan:
     with bar("reading the tests") as progress:
         campaign = read_campaign(data, QUICK if request.quick else 1, progress)
     kinds = _kinds(campaign)
-    model = yield Batch(_on_grids(campaign, kinds), over_slendernesses, "model over slenderness")
-    known = _outcomes(campaign, model, len(kinds))
-    places = [outcomes[0].best(np.ones(len(campaign.tests), dtype=bool)) for outcomes in known]
-    slendernesses = [float(outcomes[0].slendernesses[place]) for outcomes, place in zip(known, places, strict=True)]
+    model = yield Batch(_grid_cases(campaign, kinds), over_slendernesses, "model over slenderness")
+    outcomes_by_specimen = _outcomes(campaign, model, len(kinds))
+    places = [outcomes[0].best(np.ones(len(campaign.tests), dtype=bool)) for outcomes in outcomes_by_specimen]
+    slendernesses = [
+        float(outcomes[0].slendernesses[place]) for outcomes, place in zip(outcomes_by_specimen, places, strict=True)
+    ]
     names = [_name(kind) for kind in kinds]
     probabilities, parts = zip(
-        *(rows_of(campaign, k, outcomes, names) for k, outcomes in enumerate(known)), strict=True
+        *(rows_of(campaign, k, outcomes, names) for k, outcomes in enumerate(outcomes_by_specimen)), strict=True
     )
     rows = [row for part in parts for row in part] + pairs_of(campaign, probabilities)
     settings = _settings(request, campaign, slendernesses) | {"kinds": names}
-    settings["model_runs"] = len(model) * len(kinds) * known[0][0].slendernesses.size
+    settings["model_runs"] = len(model) * len(kinds) * outcomes_by_specimen[0][0].slendernesses.size
     settings["cpu_seconds"] = float(sum(row.cost["grid_seconds"] for row in model))
     arrays = {
         f"right/{name}": np.array(
-            [(outcomes[k].model == outcomes[k].measured[:, None]).sum(axis=0) for outcomes in known]
+            [(outcomes[k].model == outcomes[k].measured[:, None]).sum(axis=0) for outcomes in outcomes_by_specimen]
         )
         for k, name in enumerate(names)
     }
-    model_runs = yield Batch(_at(campaign, slendernesses, "analytic", None, 1), ended_near, "model")
+    model_runs = yield Batch(_fitted_cases(campaign, slendernesses, "analytic", None, 1), ended_near, "model")
     answer = Computed(settings, rows, arrays, seed=SEED)
     yield answer
     for engine, variant, every in [outcomes for name in request.engines for outcomes in _variants(name)]:
         ran = yield Batch(
-            _at(campaign, slendernesses, engine, variant, every), ended, f"{engine}, {variant}", TIME_LIMIT
+            _fitted_cases(campaign, slendernesses, engine, variant, every), ended, f"{engine}, {variant}", TIME_LIMIT
         )
         rows = [*rows, *engine_rows(campaign, model_runs, ran), *(_failure(row) for row in ran if row.failed)]
         settings = {**settings, "variants": [*settings["variants"], variant_settings(engine, variant)]}
@@ -314,12 +322,13 @@ def plan(request: Request, *, data: Data = None) -> Plan:
 
 
 def _name(kind):
+    """Name of a kind of model."""
     words = (f"{name} {'' if name == 'friction' else 'times '}{value:g}" for name, value in kind.items())
     return ", ".join(words) or AS_IT_IS
 
 
 def _variants(name: str) -> list[tuple[str, str, int]]:
-    """(engine, variant, stride): subject engines run every test with their main variant and defaults."""
+    """Return (engine, variant, stride): subject engines run every test with their main variant and defaults."""
     engine = get_engine(name)
     chosen = [
         engine.default_variant,
@@ -329,7 +338,7 @@ def _variants(name: str) -> list[tuple[str, str, int]]:
 
 
 def _kinds(campaign: Campaign) -> list[dict[str, float]]:
-    """Those of `KINDS` that the model takes: it knows no given restitution of a block that slides.
+    """Return the kinds of `KINDS` that the model takes: it has no given restitution for a block that slides.
 
     Raises
     ------
@@ -349,7 +358,7 @@ def _kinds(campaign: Campaign) -> list[dict[str, float]]:
     return kinds
 
 
-def _on_grids(campaign: Campaign, kinds: Sequence[dict[str, float]]) -> list[Case]:
+def _grid_cases(campaign: Campaign, kinds: Sequence[dict[str, float]]) -> list[Case]:
     return [
         Case(
             specimen.scene.with_(motion=test.motion),
@@ -362,8 +371,8 @@ def _on_grids(campaign: Campaign, kinds: Sequence[dict[str, float]]) -> list[Cas
     ]
 
 
-def _at(campaign, slendernesses, solver, variant, every):
-    """Cases of a solver at the fitted slendernesses, on one of so many tests."""
+def _fitted_cases(campaign, slendernesses, solver, variant, every):
+    """Cases of a solver at the fitted slendernesses, on one in `every` tests."""
     return [
         Case(
             leaning(specimen.scene, slenderness).with_(motion=test.motion, name=specimen.name),
@@ -383,7 +392,7 @@ def _failure(row):
 
 
 def _outcomes(campaign: Campaign, rows: Sequence[Row], kinds: int) -> list[list[Outcomes]]:
-    """By specimen and kind."""
+    """Outcomes by specimen and kind of model."""
     if failed := next((row for row in rows if row.failed), None):
         raise SettingError(f"test {failed.case.tag['test']}: the model failed ({failed.failure['reason']})")
     by_specimen = []
@@ -404,11 +413,11 @@ def _settings(request, campaign, slendernesses):
         "cite": campaign.cite,
         "tests": [test.name for test in tests],
         "records": len({test.record for test in tests}),
-        "missing": _missing(campaign),
+        "missing": _tests_without_motion(campaign),
         "published": campaign.published,
         "steps": sorted({test.motion.dt for test in tests}),
         "overturned": [int(outcomes_of(tests, k).sum()) for k in range(len(campaign.specimens))],
-        "agree": _agree(tests),
+        "agree": _same_outcomes(tests),
         "specimens": [
             {
                 "name": specimen.name,
@@ -427,9 +436,12 @@ def _settings(request, campaign, slendernesses):
     }
 
 
-def _missing(campaign):
-    """Of the tests without a motion: how many there are and, where it says nothing of single ones, how many of them
-    overturned; and geometric means of PGV/PGA [s] of them and of the others, where they are stated."""
+def _tests_without_motion(campaign):
+    """Describe the tests without a motion.
+
+    The values are how many there are; how many of them overturned, if single tests are not told by it; and geometric
+    means of PGV/PGA [s] of them and of the others, where these are stated.
+    """
     tests = campaign.missing
     numbers: dict[str, Any] = {"overturned": None, "ratios": None}
     if tests:
@@ -440,13 +452,13 @@ def _missing(campaign):
     return {"tests": len(tests), **disclosed(numbers, len(tests))}
 
 
-def _agree(tests):
-    """In how many tests the first two specimens end alike; None with one."""
+def _same_outcomes(tests):
+    """Count the tests in which the first two specimens end alike; None with one specimen."""
     if len(tests[0].overturned) < 2:
         return None
     return sum(test.overturned[0] == test.overturned[1] for test in tests)
 
 
 def problems(result: Result) -> list[str]:
-    """Why nothing was run, where it was not."""
+    """Return why nothing was run; empty if something was."""
     return [row["reason"] for row in result.rows if row["part"] == "absent"]

@@ -1,8 +1,8 @@
-"""Problems A and B, a block alone, that every integrator solves, with references of 30 digits: the kernel and scipy's
-`solve_ivp`, set up by someone who wants it fast.
+"""Problems A and B, a block alone, solved by the kernel and by scipy's `solve_ivp`.
 
-There are no classes, the right-hand side uses floats instead of arrays, the set of events is the smallest possible, and
-the first step follows from the length of the next swing. The simple form to learn from is `analytic.checks.twin`.
+The references have 30 digits. Both are set up by someone who wants them fast: there are no classes, the right-hand side
+uses floats instead of arrays, the set of events is the smallest possible, and the first step follows from the length of
+the next swing. The simple form to learn from is `analytic.checks.twin`.
 """
 
 import functools
@@ -32,7 +32,7 @@ SHORT_HOP = 0.3  # in units of 1/omega_r: below it, the first step is the whole 
 
 @dataclass(frozen=True)
 class Problem:
-    """phi'' = -p2 (sin(s gamma - phi) + a sin(frequency t) cos(s gamma - phi)); s is the side, + or -1.
+    """One problem: phi'' = -p2 (sin(s gamma - phi) + a sin(frequency t) cos(s gamma - phi)), where s = ±1 is the side.
 
     It moves from `begin` [s] on, with `tilt` [rad] and no velocity; at an impact the velocity is multiplied by
     `restitution`, and the block rests when less than `rest_rate` [rad/s] is left. a = 0 without a pulse, or after
@@ -58,20 +58,23 @@ class Problem:
 
     @property
     def stops(self) -> list[float]:
-        """Times [s] where an integrator has to stop: the pulse's end, the horizon, the end."""
+        """Return the times [s] at which an integrator has to stop: the pulse's end, the horizon, the end."""
         return sorted({self.pulse_end, self.horizon, self.scene.duration} - {0.0})
 
     def error(self, tilt: float) -> float:
-        """Of a tilt [rad] at the horizon, over the slenderness [-]."""
+        """Return the error of a tilt [rad] at the horizon, over the slenderness [-]."""
         return abs(abs(tilt) - self.reference) / self.gamma
 
 
 def _problem(scene: Scene, rest: float, **known: Any) -> Problem:
-    """rest: rest_rate over omega_r; known: what the scene does not say."""
+    """Build a problem from a scene.
+
+    rest: rest_rate over omega_r. known: what the scene does not say.
+    """
     model, omega, pulse = RockingModel.of(scene), scene.rocking_frequency, scene.motion
     if pulse is None:
         a, frequency, pulse_end, begin, side = 0.0, 0.0, 0.0, 0.0, math.copysign(1.0, scene.start.tilt)
-    else:  # it lifts where the pulse first reaches g tan(gamma), to the left
+    else:  # the block lifts to the left when the pulse first reaches g tan(gamma)
         a, frequency, pulse_end, side = pulse.amplitude / scene.gravity, pulse.frequency, pulse.end, -1.0
         begin = math.asin(1 / (pulse.amplitude / (scene.gravity * math.tan(scene.block.slenderness)))) / frequency
     return Problem(
@@ -87,7 +90,7 @@ PROBLEMS = {problem.scene.name: problem for problem in SOLVED}
 
 
 def kernel_run(problem: Problem, tolerance: float) -> Callable[[], tuple[float, int]]:
-    """A function that runs `problem` without history or ledger; it returns (tilt at the horizon, impacts)."""
+    """Return a function that runs `problem` without history or ledger and returns (tilt at the horizon, impacts)."""
     scene = problem.scene
     inside = problem.horizon < scene.duration
     rest = problem.rest_rate / scene.rocking_frequency
@@ -102,7 +105,9 @@ def kernel_run(problem: Problem, tolerance: float) -> Callable[[], tuple[float, 
 
 
 def scipy_run(problem: Problem, rtol: float, method: str) -> Callable[[], tuple[float, int]]:
-    """A function that runs `problem` by `solve_ivp`, flight by flight; it returns (tilt at the horizon, impacts).
+    """Return a function that runs `problem` by `solve_ivp` and returns (tilt at the horizon, impacts).
+
+    It integrates flight by flight.
 
     Absolute tolerances are `rtol` of gamma and of gamma omega_r.
     """
@@ -161,7 +166,7 @@ INTEGRATORS: dict[tuple[str, str], Callable[..., Any]] = {
     ("analytic", "kernel"): kernel_run,
     **{("scipy", method): functools.partial(scipy_run, method=method) for method in METHODS},
 }
-# relative tolerances, of a full and of a quick run
+# relative tolerances of a full and of a quick study
 TOLERANCES = {
     ("analytic", "kernel"): (
         (1e-6, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15, 1e-16),
@@ -176,19 +181,22 @@ TOLERANCES = {
 
 @functools.lru_cache(maxsize=256)
 def run_of(problem: str, engine: str, variant: str, tolerance: float) -> Callable[[], tuple[float, int]]:
-    """A function without arguments: a problem by an integrator."""
+    """Return a function without arguments that solves a problem by an integrator."""
     return INTEGRATORS[engine, variant](PROBLEMS[problem], tolerance)
 
 
 def prepared(scene: Scene, *, engine: str, variant: str, tolerance: float, **settings: Any) -> Response:
-    """The first run, which loads and compiles what the timed ones need; nothing is measured in it."""
+    """Make the first run, which loads and compiles what the timed ones need; nothing is measured in it."""
     run_of(scene.name, engine, variant, tolerance)()
-    known = dict(engine=engine, variant=variant, outcome="rocks", settings=settings, versions={})
-    return Response.unmeasured(**known, end=State(scene.duration, *[math.nan] * 5))
+    identity = dict(engine=engine, variant=variant, outcome="rocks", settings=settings, versions={})
+    return Response.unmeasured(**identity, end=State(scene.duration, *[math.nan] * 5))
 
 
 def timed(case: Case, least: float) -> dict[str, Any]:
-    """What the runs of a problem found, and the mean CPU time of the last so many of them: of `least` [s] in all."""
+    """Return what the runs of a problem found, and their CPU time.
+
+    It is the mean of the last runs, as many as take `least` [s] in all.
+    """
     problem = PROBLEMS[case.scene.name]
     run = run_of(problem.scene.name, *(case.settings[name] for name in ("engine", "variant", "tolerance")))
     for repeats in (2**doubled for doubled in itertools.count()):
@@ -198,5 +206,5 @@ def timed(case: Case, least: float) -> dict[str, Any]:
         if (spent := time.process_time() - begin) >= least:
             break
     errors = {"lost": problem.impacts - impacts, "horizon_tilt": problem.error(tilt)}
-    known = {"outcome": "rocks", "end": {"time": case.scene.duration}, "steps": 0, "settings": case.settings}
-    return {**known, "boundary_shifts": None, "errors": errors, "cost": {"cpu_seconds": spent / repeats}}
+    values = {"outcome": "rocks", "end": {"time": case.scene.duration}, "steps": 0, "settings": case.settings}
+    return {**values, "boundary_shifts": None, "errors": errors, "cost": {"cpu_seconds": spent / repeats}}

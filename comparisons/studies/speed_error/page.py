@@ -1,7 +1,7 @@
-"""What is shown of the speed-error study.
+"""The page of the speed-error study: the error of each level, and its CPU time.
 
-What an error costs: the levels that were run as one row for each error, the cost at an equal error, and what the
-report's first screen says of it.
+Each level that was run gives one row for each error. From these rows follow the cost at an equal error, what the
+report's first screen says of it, and the figures and tables of the page.
 """
 
 import math
@@ -25,9 +25,10 @@ from ...schemas.columns import NAME, Column, Row, number, percent, short
 from ...schemas.columns import NAME as SOLVER
 from .study import COLUMNS, NEEDED, PLAIN
 
-FINE, FINE_LEVELS, FINEST = "horizon_tilt", (1e-6, 1e-9, 1e-12), 1e-16  # of integrators alone; the last is drawn
+# errors of integrators alone; the last is the smallest drawn
+FINE, FINE_LEVELS, FINEST = "horizon_tilt", (1e-6, 1e-9, 1e-12), 1e-16
 KERNEL = "analytic, kernel"
-# What is shown of a scene: the errors that it has of the first line whose first it has. All are numbers without a unit.
+# Errors shown of a scene: of the first line whose first error it has, all that it has. All are numbers without a unit.
 SHOWN = (("boundary_shift", "peak_tilt"), ("restitution", "peak_tilt"), ("peak_displacement",), (FINE,))
 MEASURES = {
     "restitution": "error of restitution, rms [-]",
@@ -41,24 +42,26 @@ ASKED = 1e-3
 PEAK, BOUNDARY = "peak_tilt", "boundary_shift"
 CPU = COLUMNS["cpu_seconds"]
 TIMES = "cpu_seconds", "cpu_per_second", "cpu_per_step"
-NOISE = 95  # percentile of the levels
+NOISE = 95  # percentile over the levels, see `noise`
 NOT_REACHED = Mark("not reached", "none")
-APART = "timed apart"  # with another processor or the code of another commit than the model
+APART = "timed apart"  # on another processor, or with the code of another commit, than the model
 SHORT = {KERNEL: "analytic model", "time-stepping": "our time stepping"}
 
 
 def levels_run(result: Result) -> list[dict[str, Any]]:
-    """The rows of all solvers at their levels, one for each error shown: with name, title of the scene, measure, error.
+    """Return the rows of all solvers at their levels, one for each error shown.
 
-    CPU times are the least of the rounds, as what else the machine does only adds to them (Chen, Revels 2016, Robust
-    benchmarking in noisy environments). The error is None where the run failed, missed impacts or found no boundary.
-    principal: it is the scene's first.
+    They also have name, title of the scene, measure and error. principal: whether the error is the first of its scene.
+
+    CPU times are those of the fastest round, because whatever else the machine does only adds to them (Chen, Revels
+    2016, Robust benchmarking in noisy environments). The error is None where the run failed, missed impacts or found no
+    boundary.
     """
     scenes = result.settings["scenes"]
     return [
         {
             **row,
-            **_least(row),
+            **_fastest_round(row),
             "name": NAME.of(row) + (", Bouc-Wen" if row["law"] == "bouc-wen" else ""),
             "title": scenes[row["scene"]]["title"],
             "measure": measure,
@@ -70,36 +73,42 @@ def levels_run(result: Result) -> list[dict[str, Any]]:
     ]
 
 
-def _least(row):
-    """Its CPU times, of the round that took least."""
+def _fastest_round(row):
+    """CPU times of the fastest round."""
     share = row["cpu_low"] / row["cpu_seconds"] if "cpu_seconds" in row else None
     return {key: row[key] * share for key in TIMES if share and row.get(key)}
 
 
 def measures_of(scene: dict[str, Any]) -> list[str]:
-    """The errors shown of a scene."""
+    """Return the errors shown of a scene, the principal one first."""
     line = next(line for line in SHOWN if line[0] in scene["measures"])
     return [measure for measure in line if measure in scene["measures"]]
 
 
 def as_needed(result: Result) -> list[dict[str, Any]]:
-    """Those of `levels_run` in which no more is modelled than the scene needs."""
+    """Return the rows of `levels_run` in which no more is modelled than the scene needs."""
     return [row for row in where(levels_run(result), model=NEEDED) if row["law"] != "bouc-wen"]
 
 
 def passing(rows: Iterable[dict[str, Any]], level: float) -> dict[str, Row]:
-    """{name: the cheapest of its rows at which it and all finer ones keep an error}, cheapest first; of one scene and
-    one measure."""
+    """Return {name: its cheapest row that keeps an error}, cheapest first.
+
+    All finer levels of the solver must keep the error too. rows: those of one scene and one measure. level: the error.
+    """
     return cheapest(rows, "name", lambda row: _within(row, level), CPU.of)
 
 
 def _within(row, error):
+    """Return whether a row has an error, and keeps the given one."""
     return row["error"] is not None and row["error"] <= error
 
 
 def level_costs(result: Result) -> dict[str, dict[tuple[str, str], dict[float, float]]]:
-    """{solver: {(scene, measure): {error: CPU time [s/s] of the cheapest level that, as all finer ones, keeps it}}} for
-    the errors `WANTED` that are reached, of all scenes but the problems."""
+    """Return {solver: {(scene, measure): {error: CPU time [s/s] of the cheapest level that keeps it}}}.
+
+    All finer levels must keep the error too. The errors are those of `WANTED` that are reached; the scenes of the
+    problems A and B are left out.
+    """
     costs: dict[str, dict[tuple[str, str], dict[float, float]]] = {}
     for (scene, measure), rows in grouped(as_needed(result), "scene", "measure").items():
         if measure != FINE:
@@ -112,7 +121,7 @@ def level_costs(result: Result) -> dict[str, dict[tuple[str, str], dict[float, f
 
 
 def equal_cost_tables(result: Result) -> list[Table | None]:
-    """A table for each error: what it costs every solver in every scene."""
+    """Return a table for each error: what it costs every solver in every scene."""
     costs, scenes, apart = level_costs(result), result.settings["scenes"], timed_apart(result)
     places = list(dict.fromkeys(place for by_place in costs.values() for place in by_place))
 
@@ -143,10 +152,14 @@ def equal_cost_tables(result: Result) -> list[Table | None]:
 
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
-    """CPU time over the analytic model's at an equal error, by (engine, variant); none without that scene."""
-    kept, apart, marks = keeping(result, ASKED), timed_apart(result), {}
-    for name, *pair in grouped(_plain(result), "name", "engine", "variant") if KERNEL in kept else ():
-        ratio = name in kept and kept[name]["cpu_per_second"] / kept[KERNEL]["cpu_per_second"]
+    """Judge CPU time over the analytic model's at an equal error, by (engine, variant); empty without that scene."""
+    cheapest_rows, apart, marks = keeping(result, ASKED), timed_apart(result), {}
+    for name, *pair in (
+        grouped(_main_scene_rows(result), "name", "engine", "variant") if KERNEL in cheapest_rows else ()
+    ):
+        ratio = (
+            name in cheapest_rows and cheapest_rows[name]["cpu_per_second"] / cheapest_rows[KERNEL]["cpu_per_second"]
+        )
         if name in {NAME.of(variant) for variant in result.settings["variants"]}:
             mark = Mark(f"{number(ratio, 2)} ×", "none", value=ratio) if ratio else NOT_REACHED
             marks[tuple(pair)] = Mark(APART, "none", apart[pair[0]]) if ratio and pair[0] in apart else mark
@@ -155,12 +168,13 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
 
 
 def level_words(row: Row) -> str:
+    """Return the accuracy parameter of a row and its level, in words."""
     return f"{row['parameter'].replace('_', ' ')} {short(row['level'])}" if row["parameter"] else "as written"
 
 
 def glance(result: Result) -> Glance | None:
-    """The curves of the first screen's chart of costs, and the recommendation by accuracy; None without the scene."""
-    rows = _plain(result)
+    """Return the curves and the recommendations of the report's first screen; None without the scene `PLAIN`."""
+    rows = _main_scene_rows(result)
     if not rows:
         return None
     return Glance(
@@ -173,24 +187,24 @@ def glance(result: Result) -> Glance | None:
     )
 
 
-def _plain(result):
+def _main_scene_rows(result):
     """Rows of the scene in which engines are compared, with the error of their peak tilt."""
     return where(as_needed(result), scene=PLAIN, measure=PEAK)
 
 
 def _curves(result, rows):
-    """Of every solver once: engines' main variants and those as they come, scripts, and the other solvers."""
+    """Yield one curve for every engine's main variant and defaults, for every script, and for every other solver."""
     listed = {NAME.of(settings): settings for settings in result.settings["variants"]}
     main, apart = mains(result.settings["variants"]), timed_apart(result)
     for (name_of_curve, engine, variant), levels in grouped(rows, "name", "engine", "variant").items():
         tier = listed[name_of_curve]["tier"] if name_of_curve in listed else ""
         if name_of_curve in listed and tier != "defaults" and main[engine] != variant:
             continue
-        known = {"tuned": f"{engine}, tuned", "defaults": f"{engine}, defaults"}
-        name = known.get(tier, f"{engine}, script" if variant == SCRIPT else SHORT.get(name_of_curve, engine))
+        names = {"tuned": f"{engine}, tuned", "defaults": f"{engine}, defaults"}
+        name = names.get(tier, f"{engine}, script" if variant == SCRIPT else SHORT.get(name_of_curve, engine))
         name += f" ({APART})" if engine in apart else ""
         points = tuple(
-            (row["cpu_per_second"], row["errors"]["peak_tilt"], not row["lost"], _says(row))
+            (row["cpu_per_second"], row["errors"]["peak_tilt"], not row["lost"], _tooltip(row))
             for row in levels
             if not row["failure"] and "peak_tilt" in row["errors"]
         )
@@ -198,45 +212,54 @@ def _curves(result, rows):
         yield Curve(name_of_curve, name, kind, engine in ENGINES and ENGINES[engine].subject, points)
 
 
-def _says(row):
+def _tooltip(row):
+    """Tooltip of a level: its error, its cost and its missed impacts."""
     lost = f", {row['lost']} impacts missed" if row["lost"] else ""
     error, cost = number(row["errors"]["peak_tilt"], 2), number(1e3 * row["cpu_per_second"], 2)
     return f"{row['name']}, {level_words(row)}: {error} in {cost} ms{lost}"
 
 
 def keeping(result: Result, error: float) -> dict[str, Row]:
-    """{solver: the row in `PLAIN` of its cheapest level that, as all finer ones, keeps an error}, cheapest first; the
-    error is that of the peak tilt there and of the overturning boundaries."""
+    """Return {solver: the row in `PLAIN` of its cheapest level that keeps an error}, cheapest first.
+
+    All finer levels must keep the error too. The error is that of the peak tilt in `PLAIN` and of the overturning
+    boundaries.
+    """
     cheapest_levels, rows = {}, as_needed(result)
     judged = [*where(rows, scene=PLAIN, measure=PEAK), *where(rows, measure=BOUNDARY)]
     for (name,), members in grouped(judged, "name").items():
         by_scene = grouped(members, "scene")
-        kept = [
+        levels_kept = [
             {row["level"] for row in kept_from(scene_rows, lambda row: _within(row, error))}
             for scene_rows in by_scene.values()
         ]
-        levels = [row for row in by_scene.get((PLAIN,), ()) if all(row["level"] in levels for levels in kept)]
+        levels = [row for row in by_scene.get((PLAIN,), ()) if all(row["level"] in levels for levels in levels_kept)]
         if levels:
             cheapest_levels[name] = min(levels, key=lambda row: row["cpu_per_second"])
     return dict(sorted(cheapest_levels.items(), key=lambda item: item[1]["cpu_per_second"]))
 
 
 def advice(result: Result, error: float) -> list[Advised]:
-    """What keeps an error: of tuned variants of subject engines, whose engine computes the impact, the cheapest
-    level of the cheapest, and that of every other that costs the same within the `noise`, or was timed apart."""
+    """Recommend the levels that keep an error at least cost.
+
+    Only tuned variants of subject engines whose engine computes the impact are considered. The list has the cheapest of
+    them, each other one that costs the same within the `noise`, and each that was timed apart; with none of these, it
+    has one entry without an engine.
+    """
     apart = timed_apart(result)
     able = {
         NAME.of(variant)
         for variant in where(result.settings["variants"], tier="tuned", applies_impact=False)
         if ENGINES[variant["engine"]].subject
     }
-    kept = [row for name, row in keeping(result, error).items() if name in able]
-    least = min((row["cpu_per_second"] for row in kept if row["engine"] not in apart), default=0.0)
-    alike = [row for row in kept if row["engine"] in apart or row["cpu_per_second"] <= noise(result) * least]
+    candidates = [row for name, row in keeping(result, error).items() if name in able]
+    least = min((row["cpu_per_second"] for row in candidates if row["engine"] not in apart), default=0.0)
+    alike = [row for row in candidates if row["engine"] in apart or row["cpu_per_second"] <= noise(result) * least]
     return [_advised(result, error, row) for row in alike] or [Advised(error)]
 
 
 def _advised(result, error, row):
+    """Recommendation of a row: its setting, its cost, the command that runs it, and its errors in other scenes."""
     main = mains(result.settings["variants"])[row["engine"]] == row["variant"]
     variant = "" if main else f" --variant {row['variant']}"
     level = f"{row['level']:.3g}".replace("e+", "e")
@@ -248,15 +271,17 @@ def _advised(result, error, row):
 
 
 def times(result: Result) -> str:
-    """CPU time of subject engines, tuned, over the model's at the error `ASKED`: "94 (a) and 200 (b) times the
-    analytic model’s CPU time"; "" where none reaches it."""
-    ratios = [f"{number(cost / model, 2)} ({engine})" for engine, cost, model in _asked(result)]
+    """Return CPU times of tuned subject engines over the model's at the error `ASKED`, in words.
+
+    For example "94 (a) and 200 (b) times the analytic model’s CPU time"; "" where none reaches the error.
+    """
+    ratios = [f"{number(cost / model, 2)} ({engine})" for engine, cost, model in _costs_at_asked(result)]
     return f"{listed(ratios)} times the analytic model’s CPU time" if ratios else ""
 
 
 def at_a_glance(result: Result) -> str:
-    """The same in sentences with the times themselves, and what a script costs; "" where none reaches it."""
-    costs = _asked(result)
+    """Return sentences on the CPU times at the error `ASKED`, and on what a script costs; "" where none reaches it."""
+    costs = _costs_at_asked(result)
     if not costs:
         return ""
     engine_costs = listed([f"{number(1e3 * cost, 2)} ms ({engine})" for engine, cost, _ in costs])
@@ -271,17 +296,19 @@ def at_a_glance(result: Result) -> str:
         words += f" Costs within a factor of {number(noise(result), 2)} are not distinguished, so these are the same."
     scripts = [
         f"{number(1e3 * row['cpu_per_second'], 2)} ms with an error of {percent(row['error'])} ({row['engine']})"
-        for row in _plain(result)
+        for row in _main_scene_rows(result)
         if row["variant"] == SCRIPT and row["error"] is not None
     ]
     return f"{words} A script written by rocking script has one level: {listed(scripts)}." if scripts else words
 
 
-def _asked(result):
-    """(engine, CPU time, the model's) of subject engines, tuned, that reach the error `ASKED`, but those timed
-    apart."""
-    kept, apart = keeping(result, ASKED), timed_apart(result)
-    model = kept.get(KERNEL)
+def _costs_at_asked(result):
+    """List (engine, CPU time, the model's) of tuned subject engines that reach the error `ASKED`.
+
+    Engines timed apart are left out.
+    """
+    cheapest_rows, apart = keeping(result, ASKED), timed_apart(result)
+    model = cheapest_rows.get(KERNEL)
     return [
         (row["engine"], row["cpu_per_second"], model["cpu_per_second"])
         for row in reached(result)
@@ -290,31 +317,31 @@ def _asked(result):
 
 
 def reached(result: Result) -> list[Row]:
-    """The levels `keeping` the error `ASKED` of tuned main variants of subject engines."""
-    kept, main = keeping(result, ASKED), mains(result.settings["variants"])
+    """Return the rows of `keeping` at the error `ASKED` for tuned main variants of subject engines."""
+    cheapest_rows, main = keeping(result, ASKED), mains(result.settings["variants"])
     return [
-        kept[NAME.of(variant)]
+        cheapest_rows[NAME.of(variant)]
         for variant in where(result.settings["variants"], tier="tuned")
         if ENGINES[variant["engine"]].subject
         and main[variant["engine"]] == variant["variant"]
-        and NAME.of(variant) in kept
+        and NAME.of(variant) in cheapest_rows
     ]
 
 
 def noise(result: Result) -> float:
-    """The factor below which two costs are not distinguished: of the median round over the least, without the largest.
+    """Return the factor below which two costs are not distinguished.
 
-    Had the round that took least not been run, the cost would be higher by this factor at most.
+    It is the `NOISE` percentile, over all levels, of the CPU time of the median round over that of the fastest. Without
+    its fastest round the cost of a level would be higher by this factor at most.
     """
     rows = where(result.rows, part="work-precision")
-    known = [row["cpu_seconds"] / row["cpu_low"] for row in rows if "cpu_seconds" in row]
-    return float(np.percentile(known or [1], NOISE))
+    ratios = [row["cpu_seconds"] / row["cpu_low"] for row in rows if "cpu_seconds" in row]
+    return float(np.percentile(ratios or [1], NOISE))
 
 
-__all__ = ["glance", "judgements", "page"]
-LEVELS = (1e-2, 1e-3, 1e-4, 1e-5)  # of an error
-DRAWN, ROUNDING = 1e-9, 1e-13  # errors below the first are drawn there, those below the second tell no order
-# (scene, error) of the figure of the report's page; the first screen has that of the peak tilt
+LEVELS = (1e-2, 1e-3, 1e-4, 1e-5)  # errors in the tables of costs
+DRAWN, ROUNDING = 1e-9, 1e-13  # errors below the first are drawn there; those below the second give no order
+# (scene, error) of the figure on the report's first page; its first screen has that of the peak tilt
 FIRST = (("free-rigid", "restitution"), (PLAIN, "restitution"), ("near-overturning", "boundary_shift"),
          ("near-overturning-jump", "boundary_shift"))  # fmt: skip
 PANELS = {"restitution": "restitution", "peak_tilt": "peak tilt", "peak_displacement": "displacement",
@@ -325,8 +352,9 @@ SCENE = Column("scene", "title")
 
 
 def page(result: Result) -> Page:
-    shown = levels_run(result)
-    every, rows = where(shown, principal=True), as_needed(result)
+    """Return the page of a result."""
+    rows_by_error = levels_run(result)
+    principal_rows, rows = where(rows_by_error, principal=True), as_needed(result)
     errors = grouped(rows, "scene", "measure")
     first = [key for key in errors if key in FIRST] or list(errors)[-1:]
     others = [key for key in errors if key not in first]
@@ -348,7 +376,7 @@ def page(result: Result) -> Page:
             _figure([row for key in others if key[1] == FINE for row in errors[key]], CPU, FINE_CAPTION, rows),
             Head("The cheapest level of each solver"),
             *(_costs(result, members) for members in errors.values()),
-            _without_error(every),
+            _without_error(principal_rows),
             Head("Step and order"),
             _figure(rows, COLUMNS["step"], "Mean step: simulated time over steps.", rows),
             *(
@@ -362,24 +390,24 @@ def page(result: Result) -> Page:
                 Column("CPU time per simulated second [s/s]", lambda row: _range(row["rows"], "cpu_per_second", 1)),
                 Column("CPU time per step [µs]", lambda row: _range(row["rows"], "cpu_per_step", 1e6)),
             ),
-            *_more_than_needed(result, every),
+            *_more_than_needed(result, principal_rows),
         ),
-        how=_how(result, every),
+        how=_how(result, principal_rows),
         evidence=tuple(
             (
                 f"{row['name']} at {level_words(row)}, {row['title']}: {row['failure']['reason']}",
                 row["failure"].get("message", ""),
             )
-            for row in every
+            for row in principal_rows
             if row["failure"]
         ),
     )
 
 
 MAIN_CAPTION = (
-    "Lower left is better. Coloured, where they keep 0.001 at a level and all finer ones: main variants, scripts as "
-    "written (open) and the first of each other solver. Grey: the rest, named under the pointer. No error is given for "
-    "levels that failed, missed impacts or found no boundary. Errors below 10⁻⁹ are drawn there."
+    "Lower left is better. Coloured, if they keep 0.001 at a level and all finer ones: main variants, scripts as "
+    "written (open) and the first variant of each other solver. Grey: the rest, named under the pointer. No error "
+    "is given for levels that failed, missed impacts or found no boundary. Errors below 10⁻⁹ are drawn there."
 )
 CAPTION = (
     "Lower left is better. Coloured: solvers that keep 0.001 at a level and all finer ones. Grey: the others, named "
@@ -388,7 +416,7 @@ CAPTION = (
 )
 
 FINE_CAPTION = (
-    "Integrators alone, left and low is better. Problems A (a free block) and B (a block under a pulse) have "
+    "Integrators alone. Lower left is better. Problems A (a free block) and B (a block under a pulse) have "
     "references of 30 digits. All integrate the same two equations, set up for speed: scipy without classes and with "
     "a first step of the length of the hop. scipy restarts at each impact."
 )
@@ -400,6 +428,7 @@ def _assisted(result):
 
 
 def _title(result):
+    """Title of the page: what the error `ASKED` costs subject engines."""
     place = f"Cost against error: {percent(ASKED, 1)} of peak tilt"
     if not (cost := times(result)):
         return f"{place} is reached by {f'engines {APART}' if reached(result) else 'no subject engine'}"
@@ -407,20 +436,22 @@ def _title(result):
 
 
 def _panel(row):
-    """The title of a panel: no two have one."""
+    """Title of a row's panel; no two panels have the same."""
     return f"{row['title'].replace(' boundary', '')}: {PANELS.get(row['measure'], row['measure'])}"
 
 
 def _leads(result):
-    """(engine, variant) of engines' main variants, of scripts, and of the first variant of each other solver."""
+    """Pairs (engine, variant) of main variants, of scripts, and of the first variant of each other solver."""
     main_variants = mains([*result.settings["variants"], *as_needed(result)])
     return [*main_variants.items(), *((engine, SCRIPT) for engine in main_variants)]
 
 
 def _figure(rows, x, caption, like, leads=()):
-    """Error over x, a panel for each scene; scenes of one kind of error share their axes. leads: the solvers that may
-    have a colour, in their order; none: all."""
-    kept = {
+    """Figure of error over x, a panel for each scene; scenes of one kind of error share their axes.
+
+    leads: the (engine, variant) that may have a colour, in their order; without any, all may.
+    """
+    coloured = {
         (*key, name)
         for key, members in grouped(rows, "scene", "measure").items()
         for name, row in passing(members, ASKED).items()
@@ -436,7 +467,7 @@ def _figure(rows, x, caption, like, leads=()):
             caption,
             panel=_panel,
             series=Series(
-                grey=lambda row: (row["scene"], row["measure"], row["name"]) not in kept,
+                grey=lambda row: (row["scene"], row["measure"], row["name"]) not in coloured,
                 like=like,
                 says=lambda row: f"{row['name']}, {level_words(row)}: {number(row['error'], 2)} in {CPU.text(row)} s",
             ),
@@ -448,34 +479,38 @@ def _figure(rows, x, caption, like, leads=()):
 
 
 def _costs(result, rows):
+    """Table of the CPU time at which each solver keeps each error in one scene."""
     levels = FINE_LEVELS if rows[0]["measure"] == FINE else LEVELS
     by_level = {level: passing(rows, level) for level in levels}
     assisted = _assisted(result)
 
     def cell(level):
-        kept = by_level[level]
+        cheapest_rows = by_level[level]
 
         def text(row):
-            if (best := kept.get(row["name"])) is None:
+            if (best := cheapest_rows.get(row["name"])) is None:
                 return None
-            fine = rows[0]["measure"] == FINE and KERNEL in kept  # others are compared at an equal error
-            ratio = f"{number(CPU.of(best) / CPU.of(kept[KERNEL]), 2)} ×; " if fine else ""
+            fine = rows[0]["measure"] == FINE and KERNEL in cheapest_rows  # other errors have tables at an equal error
+            ratio = f"{number(CPU.of(best) / CPU.of(cheapest_rows[KERNEL]), 2)} ×; " if fine else ""
             return f"{number(1e3 * CPU.of(best), 2)} ({ratio}{level_words(best)})"
 
         return Column(f"≤ {short(level)}", text)
 
     return table(
         f"{rows[0]['title']}: CPU time [ms] to keep the {MEASURES[rows[0]['measure']]}",
-        [{"name": name} for name in dict.fromkeys(name for kept in by_level.values() for name in kept)],
+        [
+            {"name": name}
+            for name in dict.fromkeys(name for cheapest_rows in by_level.values() for name in cheapest_rows)
+        ],
         Column("solver", lambda row: row["name"] + (" (assisted)" if row["name"] in assisted else "")),
         *map(cell, levels),
     )
 
 
-def _without_error(every):
-    """Levels that failed, missed impacts or found no boundary, which figures and tables of cost leave out."""
+def _without_error(rows):
+    """Table of levels that failed, missed impacts or found no boundary, which figures and tables of cost leave out."""
     counted = []
-    for (name, model, title, measure), members in grouped(every, "name", "model", "title", "measure").items():
+    for (name, model, title, measure), members in grouped(rows, "name", "model", "title", "measure").items():
         sound = [row for row in members if not row["failure"]]
         counted.append(
             {
@@ -488,7 +523,7 @@ def _without_error(every):
             }
         )
     return table(
-        "Levels without an error, of those run",
+        "Levels that were run and have no error",
         [row for row in counted if row["failed"] or row["lost"] or row["none"]],
         NAME_COLUMN,
         SCENE,
@@ -500,11 +535,12 @@ def _without_error(every):
 
 
 def _orders(measure, rows, scenes):
+    """Table of the observed order of each solver in each scene."""
     fits = {}
     for (name, scene), members in grouped(rows, "name", "scene").items():
-        known = [(row["level"], row["error"]) for row in members if (row["error"] or 0) > ROUNDING]
-        if len(known) >= 3:
-            order, error = fit(*zip(*known, strict=True))
+        points = [(row["level"], row["error"]) for row in members if (row["error"] or 0) > ROUNDING]
+        if len(points) >= 3:
+            order, error = fit(*zip(*points, strict=True))
             words = f"{round(order, 2) + 0.0:.2f} ± {error:.2f}".replace("-", "−")  # no minus before 0.00
             fits.setdefault(name, dict.fromkeys(scene for (scene,) in grouped(rows, "scene")))[scene] = words
     return table(
@@ -517,7 +553,10 @@ def _orders(measure, rows, scenes):
 
 
 def fit(x: npt.ArrayLike, y: npt.ArrayLike) -> tuple[float, float]:
-    """(exponent, its standard error) of y ~ x^exponent by least squares of the logarithms; three points or more."""
+    """Fit y ~ x^exponent by least squares of the logarithms; return (exponent, its standard error).
+
+    x, y: three values or more each.
+    """
     (slope, _), covariance = np.polyfit(np.log(x), np.log(y), 1, cov=True)
     return float(slope), math.sqrt(covariance[0, 0])
 
@@ -527,18 +566,18 @@ def _range(rows, key, unit):
     return f"{number(min(values), 2)} – {number(max(values), 2)}" if values else None
 
 
-def _more_than_needed(result, every):
-    """Rows with another model or law beside those of the same solver at the same level."""
-    plain = {
+def _more_than_needed(result, rows):
+    """Tables of rows with another model or law, beside those of the same solver at the same level."""
+    needed = {
         (row["scene"], row["engine"], row["variant"], row["level"]): row
-        for row in where(every, model=NEEDED)
+        for row in where(rows, model=NEEDED)
         if row["law"] != "bouc-wen" and "cpu_seconds" in row
     }
     pairs = [
-        {**row, "plain": plain[key], "ratio": CPU.of(row) / CPU.of(plain[key])}
-        for row in every
+        {**row, "plain": needed[key], "ratio": CPU.of(row) / CPU.of(needed[key])}
+        for row in rows
         for key in ((row["scene"], row["engine"], row["variant"], row["level"]),)
-        if key in plain and row is not plain[key] and "cpu_seconds" in row
+        if key in needed and row is not needed[key] and "cpu_seconds" in row
     ]
     laws = [
         {
@@ -569,9 +608,9 @@ def _more_than_needed(result, every):
         Column("error with more", error),
     )
     yield table(
-        "A Bouc-Wen bearing: CPU time over the algebraic law's at the same level; what it changes in the scene itself. "
-        "That it costs more is not confirmed here; the paper's own case (sub-stepped inside a time-step scheme) is not "
-        "tested",
+        "A Bouc-Wen bearing: CPU time over the algebraic law's at the same level, and what it changes in the scene "
+        "itself. It is not confirmed here that it costs more; the paper's own case (sub-stepped inside a time-step "
+        "scheme) is not tested",
         laws,
         NAME_COLUMN,
         SCENE,
@@ -583,9 +622,9 @@ def _more_than_needed(result, every):
     )
 
 
-def _how(result, every):
-    same = sum(row["repeatable"] for row in every)
-    differing = sorted({row["name"] for row in every if not row["repeatable"]})
+def _how(result, rows):
+    same = sum(row["repeatable"] for row in rows)
+    differing = sorted({row["name"] for row in rows if not row["repeatable"]})
     scenes = result.settings["scenes"].values()
     differences = [
         scene["reference_difference"].get(measure, 0.0) for scene in scenes for measure in measures_of(scene)
@@ -600,9 +639,9 @@ def _how(result, every):
         f"{machine['logical_cores']} cores.{beside}",
         "References are computed by the kernel at its tightest tolerance. An independent solution by scipy differs "
         f"from them by at most {number(max(differences), 1)} in the errors shown. Solvers of the equations apply eq. "
-        f"(7): their error of restitution under a motion is rounding. The errors of {same} of {len(every)} levels are "
-        f"the same bit for bit in every round{'; not those of ' + ', '.join(differing) if differing else ''}.",
-        "On a free base the largest tilt is that of the start and has no error. Errors of the peak displacement and "
-        "of the overturning boundary are relative. The boundary is searched: six runs, each at the amplitude where "
-        "the one before would just overturn.",
+        f"(7): their error of restitution under a motion is rounding. The errors of {same} of {len(rows)} levels are "
+        f"the same bit for bit in every round{'; the exceptions are of ' + ', '.join(differing) if differing else ''}.",
+        "On a free base the largest tilt is the tilt at the start, so it has no error. Errors of the peak "
+        "displacement and of the overturning boundary are relative. A boundary is searched for by six runs, each at "
+        "the amplitude where the one before would just overturn.",
     )

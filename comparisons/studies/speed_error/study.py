@@ -1,7 +1,8 @@
-"""Speed against error: fresh processes, warm, solvers in turn, repeated; error and CPU time from the very same runs.
+"""The speed-error study: error and CPU time of every solver at several levels, from the same runs.
 
-The scenes of the speed-error study with their references, and what runs on each: solvers and their levels; and an
-overturning boundary, and the search for the one that a solver has in the reference's place.
+Each round is a fresh process in which all solvers are warmed up and take turns. The module holds the scenes with their
+references, the solvers and levels that run on each, and the search for a solver's own overturning boundary near the
+reference's.
 """
 
 import dataclasses
@@ -45,7 +46,7 @@ from ..rows import SHARED
 from . import integrators
 from .integrators import PROBLEMS, SOLVER, timed
 
-# What its rows have; see `comparisons.studies.rows`.
+# The columns of its rows, and by part which of them a row has; see `comparisons.studies.rows`.
 COLUMNS = SHARED | declared(
     word_of("model", "modelled", "how the engine's model stands for the scene"),
     word_of("law", "law", "law of the bearings"),
@@ -78,8 +79,8 @@ PARTS = {
             boundary_shifts? settings"""
 }
 
-RUNS = 6  # of a search: the first at the reference's boundary, then at the corrected ones
-STRIDE = 0.05  # longest move of a search, relative; it ends within its runs or finds no boundary
+RUNS = 6  # of a search: the first is at the reference's boundary, the others at corrected amplitudes
+STRIDE = 0.05  # longest relative move of a search; a search that does not end within its runs finds no boundary
 SMALL = 1e-3  # margin below which the reference's slope alone is as good as a chord
 
 
@@ -92,7 +93,9 @@ class Boundary:
 
 
 def margin(scene: Scene, end: State) -> float:
-    """Energy beyond what tipping over needs, over m g R (1 - cos gamma), after the motion's end; conserved in flight.
+    """Return the energy beyond what tipping over needs, after the motion's end, over m g R (1 - cos gamma).
+
+    It is conserved in flight.
 
     Negative: the block falls back; positive: it overturns. With u = gamma - |phi|: (w^2/2 - p^2 (1 - cos u))/(p^2 (1 -
     cos gamma)).
@@ -103,7 +106,7 @@ def margin(scene: Scene, end: State) -> float:
 
 
 def at_amplitude(scene: Scene, amplitude: float) -> Scene:
-    """The scene with its pulse at another amplitude [m/s2]."""
+    """Return the scene with its pulse at another amplitude [m/s2]."""
     assert isinstance(scene.motion, PulseMotion)
     return scene.with_(motion=replace(scene.motion, amplitude=float(amplitude)))
 
@@ -111,7 +114,7 @@ def at_amplitude(scene: Scene, amplitude: float) -> Scene:
 def searched(
     run: Callable[[Scene], Response], scene: Scene, boundary: Boundary | None
 ) -> tuple[Response, list[float] | None, float]:
-    """A single run, or a search for the solver's own boundary.
+    """Run a scene once, or search for the solver's own boundary.
 
     The margin is smooth in the amplitude, so moving by the reference's slope converges at once for a solver near the
     reference; one far from it is bracketed.
@@ -128,34 +131,34 @@ def searched(
     first = run(scene)
     if boundary is None:
         return first, None, first.cpu_seconds
-    shift, shifts, cpu, known = 0.0, list[float](), 0.0, dict[float, float]()
+    shift, shifts, cpu, margins = 0.0, list[float](), 0.0, dict[float, float]()
     for _ in range(RUNS):
         moved = at_amplitude(scene, boundary.amplitude * (1 + shift))
-        response = run(moved) if known else first
+        response = run(moved) if margins else first
         cpu += response.cpu_seconds
         if response.outcome == "failed":
             return response, None, cpu
-        known[shift] = margin(moved, response.end) / boundary.slope
-        shift = _next(known, shift)
+        margins[shift] = margin(moved, response.end) / boundary.slope
+        shift = _next_shift(margins, shift)
         shifts.append(shift)
     return first, shifts, cpu
 
 
-def _next(known, last):
-    """Where to look next: by the chord of the two nearest points on either side, else by the reference's slope."""
-    below = max((at for at, value in known.items() if value <= 0), default=None)
-    above = min((at for at, value in known.items() if value > 0), default=None)
-    if below is None or above is None or abs(known[last]) < SMALL:
-        return last - min(max(known[last], -STRIDE), STRIDE)
-    if below > above:  # not monotone here: stay
+def _next_shift(margins, last):
+    """Choose the next shift: by the chord of the nearest points on either side, else by the reference's slope."""
+    below = max((at for at, value in margins.items() if value <= 0), default=None)
+    above = min((at for at, value in margins.items() if value > 0), default=None)
+    if below is None or above is None or abs(margins[last]) < SMALL:
+        return last - min(max(margins[last], -STRIDE), STRIDE)
+    if below > above:  # the margin is not monotone here: stay
         return last
-    return below + (above - below) * min(max(-known[below] / (known[above] - known[below]), 0.1), 0.9)
+    return below + (above - below) * min(max(-margins[below] / (margins[above] - margins[below]), 0.1), 0.9)
 
 
 TIGHTEST = 1e-17  # tolerance of the kernel as a reference
 LONGEST = 10.0  # s, of a run under the synthetic motion: the strong shaking and what follows
 FREQUENCY_RATIO = 3.0  # pulse frequency over omega_r, near-overturning scenes
-# shape of a pulse: amplitude / g tan(slenderness) on either side of its boundary; the second starts with a jump
+# {shape of a pulse: amplitudes over g tan(slenderness) on either side of its boundary}; the second starts with a jump
 BRACKETS = {"one-sine": (1.35, 1.45), "one-cosine": (1.8, 1.95)}
 
 TRANSPARENT = ("free-rigid", "near-overturning")  # scenes without base or record
@@ -168,10 +171,10 @@ HEAVY_BASE, SPRINGS, FREE_3D = "rigid ground as a heavy base", "rigid ground as 
 
 @dataclass(frozen=True, eq=False)
 class Trial:
-    """One scene of the study.
+    """One scene of the study, with its reference.
 
-    measures: names of the errors that mean something here, the principal one first. boundary: None but where the runs
-    search for one. reference: the kernel at its tightest.
+    measures: names of the errors that mean something here, the principal one first. boundary: the one that the runs
+    search for; None: they search for none. reference: the response of the kernel at its tightest.
     """
 
     name: str
@@ -184,17 +187,17 @@ class Trial:
         return tight(self.scene)
 
     def with_law(self, law: str) -> Self:
-        """The same trial with another bearing law, and that law's own reference."""
+        """Return the same trial with another bearing law, and that law's own reference."""
         return replace(self, scene=self.scene.with_(bearings={"law": law}))
 
 
 def tight(scene: Scene) -> Response:
-    """The reference response of a scene."""
+    """Return the reference response of a scene."""
     return simulate(scene, history=False, tolerance=TIGHTEST)
 
 
 def trials() -> list[Trial]:
-    """The six trials, in order of what they ask of a solver."""
+    """Return the six trials, in the order of what they ask of a solver."""
     free = caryatid_block(0.2)
     isolated: dict[str, Any] = {"base": BASE, "bearings": BEARINGS, "motion": synthetic_motion()}
     rigid = Scene(name="free rocking on rigid ground", block=free, start=Start(tilt=0.12), duration=5.0)
@@ -214,12 +217,15 @@ def trials() -> list[Trial]:
 
 
 def problem_trials() -> list[Trial]:
-    """Problems A and B as trials: of integrators, to fine errors; their references are not the kernel's."""
+    """Return problems A and B as trials of integrators, to fine errors; their references are not the kernel's."""
     return [Trial(name, problem.scene, ("horizon_tilt",)) for name, problem in integrators.PROBLEMS.items()]
 
 
 def near_overturning(shape: str, name: str = "near-overturning") -> Trial:
-    """A pulse at the amplitude where the block just overturns after one impact; its boundary is the question."""
+    """Return a trial near the amplitude at which a pulse just overturns the block after one impact.
+
+    The boundary itself is what solvers are asked for.
+    """
     block = caryatid_block(0.25)
     unit = 9.81 * math.tan(block.slenderness)
     pulse = PulseMotion(shape, unit, FREQUENCY_RATIO * Scene(block=block, duration=1.0).rocking_frequency)
@@ -241,9 +247,9 @@ def near_overturning(shape: str, name: str = "near-overturning") -> Trial:
 class Entry:
     """One solver at one level of its accuracy parameter on one trial.
 
-    engine, variant: what rows call it. parameter, level: None where there is but one. solver: what is run, if not the
-    engine. model: `NEEDED`, or what is modelled beyond what the scene needs; scene_of: the scene so modelled, of the
-    trial's.
+    engine, variant: its names in rows. parameter, level: None where there is only one level. solver: what is run, if
+    not the engine. model: `NEEDED`, or what is modelled beyond what the scene needs. scene_of: function from the
+    trial's scene to the scene so modelled.
     """
 
     trial: Trial
@@ -257,7 +263,7 @@ class Entry:
     scene_of: Callable[[Scene], Scene] = lambda scene: scene
 
     def case(self, turn: int) -> Case:
-        """The measurement of one round as a `Case`."""
+        """Return the measurement of one round as a `Case`."""
         solver, boundary = self.solver or self.engine, self.trial.boundary
         level = {self.parameter: self.level} if self.parameter else {}
         return Case(
@@ -270,6 +276,7 @@ class Entry:
 
 
 def powers(*exponents: float) -> tuple[float, ...]:
+    """Return powers of ten."""
     return tuple(10.0**exponent for exponent in exponents)
 
 
@@ -293,29 +300,29 @@ SCIPY_SAMPLED = {
 
 
 def refined(levels: Sequence[float]) -> list[float]:
-    """Levels with the geometric means of their neighbours."""
+    """Return levels with the geometric means of their neighbours between them."""
     means = (math.sqrt(a * b) for a, b in zip(levels, levels[1:], strict=False))
     return sorted({*levels, *means}, reverse=levels[0] > levels[-1])
 
 
 def levels_of(spec: Variant, quick: bool) -> list[float]:
-    """Levels of a variant that are run; few of the kind "defaults", whose error hardly changes."""
+    """Return the levels of a variant that are run; few of the kind "defaults", whose error hardly changes."""
     few = (spec.levels[0], spec.default) if quick else spec.levels
     return list(dict.fromkeys(few)) if quick or spec.kind == "defaults" else refined(spec.levels)
 
 
 def entries(scenes: Sequence[Trial], engines: Sequence[str], quick: bool) -> list[Entry]:
-    """All entries, so that solvers alternate: the first level of each, then the second of each."""
-    turns = (turn for trial in scenes for turn in zip_longest(*_ladders(trial, engines, quick)))
+    """Return all entries in an order in which solvers alternate: the first level of each, then the second of each."""
+    turns = (turn for trial in scenes for turn in zip_longest(*_levels_by_solver(trial, engines, quick)))
     return [entry for turn in turns for entry in turn if entry]
 
 
-def _ladders(trial: Trial, engines: Sequence[str], quick: bool) -> Iterator[list[Entry]]:
-    """Each solver's entries on a trial, level after level."""
+def _levels_by_solver(trial: Trial, engines: Sequence[str], quick: bool) -> Iterator[list[Entry]]:
+    """Yield each solver's entries on a trial, level after level."""
     if trial.name in integrators.PROBLEMS:
-        yield from _integrators(trial, quick)
+        yield from _integrator_entries(trial, quick)
         return
-    yield from _models(trial, SCIPY_SAMPLED if trial.name in SAMPLED else SCIPY, quick)
+    yield from _model_entries(trial, SCIPY_SAMPLED if trial.name in SAMPLED else SCIPY, quick)
     for name in engines:
         engine = get_engine(name)
         if engine.script and not quick:
@@ -328,25 +335,25 @@ def _ladders(trial: Trial, engines: Sequence[str], quick: bool) -> Iterator[list
                 steps = FREE_3D_STEPS[quick]
                 yield [Entry(trial, name, variant, "step", step, kind.free_block, model=FREE_3D) for step in steps]
     if trial.name in SAMPLED:
-        yield from _models(trial.with_law("bouc-wen"), {"DOP853": SCIPY_SAMPLED["DOP853"]}, quick)
+        yield from _model_entries(trial.with_law("bouc-wen"), {"DOP853": SCIPY_SAMPLED["DOP853"]}, quick)
     if trial.name in TRANSPARENT:
         ways = [(SPRINGS, models.on_stiff_springs)]
         if trial.scene.motion is None:  # a free base does not feel the ground's motion
             ways.append((HEAVY_BASE, models.on_heavy_base))
         for model, change in ways:
-            yield [_kernel(trial, level, model=model, scene_of=change) for level in powers(-8, -12)[quick:]]
+            yield [_kernel_entry(trial, level, model=model, scene_of=change) for level in powers(-8, -12)[quick:]]
 
 
-def _models(trial, methods, quick):
-    """The kernel, time stepping, and the equations in scipy by these methods."""
-    yield [_kernel(trial, level) for level in KERNEL[quick]]
+def _model_entries(trial, methods, quick):
+    """Entries of the kernel, of time stepping, and of the equations in scipy by these methods."""
+    yield [_kernel_entry(trial, level) for level in KERNEL[quick]]
     yield [Entry(trial, "time-stepping", "", "step", step) for step in STEPPING[quick]]
     for method, levels in methods.items():
         settings = {"energy": False, "method": method}
         yield [Entry(trial, "scipy", method, "rtol", level, "twin", settings) for level in levels[quick]]
 
 
-def _integrators(trial, quick):
+def _integrator_entries(trial, quick):
     for (engine, variant), levels in integrators.TOLERANCES.items():
         settings = {"engine": engine, "variant": variant}
         yield [
@@ -354,7 +361,7 @@ def _integrators(trial, quick):
         ]
 
 
-def _kernel(trial, level, **modelled):
+def _kernel_entry(trial, level, **modelled):
     return Entry(trial, "analytic", "kernel", "tolerance", level, **modelled)
 
 
@@ -363,13 +370,13 @@ WHOLE = "its CPU times are compared with each other, so they have to be measured
 
 REPEATS, QUICK_REPEATS = 5, 3
 TICK = 4e-3  # s of CPU: shorter measurements are repeated until they took as long, and the mean counts
-SLOW = 0.5  # s of CPU: next to it what is loaded in a first run is nothing; such a measurement needs no warm-up
+SLOW = 0.5  # s of CPU: a run as long as this needs no warm-up, as what a first run loads takes little beside it
 SECONDS = 1.0  # over which the load of the machine is measured
 MOST_REPEATS = 200
 TWIN_TOLERANCE = 1e-13  # of the independent solution each reference is compared with
 EVIDENCE = 600  # characters of an engine's message that a row keeps
-# A boundary search that still moves this far has found none. Where steps are fixed, the boundary depends on where in a
-# step the impact falls, which differs from run to run: the root mean square of the last positions stands for it.
+# A search that still moves this far has found no boundary. With fixed steps the boundary depends on where in a step the
+# impact falls, which differs from run to run: the root mean square of the last positions stands for it.
 STRAY, LAST = 0.025, 3
 
 Repeats = Annotated[int | None, typer.Option(min=1, max=1000, help="Fresh processes in turn. Default 5, quick 3.")]
@@ -377,15 +384,15 @@ Only = Annotated[str | None, typer.Option("--scene", metavar="NAME", help='One s
 
 
 def load(case: Case, response: Response) -> dict[str, Any]:
-    """Measure: the share of the machine's CPU time that other processes take meanwhile, as nothing of ours runs [-]."""
+    """Measure the share of the machine's CPU time that other processes take while nothing of ours runs [-]."""
     return {"cost": {"load": psutil.cpu_percent(SECONDS) / 100}}
 
 
 def measure(case: Case, response: Response) -> dict[str, Any]:
-    """What is kept of one measurement, and its CPU time: the mean over runs of at least `TICK` in all.
+    """Return what is kept of one measurement, and its CPU time: the mean over runs of at least `TICK` in all.
 
-    The run that made `response` has loaded code and caches; where it was long enough it is the measurement itself. A
-    case whose tag holds a boundary, (amplitude, slope) of a `Boundary`, is a search for it.
+    The run that made `response` has loaded code and caches; if it was long enough, it is the measurement itself. A case
+    whose tag holds a boundary, (amplitude, slope) of a `Boundary`, is a search for it.
     """
     if case.solver == SOLVER:
         return timed(case, TICK)
@@ -407,7 +414,9 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
 
 
 def errors(trial: Trial, values: Mapping[str, Any], shifts: Sequence[float] | None = None) -> dict[str, float]:
-    """Absolute errors by measure, as far as the trial has them and the run shows them; and "lost", its missed impacts.
+    """Return absolute errors by measure, and "lost", the number of missed impacts.
+
+    Measures that the trial does not have, or the run does not show, are absent.
 
     Parameters
     ----------
@@ -430,12 +439,12 @@ def errors(trial: Trial, values: Mapping[str, Any], shifts: Sequence[float] | No
         by_measure["end_tilt"] = [abs(abs(end["tilt"]) - abs(reference.end.tilt)) / gamma]
     if shifts and abs(shifts[-1] - shifts[-2]) < STRAY:
         by_measure["boundary_shift"] = shifts[-LAST:]
-    known = {name: rms(by_measure[name]) for name in trial.measures if len(by_measure.get(name, ()))}
-    return {"lost": lost_impacts(run, reference), **known}
+    root_mean_squares = {name: rms(by_measure[name]) for name in trial.measures if len(by_measure.get(name, ()))}
+    return {"lost": lost_impacts(run, reference), **root_mean_squares}
 
 
 def _restitution_errors(scene, run):
-    """e - eq. (7) of the impacts fast enough; under a motion e is that of the states."""
+    """Errors of restitution, e - eq. (7), at the impacts fast enough; under a motion e is that of the states."""
     if scene.motion is None and scene.bearings is None:
         return rate_restitution(run) - restitution(scene)
     strong: Any = SimpleNamespace(impacts=strong_impacts(run))
@@ -450,7 +459,7 @@ def plan(
     repeats: Repeats = None,
     scene: Only = None,
 ) -> Plan:
-    """The plan of the study: in each round, one fresh process, every solver has its turn.
+    """Plan the measurements: in each round, one fresh process, every solver has its turn.
 
     Parameters
     ----------
@@ -465,10 +474,12 @@ def plan(
         Name of the one scene that is run; None: all.
     """
     rounds = repeats or (QUICK_REPEATS if request.quick else REPEATS)
-    known = scenes or [*trials(), *problem_trials()]
-    scenes = [trial for trial in known if scene in (None, trial.name)]
+    all_trials = scenes or [*trials(), *problem_trials()]
+    scenes = [trial for trial in all_trials if scene in (None, trial.name)]
     if not scenes:
-        raise SettingError(f"--scene {scene}: no such scene; give one of {', '.join(trial.name for trial in known)}")
+        raise SettingError(
+            f"--scene {scene}: no such scene; give one of {', '.join(trial.name for trial in all_trials)}"
+        )
     measured = [(entry, []) for entry in entries(scenes, request.engines, request.quick) if keep(entry)]
     loads = []
     for turn in range(rounds):
@@ -492,7 +503,7 @@ def plan(
 
 
 def _row(entry, timings):
-    """JSON-ready row of an entry from its rounds: medians of the CPU time, lowest and highest."""
+    """Return the JSON-ready row of an entry from its rounds: CPU times are medians, with lowest and highest."""
     first, trial = timings[0], entry.trial
     values = first.values
     row = {
@@ -539,7 +550,7 @@ def _evidence(failure):
 
 
 def description(trial: Trial) -> dict[str, Any]:
-    """A trial for the result file; of a problem its title and measures.
+    """Describe a trial for the result file; a problem by its title and measures only.
 
     reference_difference: errors of an independent solution, scipy DOP853 at its tightest. bouc_wen: what that law
     changes in the scene itself, relative; None without bearings.

@@ -1,4 +1,8 @@
-"""The named hard cases: a scene each, and what is known about it.
+"""The named hard cases of the stability study: a scene each, and what is known about it.
+
+First stand the block and the motions that several cases share. Cases without friction follow, each with one extreme
+quantity of the start, the motion, the bearings or the block. The last ones have friction: the block slides, or nearly
+so.
 
 What a hard case is, and the block and the motions that several share.
 
@@ -33,10 +37,10 @@ FREE, SLIDING = "free rocking", "model and Moreau"
 class HardCase:
     """One hard case.
 
-    title: what is hard about it. closed: the solution is known in closed form. expected: measure -> value known
-    beforehand, slips in m. step [s]: what every solver that steps has to take. tolerances: kind of solver -> measure ->
-    (value, reason), in place of the general ones. twin_until: the twin is slow, and judges the kernel up to this time
-    [s] only. quick: part of the quick study.
+    title: what is hard about it. closed: whether the solution is known in closed form. expected: measure -> value known
+    beforehand, slips in m. step [s]: the step that every stepping solver has to take. tolerances: kind of solver ->
+    measure -> (value, reason), in place of the general ones. twin_until: the twin is slow, so it judges the kernel only
+    up to this time [s]. quick: whether it is part of the quick study.
     """
 
     title: str
@@ -54,18 +58,24 @@ class HardCase:
 
     @property
     def oracle(self) -> str:
-        """Who judges: with friction the model all others, and Moreau's time stepping the model; else the closed form of
-        free rocking, or kernel and twin each other, and the kernel all others."""
+        """Kind of solution that judges the case.
+
+        With friction Moreau's time stepping judges the model, and the model all others. Without friction the closed
+        form of free rocking, if there is one, judges the kernel; else kernel and twin judge each other. The kernel
+        judges all others.
+        """
         if self.scene.friction is not None:
             return SLIDING
         return FREE if self.closed else "kernel and twin"
 
 
 def sampled(values: npt.ArrayLike, dt: float = 0.01) -> SampledMotion:
+    """Return a motion from its accelerations [m/s2] at a step [s]."""
     return SampledMotion(dt, np.asarray(values, dtype=float))
 
 
 def times(seconds: float, dt: float = 0.01) -> np.ndarray:
+    """Return the times [s] of a sampled motion."""
     return np.arange(round(seconds / dt) + 1) * dt
 
 
@@ -81,6 +91,7 @@ LAWS = {
 
 
 def extremes() -> list[HardCase]:
+    """Return the cases without friction that have one extreme quantity."""
     return [*_starts(), *_pulses(), *_samples(), *_vertical(), *_extreme_bearings(), *_inertias()]
 
 
@@ -243,6 +254,7 @@ TO_AND_FRO = {"peak slip": 0.29498304635961, "end slip": 0.27196034003751}
 
 
 def sliding() -> list[HardCase]:
+    """Return the cases with friction."""
     return [*_level(), *_near_slenderness(), *_impacts(), *_swings(), *_isolated()]
 
 
@@ -292,14 +304,17 @@ def _level():
 
 
 def _near_slenderness():
-    """A half-sine of twice the acceleration that lifts the block if it does not slide before."""
+    """Two cases with friction just below and just above tan(slenderness).
+
+    The half-sine has twice the acceleration that lifts a block which does not slide.
+    """
     w, share = 3.0, 0.999
     pulse = PulseMotion("half-sine", 2 * THRESHOLD, w)
     begins = math.asin(share / 2)
-    # of the ground under the block until the pulse ends, less what friction takes of it; then it stops
+    # slip of the ground under the block until the pulse ends, less what friction takes of it; then the block stops
     v = 2 * THRESHOLD / w * (math.cos(begins) + 1) - share * THRESHOLD * (math.pi - begins) / w
-    way = 2 * THRESHOLD * (math.cos(begins) * (math.pi - begins) + math.sin(begins)) / w**2
-    way += v**2 / (2 * share * THRESHOLD) - share * THRESHOLD * ((math.pi - begins) / w) ** 2 / 2
+    slip = 2 * THRESHOLD * (math.cos(begins) * (math.pi - begins) + math.sin(begins)) / w**2
+    slip += v**2 / (2 * share * THRESHOLD) - share * THRESHOLD * ((math.pi - begins) / w) ** 2 / 2
     lifts = {"outcome": "rocks", "uplift time": math.asin(0.5) / w}
     return [
         _case(
@@ -310,7 +325,10 @@ def _near_slenderness():
             expected=expected,
             quick=True,
         )
-        for factor, words, expected in ((share, "it only slides", _slides(way)), (1.001, "it lifts, and slides", lifts))
+        for factor, words, expected in (
+            (share, "it only slides", _slides(slip)),
+            (1.001, "it lifts, and slides", lifts),
+        )
     ]
 
 
@@ -394,7 +412,7 @@ GAP = 3.62  # between overturning with and without an impact
 
 @functools.cache
 def hard_cases() -> dict[str, HardCase]:
-    """Name -> `HardCase`, in the order of the report."""
+    """Return {name: `HardCase`}, in the order of the report."""
     cases = [
         *_rest(),
         *_uplift(),
@@ -578,7 +596,7 @@ def _steps():
     free = Scene(block=BLOCK, start=Start(tilt=0.6 * GAMMA))
     return [
         case
-        # other scenes by the step, that no two are one: shorter, or of another motion
+        # scenes of different steps, shorter or with another motion, so that no two are the same
         for steps, duration, motion in ((60, 6.0, gentle), (20, 6.5, gentle.scaled(1.01)))
         for case in (
             HardCase(

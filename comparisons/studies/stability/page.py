@@ -1,4 +1,4 @@
-"""What is shown of the stability study."""
+"""The page of the stability study: hard cases and the solvers that get them right."""
 
 import re
 from itertools import product
@@ -14,8 +14,8 @@ from ...schemas.columns import Column, short
 from .cases import FREE, SLIDING
 from .study import COLUMNS, DEFAULT, DIFFERS, FAILED, FINER, RIGHT, may_slide, worst
 
-WRONG = "wrong"  # a run that differs in its outcome: never the colour of a small error
-# sign in a cell, its class in the style sheet
+WRONG = "wrong"  # a run with another outcome: it never has the colour of a small error
+# {result: (sign in a cell, its class in the style sheet)}
 SIGNS = {
     RIGHT: ("✓", RIGHT),
     DIFFERS: ("~", "degraded"),
@@ -30,13 +30,13 @@ APART = "outside the range"
 MOST, SOME = 0.85, 0.6  # shares of cases from which a solver may be trusted, and is usable with care
 NOTED = 2  # cases named in the note of the first table
 SLANT, UPRIGHT = 4.1, 6.9  # height of a letter of the slanted and of the upright names below a matrix
-STRIP = 1180  # width of the matrix that takes a page's
+STRIP = 1180  # width of the matrix over a whole page
 TWIN = "second implementation"
 SHORT = {TWIN: "2nd code", "time-stepping": "steps"}
 
 
 def _readable(words):
-    """Words with powers of ten and minus signs as a reader writes them."""
+    """Return words with powers of ten and minus signs as a reader writes them."""
     powers = re.sub(r"\d[.\d]*e[-+]?\d+", lambda match: short(float(match[0])).removeprefix("1·"), words)
     return powers.replace(" -", " −").replace("m/s2", "m/s²")
 
@@ -47,36 +47,38 @@ TOLERANCE = Column("tolerance", "tolerance", digits=None)
 
 
 def page(result: Result) -> Page:
+    """Return the page of a result."""
     cases, measures = result.settings["cases"], result.settings["measures"]
-    cells, variants = _cells(result), _judged(result)
-    within, apart = _parted(cases)
+    cells, variants = _cells(result), _judged_variants(result)
+    inside, outside = _by_range(cases)
     chosen = [variant for variant in variants if variant["best"] or subject(variant) and as_it_comes(variant)]
     counts = sorted(_counts(result, cells), key=lambda row: -row[RIGHT])
     wrong = where(cells.values(), result={DIFFERS, FAILED})
     return Page(
-        _title(cells, within, apart, where(variants, kind="stepping", best=True)),
+        _title(cells, inside, outside, where(variants, kind="stepping", best=True)),
         (
             "Real integrators have failed on these scenes. A result is right if every measure is within its tolerance; "
             "otherwise it differs. It fails if the solver gives up, exceeds its time limit or moves the block in a "
             "physically impossible way.",
             _reference(result),
-            _most(where(counts, kind="stepping")),
+            _best_solvers(where(counts, kind="stepping")),
             *(
                 [
-                    f"{len(apart)} of the {len(cases)} cases lie outside the range for which engines are tested. They "
-                    "are counted separately."
+                    f"{len(outside)} of the {len(cases)} cases lie outside the range for which engines are tested. "
+                    "They are counted separately."
                 ]
-                if apart
+                if outside
                 else []
             ),
         ),
-        first=_summary(cells, within, apart, chosen, counts),
-        more=_details(result, cases, measures, cells, variants, apart, chosen, wrong),
+        first=_summary(cells, inside, outside, chosen, counts),
+        more=_details(result, cases, measures, cells, variants, outside, chosen, wrong),
         how=(
             "The reference itself is judged by its independent second implementation and, for free rocking, by the "
-            "closed form; with friction by Moreau’s time stepping, which shares no code with it. Trajectories are "
-            "compared up to each scene’s sensitivity horizon and unstable point; beyond, only outcomes that a change "
-            "of 10⁻⁴ does not alter. Energy drift and gain are what exceeds the same measure of the reference.",
+            "closed form. With friction it is judged by Moreau’s time stepping, which shares no code with it. "
+            "Trajectories are compared up to each scene’s sensitivity horizon and unstable point. Beyond these only "
+            "the outcome is compared, and only if a change of 10⁻⁴ does not alter it. Energy drift and gain are "
+            "what exceeds the same measure of the reference.",
             "Where a result is not right, finer levels are run in turn. Scenes of ten minutes are run by the engines’ "
             f"main variants only. A run may take {result.settings['time_limit']:g} s.",
             f"The range for which engines are tested: {in_words()}.",
@@ -92,12 +94,12 @@ def page(result: Result) -> Page:
     )
 
 
-def _summary(cells, within, apart, chosen, counts):
-    """What stands on the report's first page, too."""
+def _summary(cells, inside, outside, chosen, counts):
+    """Parts that the report's first page shows too."""
     return (
         _strip(
             cells,
-            within,
+            inside,
             chosen,
             "Default levels. Blank or ✓: right; ~: differs; ≠: another outcome; ✗: failed. Under the pointer: the "
             "measure farthest outside its tolerance. 2nd code: the independent second implementation; steps: plain "
@@ -109,15 +111,15 @@ def _summary(cells, within, apart, chosen, counts):
             NAME,
             *(Column(f"{name} [-]", name) for name in (RIGHT, DIFFERS, FAILED)),
             Column("right at finer levels [-]", FINER),
-            *([Column(f"right {APART}", APART)] if apart else []),
+            *([Column(f"right {APART}", APART)] if outside else []),
         ),
     )
 
 
-def _details(result, cases, measures, cells, variants, apart, chosen, wrong):
-    """What stands on the study's own page alone."""
+def _details(result, cases, measures, cells, variants, outside, chosen, wrong):
+    """Parts that only the study's own page shows."""
     return (
-        _matrix(cells, apart, chosen, "Cases outside the range, counted apart."),
+        _matrix(cells, outside, chosen, "Cases outside the range. They are counted separately."),
         _matrix(
             cells,
             cases,
@@ -157,7 +159,7 @@ def _details(result, cases, measures, cells, variants, apart, chosen, wrong):
             [{**case, "case": name} for name, case in cases.items()],
             CASE,
             Column("what is hard", lambda row: _readable(row["title"])),
-            Column("judged by, and tolerances of its own", _judge),
+            Column("judged by, and its own tolerances", _judged_by),
             Column(APART, lambda case: ", ".join(f"{name} {short(v)}" for name, v in _outside(case).items()) or "–"),
             Column("duration [s]", "duration", digits=None),
         ),
@@ -165,6 +167,7 @@ def _details(result, cases, measures, cells, variants, apart, chosen, wrong):
 
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
+    """Judge how many hard cases are right, by (engine, variant)."""
     marks, cells = {}, _cells(result)
     for row in _counts(result, cells):
         if not row["run"]:
@@ -184,23 +187,25 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
     return (Judgement("hard cases right", marks),)
 
 
-def _judged(result):
-    """The variants that have a row: all but the reference, which judges them."""
+def _judged_variants(result):
+    """Return the variants that have a row: all but the reference, which judges them."""
     return [variant for variant in result.settings["variants"] if variant["engine"] != REFERENCE]
 
 
 def _reference(result):
-    """Who judges, and how the judge itself fares with others."""
+    """Sentences on the reference: it judges the others, and is judged itself."""
     model_rows = where(result.rows, part=DEFAULT, engine=REFERENCE)
     right = len(where(model_rows, result=RIGHT))
     return (
-        "The reference is the analytic model. It judges all others, and so has no row of its own. Its own judges, see "
-        f"the method, find it right in {right} of {len(model_rows)} cases."
+        "The reference is the analytic model. It judges all others, so it has no row of its own. Its own judges (see "
+        f"the method) find it right in {right} of {len(model_rows)} cases."
     )
 
 
 def _cells(result):
-    """{(case, name): row at the default level, its measure farthest outside, and the result of finer levels}.
+    """Return {(case, name): row at the default level, its measure farthest outside, and the result of finer levels}.
+
+    Finer levels are run in turn until one is right: the last one counts.
 
     These are run in turn until one is right: the last one counts.
     """
@@ -209,7 +214,7 @@ def _cells(result):
         if case["oracle"] == SLIDING and not may_slide(variant["engine"], variant["applies_impact"])
         else NOT_RUN
         for name, case in result.settings["cases"].items()
-        for variant in _judged(result)
+        for variant in _judged_variants(result)
     }
     finer = {(row["case"], NAME.of(row)): row for row in where(result.rows, part=FINER)}
     for row in where(result.rows, part=DEFAULT):
@@ -245,13 +250,16 @@ def _remedy(row, finer):
 
 
 def _counts(result, cells):
-    """Each variant with the numbers of its results, of runs, and of finer levels run and right, inside the range; and,
-    in words, of its right results outside."""
-    _, apart = _parted(result.settings["cases"])
-    for variant in _judged(result):
+    """Yield each variant with counts of its results.
+
+    Within the range: numbers of results by kind, of runs, and of results rerun at finer levels and then right. Outside
+    the range: its right results, in words.
+    """
+    _, outside = _by_range(result.settings["cases"])
+    for variant in _judged_variants(result):
         ran = {case: cell for (case, name), cell in cells.items() if name == NAME.of(variant) and "engine" in cell}
-        beyond = [cell for case, cell in ran.items() if case in apart]
-        rows = [cell for case, cell in ran.items() if case not in apart]
+        beyond = [cell for case, cell in ran.items() if case in outside]
+        rows = [cell for case, cell in ran.items() if case not in outside]
         counts = {kind: len(where(rows, result=kind)) for kind in (RIGHT, DIFFERS, FAILED)}
         tried = [row for row in rows if row["remedy"] != NOT_TRIED]
         cured = len(tried) - len(where(tried, remedy=NONE_FOUND))
@@ -260,31 +268,34 @@ def _counts(result, cells):
 
 
 def _outside(case):
-    """{quantity outside the range for which engines are tested: its value} of a case; older results do not tell."""
+    """Return {quantity outside the range for which engines are tested: its value} of a case.
+
+    Older results do not store it; for them it is empty.
+    """
     return case.get("outside", {})
 
 
-def _parted(cases):
-    """(cases inside the range for which engines are tested, those outside)."""
-    apart = {name: case for name, case in cases.items() if _outside(case)}
-    return {name: case for name, case in cases.items() if name not in apart}, apart
+def _by_range(cases):
+    """Return the cases inside the range for which engines are tested, and those outside."""
+    outside = {name: case for name, case in cases.items() if _outside(case)}
+    return {name: case for name, case in cases.items() if name not in outside}, outside
 
 
-def _title(cells, within, apart, engines):
+def _title(cells, inside, outside, engines):
     names = [NAME.of(engine) for engine in engines]
     none, beyond = (
         [case for case in cases if not any(cells[case, name]["result"] == RIGHT for name in names)]
-        for cases in (within, apart)
+        for cases in (inside, outside)
     )
     listed = _readable(f" ({'; '.join(none[:3])}{' …' if len(none) > 3 else ''})") if none else ""
-    more = f"; {APART} {len(beyond)} of {len(apart)}" if apart else ""
+    more = f"; {APART} {len(beyond)} of {len(outside)}" if outside else ""
     if len(names) > 2:
-        return f"Hard cases: no engine gets {len(none)} of {len(within)} right{listed}{more}"
-    return f"Hard cases: {len(none)} of {len(within)} are not right in {' and '.join(names)}{listed}{more}"
+        return f"Hard cases: no engine gets {len(none)} of {len(inside)} right{listed}{more}"
+    return f"Hard cases: {len(none)} of {len(inside)} are not right in {' and '.join(names)}{listed}{more}"
 
 
-def _most(counts):
-    """The solvers with most right cases, and the effect of finer levels."""
+def _best_solvers(counts):
+    """Sentences on the solvers with most right cases, and on the effect of finer levels."""
     most = max((row[RIGHT] for row in counts), default=0)
     names = " and ".join(NAME.of(row) for row in counts if row[RIGHT] == most)
     run, right, tried, cured = (sum(row[key] for row in counts) for key in ("run", RIGHT, "tried", FINER))
@@ -295,14 +306,14 @@ def _most(counts):
 
 
 def _matrix(cells, cases, variants, caption):
-    """A line for each case, a column for each variant, in two halves; None: no variants or cases."""
+    """Figure with a line for each case and a column for each variant, in two halves; None without variants or cases."""
     charts = _halves(cells, cases, variants)
     return figure(charts, caption) if charts else None
 
 
 def _strip(cells, cases, variants, caption):
-    """A column for each case, a line for each variant; on a phone as `_matrix`."""
-    halves, names = _halves(cells, cases, variants), {NAME.of(variant): _short(variant) for variant in variants}
+    """Figure with a column for each case and a line for each variant; on a phone as `_matrix`."""
+    halves, names = _halves(cells, cases, variants), {NAME.of(variant): _label(variant) for variant in variants}
     if not halves:
         return None
     foot = 14 + round(UPRIGHT * max(len(_readable(case)) for case in cases))
@@ -318,13 +329,14 @@ def _strip(cells, cases, variants, caption):
         turned=True,
     )
     for (i, case), (j, name) in product(enumerate(cases), enumerate(names)):
-        sign, kind, says = _told(cells[case, name], case, name)
+        sign, kind, says = _drawn_cell(cells[case, name], case, name)
         chart.cell(i, j, kind, "" if sign == SIGNS[RIGHT][0] else sign, says)
     return broad(chart, halves, caption)
 
 
 def _halves(cells, cases, variants):
-    names = {NAME.of(variant): _short(variant) for variant in variants}
+    """Charts of the two halves of `_matrix`."""
+    names = {NAME.of(variant): _label(variant) for variant in variants}
     if not names or not cases:
         return []
     middle, foot, charts = (len(cases) + 1) // 2, 22 + round(SLANT * max(map(len, names.values()))), []
@@ -340,32 +352,32 @@ def _halves(cells, cases, variants):
             height=16 + foot + 19 * len(half),
         )
         for (j, case), (i, name) in product(enumerate(half), enumerate(names)):
-            sign, kind, says = _told(cells[case, name], case, name)
+            sign, kind, says = _drawn_cell(cells[case, name], case, name)
             chart.cell(i, j, kind, sign, says)
         charts.append(chart)
     return charts
 
 
-def _told(cell, case, name):
-    """(sign, class, what it tells under the pointer) of a cell."""
+def _drawn_cell(cell, case, name):
+    """Return (sign, style class, tooltip) of a cell."""
     sign, kind = SIGNS[cell["sign"]]
     worst = f"{cell['measure']} {short(cell['value'])}, tolerance {short(cell['tolerance'])}"
     return sign, kind, f"{_readable(case)}, {name}: {cell['result']}; {worst}; finer levels: {cell['remedy']}"
 
 
-def _short(variant):
-    """What stands below a column: the kind, where it is in the first figure."""
+def _label(variant):
+    """Label below a column; in the first figure it is the variant's kind alone."""
     name = NAME.of(variant)
     if variant["best"] or subject(variant) and as_it_comes(variant):
         return SHORT.get(name, kind(variant).removesuffix(", "))
     return name
 
 
-def _judge(case):
-    """Who judges a case, and its own tolerances."""
+def _judged_by(case):
+    """Words on what judges a case, and its own tolerances."""
     until = case["twin_until"]
-    known = {FREE: "closed form", SLIDING: "Moreau’s time stepping"}
-    words = f"reference, itself by {known.get(case['oracle'], f'the {TWIN}')}"
+    judges = {FREE: "closed form", SLIDING: "Moreau’s time stepping"}
+    words = f"reference, itself by {judges.get(case['oracle'], f'the {TWIN}')}"
     words += "" if until is None else f" (this one up to {until:g} s; beyond, the energy ledger)"
     special = [
         f"{name} {short(limit)} for {kind} solvers: {reason}"

@@ -1,4 +1,4 @@
-"""The stability study: each hard case in each variant, judged measure by measure, then again at finer levels."""
+"""The stability study: each hard case in each variant, measure by measure, then at finer levels."""
 
 import dataclasses
 import math
@@ -32,7 +32,7 @@ from .oracle import (
     twin_step,
 )
 
-# What its rows have; see `comparisons.studies.rows`.
+# The columns of its rows, and by part which of them a row has; see `comparisons.studies.rows`.
 COLUMNS = SHARED | declared(
     word_of("case", "case", "name of the hard case"),
     table_of("set", "set", "settings that differ from the default"),
@@ -47,19 +47,20 @@ COLUMNS = SHARED | declared(
 CASE = "case engine variant level? set cpu_seconds? result outcome | outside errors until? impacts steps"
 PARTS = {"default settings": CASE, "finer settings": CASE}
 
-QUICK_LIMIT, TIME_LIMIT = 60.0, 300.0  # s, of one run; of those that end the longest takes 75 s of CPU time
-# s; only in the engines' main variants are scenes longer than the first run at finer levels, and scenes longer than
-# the second run at all: ten minutes take 45 to 300 s of CPU time in others
+QUICK_LIMIT, TIME_LIMIT = 60.0, 300.0  # s, of one run; the longest that ends takes 75 s of CPU time
+# s. Only the engines' main variants run scenes longer than the first at finer levels, and scenes longer than the second
+# at all: in other variants ten minutes take 45 to 300 s of CPU time.
 LONG, LONGEST = 60.0, 300.0
 RIGHT, DIFFERS, FAILED = "right", "differs", "failed"
 DEFAULT, FINER = "default settings", "finer settings"  # parts of the rows
 EVIDENCE_CHARACTERS = 600
 # Impacts are counted down to this share of the strongest one's rate, but not below 1e-3 omega_r slenderness, which
-# moves nothing: engines rest earlier than the model. A run's own impacts count from OWN of that, for their rates err.
-# They are not matched in time, as `lost_impacts` does: the last ones before rest lie closer than times are right.
+# moves nothing: engines rest earlier than the model. A run's own impacts count from OWN of that, as their rates
+# err. They are not matched in time, as `lost_impacts` does: the last ones before rest are closer together than times
+# are right.
 LEAST_RATE, LEAST_SHARE, OWN = 0.05, 1e-3, 0.95
 
-# measure: unit, what it is
+# {measure: (unit, what it is)}
 MEASURES = {
     "outcome": ("", "1 where the outcome is not the oracle's; a tilt too small to count in comparisons is none"),
     "tilt": ("of the slenderness", "largest difference of the tilt up to the horizon"),
@@ -82,7 +83,7 @@ MEASURES = {
     "energy imbalance": ("of the largest entry", "of the solver's own energy ledger"),
 }
 
-# class of solver: measure: (tolerance, reason)
+# {kind of solver: {measure: (tolerance, reason)}}
 TOLERANCES = {
     "event-driven": {
         "outcome": (0, "a decision"),
@@ -131,11 +132,11 @@ class Solver:
     engine, variant, tier : str
         `tier` is the variant's kind. Of a code of ours both are "".
     kind : str
-        Class of its tolerances.
+        Key of its tolerances in `TOLERANCES`.
     parameter, default, levels
-        The accuracy parameter, if it has one, its default and its levels.
+        The accuracy parameter (None: it has none), its default and its levels.
     applies_impact : bool
-        It is given eqs (7) and (8).
+        Whether it is given eqs (7) and (8).
     settings : dict
         Settings at the default level.
     step : str or None
@@ -143,7 +144,7 @@ class Solver:
     finer : tuple of dict
         Settings of finer levels, to run in turn where the result is not right.
     best : bool
-        The engine's main variant, or a code of ours.
+        Whether it is the engine's main variant, or a code of ours.
     """
 
     engine: str
@@ -160,12 +161,15 @@ class Solver:
     best: bool = True
 
     def runs(self, hard: HardCase) -> bool:
-        """Whether it is asked a case."""
+        """Return whether this solver runs the case."""
         models = hard.oracle != SLIDING or may_slide(self.engine, self.applies_impact)
         return models and (self.best or hard.scene.duration <= LONGEST)
 
     def case(self, hard: HardCase, finer: int | None = None) -> Case:
-        """The run of a hard case; finer: index of the finer level, None for the default one."""
+        """Return the run of a hard case.
+
+        finer: index of the finer level; None: the default level.
+        """
         settings = {} if self.variant else dict(self.settings)
         if self.engine == "twin":
             settings["max_step"] = twin_step(hard.scene)
@@ -178,7 +182,10 @@ class Solver:
 
 
 def may_slide(engine: str, applies_impact: bool) -> bool:
-    """Whether a solver models the block that slides: the model and the engines, but where eqs (7), (8) are imposed."""
+    """Return whether a solver models a block that slides.
+
+    The analytic model and the engines do, except where the adapter imposes eqs (7) and (8).
+    """
     return engine == "analytic" or not applies_impact
 
 
@@ -195,7 +202,7 @@ TIME_STEPPING = Solver(
 
 
 def solvers(engines: Iterable[str]) -> list[Solver]:
-    """Kernel, twin, time stepping, and every variant of the engines."""
+    """Return the kernel, the twin, time stepping, and every variant of the engines."""
     return [
         Solver("analytic"),
         Solver("twin"),
@@ -222,9 +229,11 @@ def solvers(engines: Iterable[str]) -> list[Solver]:
 
 
 def measure(case: Case, response: Response) -> dict[str, Any]:
-    """Errors of one run, name -> number or None, and its outcome; see `MEASURES` for the units.
+    """Return the errors of one run, name -> number or None, its outcome and its counts.
 
-    What does not apply is left out. case: its tag names the hard case.
+    `MEASURES` gives the units.
+
+    Measures that do not apply are left out. The tag of `case` names the hard case.
     """
     hard = hard_cases()[case.tag["case"]]
     if hard.oracle == SLIDING and response.engine == "analytic":
@@ -265,7 +274,7 @@ def _errors(hard: HardCase, response: Response, truth: Oracle) -> dict[str, floa
 
 
 def _trajectory_errors(hard: HardCase, response: Response, truth: Oracle) -> dict[str, float]:
-    """Largest differences up to the horizon, at the samples of the kernel's history."""
+    """Largest differences of tilt and displacement up to the horizon, at the samples of the kernel's history."""
     kernel = response if response.engine == "analytic" else truth.response
     times, tilt = truth.tilt(kernel.history.time)
     errors = {"tilt": float(np.abs(column_at(response, times, "tilt") - tilt).max()) / hard.scene.block.slenderness}
@@ -299,7 +308,7 @@ def _event_errors(hard: HardCase, response: Response, truth: Oracle) -> dict[str
 
 
 def row_of(hard: HardCase, solver: Solver, run: Row) -> dict[str, Any]:
-    """The result file's row of one run: its result, every measure beside its tolerance, or the evidence of failure."""
+    """Return the stored row of one run: its result, and its measures beside their tolerances or why it failed."""
     case = run.case
     row = {
         "part": case.tag["part"],
@@ -316,7 +325,7 @@ def row_of(hard: HardCase, solver: Solver, run: Row) -> dict[str, Any]:
         ended = {"failure": failure, "settings": run.values.get("settings"), "last_state": state}
         return {**row, "result": FAILED, "outcome": "failed", **ended}
     limits = TOLERANCES[solver.kind] | hard.tolerances.get(solver.kind, {})
-    errors = {name: (_short(value), limits[name][0]) for name, value in run.values["errors"].items()}
+    errors = {name: (_rounded(value), limits[name][0]) for name, value in run.values["errors"].items()}
     outside = [name for name, (value, limit) in errors.items() if not (value is not None and value <= limit)]
     return {
         **row,
@@ -324,24 +333,24 @@ def row_of(hard: HardCase, solver: Solver, run: Row) -> dict[str, Any]:
         "outcome": run.values["outcome"],
         "outside": outside,
         "errors": errors,
-        "until": _short(run.values["until"]),
+        "until": _rounded(run.values["until"]),
         "impacts": run.values["impacts"],
         "steps": run.values["steps"],
     }
 
 
 def _evidence(text):
-    """Both ends of a long message: one names the error, the other the place."""
+    """Cut a long message to its two ends: one names the error, the other the place."""
     text, half = scrub(text), EVIDENCE_CHARACTERS // 2
     return text if len(text) <= 2 * half else f"{text[:half]} [...] {text[-half:]}"
 
 
-def _short(value):
+def _rounded(value):
     return value if value is None or not math.isfinite(value) else float(f"{value:.3g}")
 
 
 def worst(row: Mapping[str, Any]) -> tuple[str, float | None, float]:
-    """(measure, value, tolerance) of the measure farthest outside its tolerance, or closest to it."""
+    """Return (measure, value, tolerance) of the measure farthest outside its tolerance, or closest to it."""
 
     def share(name):
         value, limit = row["errors"][name]
@@ -352,7 +361,7 @@ def worst(row: Mapping[str, Any]) -> tuple[str, float | None, float]:
 
 
 def plan(request: Request, names: Iterable[str] | None = None, columns: Sequence[Solver] | None = None) -> Plan:
-    """The plan of the study: all cells, then finer levels in turn where the result was not "right".
+    """Plan all cases at the default level, then finer levels in turn where the result was not "right".
 
     Scenes longer than `LONGEST` are run in the engines' main variants only.
 

@@ -1,4 +1,4 @@
-"""What is shown of drawn statues: how often engines are right, where their boundaries lie, and what sliding does."""
+"""The page of random statues: how often engines are right, their boundaries, and what sliding does."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
@@ -38,13 +38,13 @@ from ...plotting.wording import TRUSTED, ends, left_out, listed, tally
 from ...schemas.columns import NAME, Column, number, percent, typeset
 from .study import APART, COLUMNS, FREQUENCY
 
-LEAST_RIGHT = 0.95  # share of right runs, of those not left out, from which an engine is good
-LEAST = 1e-3  # that the figure's axis begins at
+LEAST_RIGHT = 0.95  # share of right runs, of those not left out, from which an engine is rated good
+LEAST = 1e-3  # share at which the figure's axis begins
 TICKS = ((1e-3, "≤ 0.1 %"), (1e-2, "1 %"), (0.1, "10 %"), (1.0, "100 %"))
 WRONG = Column("runs that differ or fail", "wrong", percent=True, within="interval")
 ALL, FALLS = "all", "overturns"
-NONE, DRAWN = "no friction", "friction drawn"  # of a run's scene
-# share: (in words, of which scenes it is one, those scenes in words)
+NONE, DRAWN = "no friction", "friction drawn"  # kinds of a run's scene
+# {share: (its words, the count of the scenes that it is a share of, words for those scenes)}
 SHARES = {
     "slides": ("slides and never lifts", "moves", "that lift or slide"),
     "saved": ("saved by sliding", "falls_without", "that overturn without sliding"),
@@ -53,22 +53,23 @@ SHARES = {
 
 
 def page(result: Result) -> Page:
+    """Return the page of a result."""
     cells, counts, settings = where(result.rows, part="cell"), tallies(result), result.settings
-    every = summed(cells, lambda cell: ALL)
+    totals = summed(cells, lambda cell: ALL)
     return Page(
         _title(result, counts),
         (
-            "Wherever a run that differs from the analytic model is shown, it is marked as differing.",
-            *_with_friction(leading(where(counts, friction=DRAWN), settings["variants"])),
+            "Wherever a run is shown that differs from the analytic model, it is marked as differing.",
+            *_friction_sentences(leading(where(counts, friction=DRAWN), settings["variants"])),
             *under_jumps(result),
             *(
                 f"In the model sliding saves {row['saved']} of {row['falls_without']} statues that overturn without "
                 f"it, and overturns {row['overturned']} of {row['upright_without']} others."
-                for row in every
+                for row in totals
             ),
         ),
         first=_summary(result, counts),
-        more=_details(result, cells, settings, every),
+        more=_details(result, cells, settings, totals),
         how=_how(result),
         evidence=(
             *(
@@ -81,7 +82,7 @@ def page(result: Result) -> Page:
 
 
 def _summary(result, counts):
-    """What stands on the report's first page, too."""
+    """Parts that the report's first page shows too."""
     return (
         beside(
             strip(result, "statues: shift of the boundary"),
@@ -97,8 +98,9 @@ def _summary(result, counts):
             ),
         ),
         table(
-            f"Engines: right in the outcome, the time of a fall, the number of impacts, within {percent(PEAK, 1)} "
-            f"of peaks and slip, {RESTITUTION_LIMIT:g} of the restitution and 10 % of an impact's loss",
+            "Engines. A run is right in the outcome, the time of a fall and the number of impacts, and within "
+            f"{percent(PEAK, 1)} of peaks and slip, {RESTITUTION_LIMIT:g} of the restitution and 10 % of an impact's "
+            "loss",
             counts,
             NAME,
             COLUMNS["tier"],
@@ -125,8 +127,8 @@ def _summary(result, counts):
     )
 
 
-def _details(result, cells, settings, every):
-    """What stands on the study's own page alone."""
+def _details(result, cells, settings, totals):
+    """Parts that only the study's own page shows."""
     return (
         table(
             "Runs that differ, without the variants “defaults”",
@@ -148,7 +150,7 @@ def _details(result, cells, settings, every):
         ),
         missing(result),
         _shares(cells),
-        _sliding([*summed(cells, "support"), *every]),
+        _sliding([*summed(cells, "support"), *totals]),
         *(f"{NAME.of(row)}: {row['words']}" for row in settings["faults"]),
     )
 
@@ -157,7 +159,8 @@ def _runs(result):
     return where(result.rows, part="run")
 
 
-def _scenes(row):
+def _kind_of_scene(row):
+    """Kind of a run's scene: without friction, or with a drawn one."""
     return NONE if row["friction"] is None else DRAWN
 
 
@@ -173,8 +176,11 @@ def _title(result, counts):
     )
 
 
-def _with_friction(rows):
-    """What is counted as right, as an outcome, and as an error at slipping impacts: three counts that differ."""
+def _friction_sentences(rows):
+    """Yield a sentence on runs with friction: how many are right, how many outcomes are wrong, and the error at slips.
+
+    These are three different counts.
+    """
     rows = [row for row in rows if row["runs"]]
 
     def each(words):
@@ -191,10 +197,13 @@ def _with_friction(rows):
 
 
 def tallies(result: Result) -> list[dict[str, Any]]:
-    """A row for each variant, without friction and with it: the `tally` of its runs, how many are right, shares with
-    their 95 % intervals, and errors where blocks slide; None where none is judged, or slides."""
+    """Return a row for each variant, without friction and with it.
+
+    Each has the `tally` of its runs, how many are right, shares with their 95 % intervals, and errors where blocks
+    slide. A value is None where no run is judged, or no block slides.
+    """
     counted_rows = []
-    for (friction, engine, variant), rows in grouped(_runs(result), _scenes, "engine", "variant").items():
+    for (friction, engine, variant), rows in grouped(_runs(result), _kind_of_scene, "engine", "variant").items():
         counts = tally(rows, "index", _turned)
         runs, right = counts["runs"], counts["runs"] - counts["differing"]
         sound = [row for row in rows if row["class"] in ("right", "differs")]
@@ -226,12 +235,18 @@ def tallies(result: Result) -> list[dict[str, Any]]:
 
 
 def _turned(row):
-    """Whether the sentence on the outcome has one that overturns and one that does not: no row keeps the model's."""
+    """Return whether a run overturns and the model does not, or the other way round.
+
+    No row stores the model's outcome, so it is read from the sentence on the difference.
+    """
     return any(words.count("overturns") == 1 for words in row["differences"] if words.startswith("the block "))
 
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
-    """The counts without friction and with it stay apart: together the many would hide the few."""
+    """Judge boundaries, and runs without and with friction, by (engine, variant).
+
+    The counts without and with friction stay apart: in their sum the many would hide the few.
+    """
     heads = {NONE: "random scenes right", DRAWN: "sliding scenes right"}
     marks: dict[str, dict[tuple[str, str], Mark]] = {name: {} for name in heads}
     for row in tallies(result):
@@ -245,9 +260,10 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
 
 
 def glance(result: Result) -> Glance:
-    """Of the runs with friction that differ, those that end otherwise: a slip within its tolerance is no other end.
+    """Return the outcomes of the runs with friction.
 
-    Those without friction, of which the few that differ would be hidden among many, are not on the first screen.
+    A run counts as differing only if it ends otherwise: an error of the slip is no other end. Runs without friction are
+    not on the first screen, as the few that differ would be hidden among many.
     """
     outcomes = {row["index"]: row["outcome"] for row in where(result.rows, part="scene")}
     runs = [
@@ -266,7 +282,7 @@ def glance(result: Result) -> Glance:
 
 
 def summed(cells: Iterable[Mapping[str, Any]], key: Any) -> list[dict[str, Any]]:
-    """The cells' counts added up by a key, with each of `SHARES`: (how many, of how many, share, its interval)."""
+    """Add up the cells' counts by a key, with each of `SHARES`: (how many, of how many, share, its interval)."""
     sums = []
     for (name,), members in grouped(cells, key).items():
         row = {k: sum(cell[k] for cell in members) for k, value in members[0].items() if type(value) is int}
@@ -281,7 +297,10 @@ def summed(cells: Iterable[Mapping[str, Any]], key: Any) -> list[dict[str, Any]]
 
 
 def _sliding(rows):
-    shares = (Column(f"{words}, of those {of}", partial(_counted, share=s)) for s, (words, _, of) in SHARES.items())
+    """Table of what sliding changes in the analytic model."""
+    shares = (
+        Column(f"{words}, of those {of}", partial(_share_in_words, share=s)) for s, (words, _, of) in SHARES.items()
+    )
     return table(
         "The analytic model: random statues with a friction of 0.2 to 0.8 at rest under a motion; with 95 % Wilson "
         "intervals",
@@ -295,13 +314,14 @@ def _sliding(rows):
     )
 
 
-def _counted(row, share):
+def _share_in_words(row, share):
+    """Words on a share: its counts and its interval."""
     within, words = row[f"{share}_within"], f"{row[share]} of {row[SHARES[share][1]]}"
     return words if within is None else f"{words}, {number(100 * within[0], 2)} to {percent(within[1])}"
 
 
 def _shares(cells: Sequence[Mapping[str, Any]]) -> Figure | None:
-    """Shares over friction, a panel for each support."""
+    """Figure of shares over friction, a panel for each support."""
     looks = {words: curve(rank) for rank, (words, *_) in enumerate(SHARES.values())}
     limits = [end for cell in cells for end in cell["friction"]]
     charts = []
@@ -319,7 +339,7 @@ def _shares(cells: Sequence[Mapping[str, Any]]) -> Figure | None:
             xs = [sum(row["name"]) / 2 for row in drawn]
             ys = [row[f"{share}_share"] for row in drawn]
             lows, highs = ([row[f"{share}_within"][end] for row in drawn] for end in (0, 1))
-            tooltips = [f"{words}, of those {of}: {_counted(row, share)}" for row in drawn]
+            tooltips = [f"{words}, of those {of}: {_share_in_words(row, share)}" for row in drawn]
             chart.reach(xs, ys, lows, highs, words, look=looks[words])
             chart.line(xs, ys, words, look=looks[words])
             chart.dots(xs, ys, words, says=tooltips, look=looks[words])
@@ -337,25 +357,27 @@ def _how(result: Result) -> tuple[str, ...]:
     low, high = settings["peak"]
     limits = settings["range"].replace("J_O/(m R^2)", "inertia about a corner over m R²")
     return (
-        f"Without friction {settings['scenes']} scenes drawn at random (seed {result.provenance['seed']}, of the "
-        f"commit): {limits}; released or under a pulse, until the outcome is decided. {settings['below_range']} whose "
-        f"peak tilt stays below the range are not run. With friction, drawn evenly, {settings['sliders']} scenes at "
-        "rest, on rigid ground or on bearings, as no motion reaches a block whose base has none. Half of the motions "
-        f"are pulses, a quarter synthetic, a quarter recorded ({recorded}), each times a factor: its peak is {low:g} "
-        f"to {high:g} times g tan γ. {percent(settings['vertical'])} have a vertical component, "
-        f"{number(settings['ratio'], 2)} times the horizontal peak. What the shares say depends on how it is drawn.",
+        f"Without friction: {settings['scenes']} scenes drawn at random (seed {result.provenance['seed']}, derived "
+        f"from the commit): {limits}; released or under a pulse, until the outcome is decided. "
+        f"{settings['below_range']} whose peak tilt stays below the range are not run. With friction, drawn evenly: "
+        f"{settings['sliders']} scenes at rest, on rigid ground or on bearings. (No motion reaches a block on a base "
+        f"without bearings.) Half of the motions are pulses, a quarter synthetic, a quarter recorded ({recorded}), "
+        f"each times a factor: its peak is {low:g} to {high:g} times g tan γ. {percent(settings['vertical'])} have a "
+        f"vertical component, {number(settings['ratio'], 2)} times the horizontal peak. The shares depend on how the "
+        "scenes are drawn.",
         "Without sliding: the same scene without friction, whose block turns about corners that never slip. It needs "
         "more than the friction where the demand |H|/N exceeds it before any last fall, or N falls to 0. Undecided: "
-        "the base goes on swinging, so that the end is not certain. Errors of the slip are relative, for blocks that "
+        "the base goes on swinging, so the end is not certain. Errors of the slip are relative, for blocks that "
         "stay upright; a slip too small to count is taken as 0.005 R. CPU time is that of the stepping over that of "
         "the model’s integration, median over scenes.",
         f"Engines run the first {len(scenes)} scenes whose friction demand exceeds the friction. Only the main "
-        f"variants of subject engines run all of them; other variants run one in {settings['fewer']}. Left out of all "
-        "engines: scenes whose normal force falls to 0 without friction, whose friction demand no contact provides, "
-        "or which are near an outcome boundary (a change by 10⁻⁴, of the friction too, makes such a difference in the "
-        "model). “Beyond it” counts runs of such scenes that fail, or lie outside what such changes do in the model.",
-        f"Boundaries: of {len(where(result.rows, part='drawn edge'))} of the statues, at rest; shapes of pulses take "
-        f"turns, frequencies are drawn from {FREQUENCY[0]:g} to {FREQUENCY[1]:g} times the rocking frequency; the "
-        f"lowest boundary is taken, if no other one is nearer than {percent(APART, 1)} and the block is pressed on its "
-        "base.",
+        f"variants of subject engines run all of them; other variants run one in {settings['fewer']}. Left out of "
+        "all engines: scenes whose normal force falls to 0 without friction, whose friction demand no contact "
+        "provides, or which are near an outcome boundary (a change by 10⁻⁴, of the friction too, makes such a "
+        "difference in the model). “Beyond it” counts runs of such scenes that fail, or differ by more than such "
+        "changes do in the model.",
+        f"Boundaries: those of {len(where(result.rows, part='drawn edge'))} of the statues, at rest. Shapes of "
+        f"pulses take turns; frequencies are drawn from {FREQUENCY[0]:g} to {FREQUENCY[1]:g} times the rocking "
+        f"frequency. The lowest boundary is taken if no other one is nearer than {percent(APART, 1)} and the block "
+        "is pressed on its base.",
     )

@@ -1,4 +1,4 @@
-"""Statues drawn at random in the promised range: are engines right, and what does sliding change?
+"""The study of random statues in the promised range: are engines right, and what does sliding change?
 
 Engines run beside the model without friction, with friction where the block slides, and at the overturning boundaries
 of some statues. What sliding changes is counted in the model.
@@ -44,7 +44,7 @@ from ...metrics.statistics import class_of
 from ...schemas.columns import declared, flag_of, list_of, number_of, whole_of, word_of
 from ..rows import BOUNDARY, BOUNDARY_ROW, EDGE, SHARED, SOUGHT
 
-# What its rows have; see `comparisons.studies.rows`.
+# The columns of its rows, and by part which of them a row has; see `comparisons.studies.rows`.
 COLUMNS = (
     SHARED
     | BOUNDARY
@@ -102,10 +102,11 @@ PARTS = {
     "failure": SOUGHT,
 }
 
-# scenes without friction; with it, and how many of these engines run; statues whose boundaries are sought
+# numbers of scenes without friction, of scenes with it, of those that engines run, and of statues whose boundaries are
+# searched for
 FULL, QUICK = (500, 20_000, 50, 20), (20, 400, 10, 2)
 FEWER = 5  # variants other than the main ones of subject engines run one scene in so many
-BINS = 6  # of the friction, in which outcomes are counted
+BINS = 6  # intervals of the friction in which outcomes are counted
 SUPPORTS = ("rigid ground", "isolated")
 CHUNK = 500  # scenes held at once
 FALLS = "overturns"
@@ -116,7 +117,7 @@ Number = Annotated[int | None, typer.Option(min=1, max=10**6, help="Without fric
 Sliders = Annotated[int | None, typer.Option(min=1, max=10**7, help="With friction. Default 20000, quick 400.")]
 
 
-# Long: a plan reads from the first run to the last row.
+# Long, because a plan is best read in one piece, from the first run to the last row.
 def plan(
     request: Request,
     boundaries: int | None = None,
@@ -126,12 +127,12 @@ def plan(
     sliders: Sliders = None,
     records: Folder = None,
 ) -> Plan:
-    """The plan of the study.
+    """Plan the study.
 
     Rows by "part": "cell", how many scenes of a support, a kind of motion and an interval of friction have which fate
-    in the model; "scene", one with friction that the engines run, and the model's answer; "run", an engine's run of a
-    scene, friction null where it has none; "drawn edge" and "drawn shift", a statue's boundary in the model and in an
-    engine; "failure", of a run that sought it.
+    in the model; "scene", a scene with friction that the engines run, and the model's answer; "run", an engine's run of
+    a scene, with friction null where it has none; "drawn edge" and "drawn shift", a statue's boundary in the model and
+    in an engine; "failure", a failed run of the search for it.
 
     Parameters
     ----------
@@ -139,7 +140,7 @@ def plan(
     boundaries, scenes, sliders : int, optional
         How many statues are drawn in place of those of `FULL` or `QUICK`.
     seed : int, optional
-        Of the scenes.
+        Seed of the scenes.
     records : str, optional
         Folder of records, or a set of FEMA P695, in place of all of these.
     """
@@ -151,13 +152,14 @@ def plan(
     reached = [case for case in drawn if simulate(case.scene, history=False).peak_tilt_ratio >= RANGE["tilt"][0]]
     rows, chosen = _ensemble(motions, seed, sliding, few)
     model = yield Batch(chosen, of_model, "analytic model")
-    known = {row.case.tag["index"]: row for row in model if not row.failed}
+    model_runs = {row.case.tag["index"]: row for row in model if not row.failed}
     rows += [
-        {"part": "scene", "engine": "analytic", "variant": "", **row.case.tag, **row.values} for row in known.values()
+        {"part": "scene", "engine": "analytic", "variant": "", **row.case.tag, **row.values}
+        for row in model_runs.values()
     ]
-    cases = [*_cases(request.engines, reached), *_cases(request.engines, [row.case for row in known.values()])]
+    cases = [*_cases(request.engines, reached), *_cases(request.engines, [row.case for row in model_runs.values()])]
     engine_runs = yield Batch(cases, of_engine, "engines")
-    rows += [_run_row(row, known) for row in engine_runs]
+    rows += [_run_row(row, model_runs) for row in engine_runs]
     log("analytic boundaries of drawn statues")
     statues = drawn_edges(count if boundaries is None else boundaries)
     rows += [{"part": "drawn edge", **vars(edge), **drawn_columns(scene)} for scene, edge in statues]
@@ -188,7 +190,7 @@ def plan(
 
 
 def _recorded(folder: str | None) -> tuple[list[SampledMotion], str]:
-    """(recorded motions, where they come from), none where the package that has them is not installed."""
+    """Return recorded motions and their source; empty where the package that has them is not installed."""
     try:
         folder_records, _ = folder_motions(folder or PREFIX)
     except SceneError:
@@ -198,23 +200,23 @@ def _recorded(folder: str | None) -> tuple[list[SampledMotion], str]:
     return [motion for motions in folder_records.values() for motion in motions if motion.peak], source_of(folder)
 
 
-def _cases(engines: Sequence[str], known: Sequence[Case]) -> Iterator[Case]:
-    """Runs of scenes in engines: all in the main variants of subject engines, one in `FEWER` in others."""
+def _cases(engines: Sequence[str], scenes: Sequence[Case]) -> Iterator[Case]:
+    """Yield runs of scenes in engines: all in main variants of subject engines, one in `FEWER` in other variants."""
     for engine in map(get_engine, engines):
         for variant in engine.variants:
             step = 1 if engine.subject and variant == engine.default_variant else FEWER
-            for case in known[::step]:
+            for case in scenes[::step]:
                 yield Case(case.scene, engine.name, variant, {"history": False}, {"index": case.tag["index"]})
 
 
 def fates(scenes: Sequence[Scene]) -> dict[str, np.ndarray]:
-    """What friction changes, shape (n,) of bool: the scenes as they are against the same without friction.
+    """Compare scenes with the same scenes without friction; each value is an array of bool, shape (n,).
 
-    failed: the model has no answer to one of the two. undecided: one of the two has no certain end. Of the others:
+    failed: the model has no answer to one of the two. undecided: one of the two has no certain end. Of all others:
     moves: the block lifts or slides. lacking: without sliding it needs more than the friction, before any last fall.
-    slides: it slides and never lifts. falls_without: it overturns without friction. saved: so, but not with it.
-    overturned: with it alone. chosen: lacking, decided, and its peak tilt, if it lifts, within the range of a statue: a
-    scene for engines.
+    slides: it slides and never lifts. falls_without: it overturns without friction. saved: it overturns without
+    friction, but not with it. overturned: it overturns with friction only. chosen: lacking, decided, and its peak tilt,
+    if it lifts, is within the range of a statue; engines run these scenes.
     """
     sliding, plain = (
         simulate_many(scenes),
@@ -222,7 +224,7 @@ def fates(scenes: Sequence[Scene]) -> dict[str, np.ndarray]:
     )
     friction = np.array([scene.friction for scene in scenes])
     slenderness = np.array([scene.block.slenderness for scene in scenes])
-    level = ~sliding.lifted & (friction < np.tan(slenderness))  # such a block cannot lift: |H| <= mu N < N tan(gamma)
+    level = ~sliding.lifted & (friction < np.tan(slenderness))  # it cannot lift: |H| <= mu N < N tan(gamma)
     failed = sliding.failed | plain.failed
     sound = ~failed & (sliding.decided | level) & plain.decided
     lacking = sound & ((plain.friction_demand > friction) | (plain.min_normal_ratio <= 0))
@@ -245,7 +247,7 @@ def fates(scenes: Sequence[Scene]) -> dict[str, np.ndarray]:
 def _ensemble(
     records: Sequence[SampledMotion], seed: int, most: int, few: int
 ) -> tuple[list[dict[str, Any]], list[Case]]:
-    """(rows of cells, the first `few` scenes with friction for engines)."""
+    """Return the rows of cells, and the first `few` scenes with friction for engines."""
     counts: dict[tuple[Any, ...], dict[str, int]] = {}
     chosen: list[Case] = []
     for begin in range(0, most, CHUNK):
@@ -273,12 +275,16 @@ def _ensemble(
 
 
 def _bin(friction: float) -> int:
+    """Index of the interval of friction in which outcomes are counted."""
     low, high = FRICTION
     return min(int(BINS * (friction - low) / (high - low)), BINS - 1)
 
 
 def of_model(case: Case, response: Response) -> dict[str, Any]:
-    """Measure of the model's run; slip: largest, over the block's half width."""
+    """Measure the model's run.
+
+    slip: the largest, over the block's half width.
+    """
     return {
         "outcome": response.outcome,
         "comparable": Reference.of(case.scene, response).comparable,
@@ -288,11 +294,13 @@ def of_model(case: Case, response: Response) -> dict[str, Any]:
 
 
 def of_engine(case: Case, response: Response) -> dict[str, Any]:
-    """Measure of an engine's run: in what it differs from the model; without friction its class, with it its errors.
+    """Measure an engine's run: its differences from the model.
 
-    slip_error, tilt_error: of the peaks, of a block that stays upright in both; None of a slip that is none, see
-    `engines.checks`. slipping, sticking: errors of the restitution at impacts in which the model's corner slides before
-    or after, and at others; lost: slipping ones without a match.
+    Of a run without friction it keeps the class, of one with friction also the errors.
+
+    slip_error, tilt_error: errors of the peaks of a block that stays upright in both; None for a slip too small to
+    count, see `engines.checks`. slipping, sticking: errors of the restitution at impacts in which the model's corner
+    slides before or after, and at others; lost: slipping ones without a match.
     """
     scene, reference = case.scene, Reference.of(case.scene)
     differences = compare(scene, response, reference).differences
@@ -316,9 +324,9 @@ def of_engine(case: Case, response: Response) -> dict[str, Any]:
     }
 
 
-def _error(here: float, there: float, least: float) -> float:
-    """Relative error of a peak; one that is too small to count is compared as one that just does."""
-    return (here - there) / max(there, least)
+def _error(value: float, model: float, least: float) -> float:
+    """Relative error of a peak; a peak too small to count is compared as one that just counts."""
+    return (value - model) / max(model, least)
 
 
 def _slip(response: Response) -> float:
@@ -326,7 +334,7 @@ def _slip(response: Response) -> float:
 
 
 def _restitutions(scene: Scene, model: Response, run: Response, until: float) -> dict[str, Any]:
-    """Errors of the restitution at impacts up to a time, see `of_engine`."""
+    """Errors of the restitution at impacts up to a time; see `of_engine`."""
     end = min(until, model.end.time, run.end.time) - LAST * 2 * math.pi / scene.rocking_frequency
     impacts = impacts_of(run)
     reference, partner = matched(scene, impacts_of(model), impacts, end)
@@ -341,20 +349,22 @@ def _restitutions(scene: Scene, model: Response, run: Response, until: float) ->
 
 
 def slips_at(model: Response, time: float) -> bool:
-    """Whether the corner slides before or after an impact of the model."""
+    """Return whether the corner slides before or after an impact of the model."""
     modes = model.sliding.modes if model.sliding else ()
     before = [mode for when, mode in modes if when < time][-1:]
     after = [mode for when, mode in modes if when <= time][-1:]
     return "slide-rock" in (*before, *after)
 
 
-def _run_row(row: Row, known: Mapping[int, Row]) -> dict[str, Any]:
-    """The row of a run; a failed one is left out where no run of its scene is judged, of all engines alike.
+def _run_row(row: Row, model_runs: Mapping[int, Row]) -> dict[str, Any]:
+    """Row of a run.
 
-    known: the model's runs of the scenes with friction, by their number.
+    A failed run is left out where no run of its scene is judged, of all engines alike.
+
+    model_runs: those of the scenes with friction, by their number.
     """
     case, values = row.case, dict(row.values)
-    model = None if case.scene.friction is None else known[case.tag["index"]]
+    model = None if case.scene.friction is None else model_runs[case.tag["index"]]
     comparable = model.values["comparable"] if model else Reference.of(case.scene).comparable
     identity = {
         "part": "run",
@@ -375,15 +385,15 @@ def _run_row(row: Row, known: Mapping[int, Row]) -> dict[str, Any]:
 
 
 BOUNDARY_SEED = 46
-FREQUENCY = (1.5, 8.0)  # of the pulses over omega_r, evenly over the logarithm
-APART = 0.02  # relative distance of the next boundary, at least: nearer ones alternate as a fractal's do
+FREQUENCY = (1.5, 8.0)  # of pulses over omega_r, drawn evenly over the logarithm
+APART = 0.02  # least relative distance of the next boundary: nearer ones alternate as in a fractal
 
 
 def drawn_edges(count: int) -> list[tuple[Scene, Edge]]:
-    """`count` statues with their lowest boundary at which the model keeps the block pressed on its base.
+    """Return `count` statues with their lowest boundary at which the model keeps the block pressed on its base.
 
-    Scenes of `random_scene`, at rest; the pulses' shapes take turns. A statue without such a boundary, and one that has
-    another boundary within `APART` of it, is passed over.
+    The scenes are those of `random_scene`, at rest; the pulses' shapes take turns. A statue without such a boundary, or
+    with another boundary within `APART` of it, is passed over.
     """
     drawn: list[tuple[Scene, Edge]] = []
     index = 0
@@ -401,7 +411,7 @@ def drawn_edges(count: int) -> list[tuple[Scene, Edge]]:
 
 
 def drawn_columns(scene: Scene) -> dict[str, Any]:
-    """The columns that say what was drawn; period [s] on the stiffness after yielding."""
+    """Return the columns that say what was drawn; period [s] on the stiffness after yielding."""
     base, bearings = scene.base, scene.bearings
     law = BearingLaw.of(bearings)
     period = 2 * math.pi * math.sqrt(scene.total_mass / (law.count * law.kb)) if bearings else None

@@ -216,7 +216,7 @@ def test_a_block_of_another_slenderness_keeps_its_height_and_its_inertia_about_i
 
 
 def test_the_digits_over_slendernesses_are_those_of_single_runs(folder):
-    cases = study._on_grids(read_campaign(folder, every=9), study.KINDS)
+    cases = study._grid_cases(read_campaign(folder, every=9), study.KINDS)
     for case in cases[:3]:
         found = over_slendernesses(case, None)["outcomes"]
         for kind, text in zip(case.tag["kinds"], found, strict=True):
