@@ -4,7 +4,8 @@ Bearings are suitable if the block does not lift (or its tilt stays below a limi
 gives a friction, and if the base stays within the stroke. Their demand is 1 at the limit. It is the largest of these
 ratios:
 
-- friction demand/tan(gamma), that is, base acceleration over uplift acceleration; or peak tilt over its limit;
+- without a tilt limit the friction demand over tan(gamma), that is, base acceleration over uplift acceleration; with
+  one the peak tilt over it;
 - friction demand over the friction, where one is given;
 - peak base displacement over the stroke.
 

@@ -28,8 +28,6 @@ are no difference. In Python, ``simulate(scene, compare=False)`` skips the compa
 ``warnings`` (kind, quantity, value, limit, text) say that a result is outside the model (the block would jump, and the
 scene gives no ``friction``; the base exceeds ``x_max``), or that the record is unusual. Do not rely on an outcome with
 such a warning.
-
-Warnings on a scene: missing friction, a start beyond balance, a base beyond x_max, a block that slips off.
 """
 
 import dataclasses

@@ -1,1 +1,1 @@
-"""The studies: the same scene in the analytic model and in the engines, compared; command line and report."""
+"""Comparisons of the engines with the analytic model: studies, results, pages, report, command line."""

@@ -17,7 +17,7 @@ from analytic.motion import Motion
 from analytic.records.content import PREFIX
 from engines.simulating import RANGE
 
-from .execution.sources import version_of
+from .execution.code_digests import version_of
 
 OTHERS = 100_000  # added to a seed for the other horizontal component; twice that, for the vertical one
 USUAL_RATIO = 2 / 3  # peak vertical over peak horizontal acceleration, as long usual in codes

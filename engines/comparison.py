@@ -43,10 +43,10 @@ from analytic.errors import SceneError
 from analytic.response import COMPARED, EDGE, JUDGED, LEVEL, UNCOMPARED, Difference
 from analytic.rocking import restitution
 
-from .checks import LEAST_SLIP
 from .events import COUNTED, LEAST_TILT, STILL, at_contact, counts, impacts_of, matched, parting
 from .loads import FRICTION
 from .swings import Trace
+from .trace_checks import LEAST_SLIP
 
 if TYPE_CHECKING:
     from analytic import Response, Scene

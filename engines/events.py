@@ -26,8 +26,8 @@ from analytic.motion import vertical_acceleration
 from analytic.response import Failure, Impact, State
 from analytic.rocking import RockingModel
 
-from .checks import HEIGHT_TOLERANCE, pivoting_centre, settled
 from .swings import LEAST_SLIDING, ArrayModel, Trace, to_contact
+from .trace_checks import HEIGHT_TOLERANCE, pivoting_centre, settled
 
 if TYPE_CHECKING:
     from analytic import Response, Scene

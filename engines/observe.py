@@ -25,7 +25,6 @@ from analytic.motion import SampledMotion
 from analytic.response import Caution, Failure, History, Response, about_record, limit_warnings
 from analytic.solver import is_decided
 
-from .checks import check_energy, check_impulse, check_place, slip_of, slips
 from .events import (
     STILL,
     check_impacts,
@@ -39,6 +38,7 @@ from .events import (
     upto_overturning,
 )
 from .swings import Trace, find_swings
+from .trace_checks import check_energy, check_impulse, check_place, slip_of, slips
 
 if TYPE_CHECKING:
     from analytic import Scene

@@ -5,7 +5,7 @@ import json
 
 from analytic import simulate
 from comparisons.execution.plan import Batch, Computed
-from comparisons.execution.provenance import digest_of, write_result
+from comparisons.execution.results import digest_of, write_result
 from comparisons.execution.sweep import Done, Executor, Row, lines_of, run_sweep
 from comparisons.studies.rows import read_study
 

@@ -21,7 +21,7 @@ from unittest.mock import patch
 
 import numpy as np
 
-from comparisons.execution.provenance import Result
+from comparisons.execution.results import Result
 from comparisons.report.write import write_page
 from engines import ENGINES
 

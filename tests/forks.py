@@ -10,5 +10,5 @@ def fork():
     child = os.fork()
     if child == 0:
         multiprocessing.process.current_process()._config.pop("tempdir", None)
-        sys.modules.pop("comparisons.execution.study", None)
+        sys.modules.pop("comparisons.execution.runner", None)
     return child

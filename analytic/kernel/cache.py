@@ -1,7 +1,7 @@
 """The cache of compiled functions: an entry is found by the code of all that it runs.
 
-Numba itself looks only at the file of the entry. After a change in `steps` it would use a stale kernel, and after a
-change elsewhere in that file it would compile a good one again.
+Numba itself looks only at the file of the entry. So it would keep a stale kernel after a change in `steps`, and compile
+a good one again after an unrelated change in the entry's file.
 """
 
 from __future__ import annotations

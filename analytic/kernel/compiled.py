@@ -2,9 +2,9 @@
 
 A function that only compiled code calls is `inner`. It has no wrappers for Python and C, which take longer to compile
 than most functions themselves, and no reference counts of arrays, an atomic operation at each call. It must therefore
-not allocate an array. It is not optimised and compiled to machine code on its own, as numba does with every function at
-every level of calls: its intermediate code is linked into the calling `entry`, which is optimised as a whole. An entry
-is a function that Python calls. It is cached on disk, see `cache`.
+not allocate an array. Numba would compile each such function by itself. Here its intermediate code is linked into the
+calling `entry`, and the entry alone is optimised, as a whole. An entry is a function that Python calls. It is cached on
+disk, see `cache`.
 """
 
 import gc

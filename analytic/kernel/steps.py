@@ -4,8 +4,8 @@ The series are those of the equations of `rocking`, coefficient by coefficient. 
 since the start of the step, lowest first; entry 0 (the state) is given, the rest is filled up to `order`. S and C are
 sin and cos of s gamma - phi, so that n = R S and c = R C.
 
-`upright` : samples of the vertical motion; any array for a pulse, None without a vertical motion. Which of these it is
-is known when a function is compiled, so that runs without one lose no time.
+`upright` : samples of the vertical motion; any array for a pulse, None without a vertical motion. The kind is
+fixed when a function is compiled, so that runs without one lose no time.
 """
 
 import math

@@ -1,8 +1,8 @@
 """Search for the cheapest variant and level that meet an error on a scene and on its neighbours.
 
-Each variant is run on the scene at all its levels. Levels that pass there, with all finer ones, are run on the
-neighbours, the cheapest first, until one passes. A level passes if it and all finer ones pass in all scenes, with a
-margin of `criteria.safety`, so that none passes by chance.
+Each variant is run on the scene at all its levels. A level counts as passed only if all finer ones pass, too, with a
+margin of `criteria.safety`, so that none passes by chance. Those that pass on the scene are tried on the neighbours,
+cheapest first. The search ends at the first that passes there.
 """
 
 import math
@@ -23,10 +23,10 @@ from engines.loads import unkept_friction
 from engines.simulating import outside
 
 from ..execution.cases import Case
-from ..execution.files import TemporaryFolder
+from ..execution.command_runs import ANALYTIC, named_engines
 from ..execution.progress import spinner
-from ..execution.solving import ANALYTIC, named_engines
 from ..execution.sweep import Processes, Row, run_sweep
+from ..execution.writing import TemporaryFolder
 from ..schemas.advice import Choice, Level, VariantLevels
 from ..schemas.runs import Warned
 from .criteria import CRITERIA, SAFETY, Measure, cpu_seconds, fitting, model_parts, neighbours, safety, until

@@ -14,7 +14,7 @@ import sys
 import threading
 from collections.abc import Iterator, Sequence
 
-from ..execution.files import Mendable, readable
+from ..execution.writing import Mendable, readable
 
 GRACE_SECONDS = 0.5  # to close workers and files; then the process is ended
 SIGHUP = getattr(signal, "SIGHUP", signal.SIGTERM)  # the terminal was closed; not on every system
@@ -76,7 +76,7 @@ def _end(number):
     if _ending.acquire(blocking=False):
         words = "Interrupted." if number == signal.SIGINT else f"Ended by {signal.Signals(number).name}."
         with contextlib.suppress(Exception):  # where no study was begun, its module may not be loaded
-            words = f"{words} {readable(sys.modules['comparisons.execution.study'].kept())}".rstrip()
+            words = f"{words} {readable(sys.modules['comparisons.execution.runner'].kept())}".rstrip()
         with contextlib.suppress(OSError):
             os.write(2, (SHOW_CURSOR if os.isatty(2) else b"") + words.encode() + b"\n")
     with contextlib.suppress(Exception):  # also if a module is not loaded, as nothing may be imported now
@@ -95,7 +95,7 @@ def _end_children():
 
 def _remove_folders():
     """Remove the temporary folders that a normal exit would remove: this project's, and that of multiprocessing."""
-    sys.modules["comparisons.execution.files"].remove_temporary_folders()
+    sys.modules["comparisons.execution.writing"].remove_temporary_folders()
     shutil.rmtree(sys.modules["multiprocessing.util"].get_temp_dir(), ignore_errors=True)
 
 

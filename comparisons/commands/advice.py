@@ -16,9 +16,7 @@ from analytic.rocking import design_bearings, properties
 from analytic.scene import Base, Bearings
 from analytic.scene_file import load_scene, shipped_scenes, with_bearings
 
-from ..execution.files import check_writable
-from ..execution.progress import bar, compile_kernels, say, spinner, stdout_to_stderr
-from ..execution.solving import (
+from ..execution.command_runs import (
     DEFINITION,
     OPTIONS,
     RATIO,
@@ -39,6 +37,8 @@ from ..execution.solving import (
     rows_of,
     scene_of,
 )
+from ..execution.progress import bar, compile_kernels, say, spinner, stdout_to_stderr
+from ..execution.writing import check_writable
 from ..schemas import advice as forms
 from ..schemas.columns import percent
 from ..schemas.runs import Warned

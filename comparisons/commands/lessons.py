@@ -5,9 +5,9 @@ from typing import Annotated
 
 import typer
 
-from ..execution.files import check_folder, check_writable
+from ..execution.command_runs import JsonFile
 from ..execution.progress import bar, compile_kernels, stdout_to_stderr
-from ..execution.solving import JsonFile
+from ..execution.writing import check_folder, check_writable
 from ..schemas.runs import Asked, Problem, Sheet
 from .output import write_output
 

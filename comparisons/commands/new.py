@@ -15,8 +15,7 @@ from analytic.rocking import DEFINITIONS, design_bearings
 from analytic.scene import Base, Bearings
 from analytic.scene_file import DAMPING, MATERIALS, PERIOD, block_from, derived, scene_text
 
-from ..execution.files import check_writable, write_text
-from ..execution.solving import (
+from ..execution.command_runs import (
     DEFINITION,
     OPTIONS,
     RATIO,
@@ -32,6 +31,7 @@ from ..execution.solving import (
     named_by_options,
     scene_of,
 )
+from ..execution.writing import check_writable, write_text
 from ..schemas.runs import Derived, New, Record
 from .output import write_output
 

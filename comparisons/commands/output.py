@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..execution.files import STANDARD_OUTPUT, PlaceError, write, write_text
+from ..execution.writing import STANDARD_OUTPUT, PlaceError, write, write_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -14,10 +14,7 @@ from analytic.response import UNCOMPARED
 from engines import get_engine
 
 from ..execution.by_solver import results_in
-from ..execution.files import check_folder, check_writable, write_text
-from ..execution.progress import bar, compile_kernels, say, stdout_to_stderr
-from ..execution.provenance import RESULTS, read_result
-from ..execution.solving import (
+from ..execution.command_runs import (
     ANALYTIC,
     RECORD_OPTIONS,
     BothSigns,
@@ -35,6 +32,9 @@ from ..execution.solving import (
     named_by_options,
     other_motions,
 )
+from ..execution.progress import bar, compile_kernels, say, stdout_to_stderr
+from ..execution.results import RESULTS, read_result
+from ..execution.writing import check_folder, check_writable, write_text
 from ..schemas.runs import MotionRun, Report, Reported
 
 

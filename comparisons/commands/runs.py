@@ -13,9 +13,7 @@ from analytic.scene_file import load_scene
 from engines import BROKEN, ENGINES, available_engines, get_engine, guard, missing_words
 from engines.loads import unkept_friction
 
-from ..execution.files import check_writable, readable, write_text
-from ..execution.progress import compile_kernels, say, spinner, stdout_to_stderr
-from ..execution.solving import (
+from ..execution.command_runs import (
     ANALYTIC,
     TIME_LIMIT,
     TIME_LIMIT_HELP,
@@ -40,6 +38,8 @@ from ..execution.solving import (
     simulate,
     with_near,
 )
+from ..execution.progress import compile_kernels, say, spinner, stdout_to_stderr
+from ..execution.writing import check_writable, readable, write_text
 from ..schemas.runs import Comparison, MotionRun, Run, Sensitivity
 from .output import write_output
 

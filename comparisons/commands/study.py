@@ -18,10 +18,10 @@ from engines import ENGINES, get_engine, guard, installed_engines
 
 from ..execution.by_solver import MODEL, save_parts
 from ..execution.cases import name_of
-from ..execution.files import check_folder, check_writable
+from ..execution.command_runs import TIME_LIMIT, EngineNames, JsonFile, check_time_limit, named_engines
 from ..execution.progress import compile_kernels, log, say, spinner, stdout_to_stderr
-from ..execution.provenance import RESULTS, made_here
-from ..execution.solving import TIME_LIMIT, EngineNames, JsonFile, check_time_limit, named_engines
+from ..execution.results import RESULTS, made_here
+from ..execution.writing import check_folder, check_writable
 from ..schemas.runs import Tolerance, Verification
 from ..studies import BUILT_IN, TOLERANCES, StudyBroken, get_study, study_names
 from .output import write_output
@@ -133,7 +133,7 @@ def _replot(study, result, output):
 
 def _compute(study, folder, engines, quick, workers, scheduler, options):
     """Compute the results of a study and write their pages; status 1 if the study finds problems."""
-    from ..execution.study import compute
+    from ..execution.runner import compute
     from ..report.detail import write_study
     from ..studies.rows import read_study
 
@@ -156,7 +156,7 @@ def _given(context, options):
 
 def _check(name, output, number, seed, write, workers):
     """Run stored runs of a study again and print whether they agree; status 1 if one differs."""
-    from ..execution.study import check_all
+    from ..execution.runner import check_all
 
     with stdout_to_stderr():  # engines print on import
         seed = secrets.randbelow(2**32) if seed is None else seed
@@ -185,7 +185,7 @@ def every(
 
     Example: rocking study all --output studies
     """
-    from ..execution.study import compute
+    from ..execution.runner import compute
 
     check_folder(output)
     for name in BUILT_IN:

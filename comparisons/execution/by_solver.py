@@ -25,9 +25,9 @@ from analytic.errors import SettingError
 from engines import ENGINES
 
 from .cases import root_of
-from .files import readable
-from .provenance import Result, ResultError, at_commit, read_result, save
-from .sources import changes, kept_digests, version_of
+from .code_digests import changes, kept_digests, version_of
+from .results import Result, ResultError, at_commit, read_result, save
+from .writing import readable
 
 if TYPE_CHECKING:
     from .plan import Study

@@ -12,8 +12,8 @@ from typing import Any
 from analytic import Block, Response, Scene, Start
 from engines import ENGINES, get_engine
 
+from .code_digests import source_digests, today, version_of
 from .progress import compile_kernels
-from .sources import source_digests, today, version_of
 
 # any other name is that of an engine, or itself a "module:function"
 SOLVERS = {

@@ -23,10 +23,10 @@ from typing import Any
 from analytic.errors import SettingError
 
 from .cases import compile_for, root_of, versions
-from .files import Mendable
+from .code_digests import PROJECT, source_digests
 from .progress import say
-from .sources import PROJECT, source_digests
 from .sweep import Done, Executor, Processes, Task, end_with, number_of
+from .writing import Mendable
 
 LOCAL = "local:"
 PATIENCE = 5.0  # s, for a scheduler that does not answer

@@ -35,7 +35,7 @@ from .cases import SOLVERS, Case
 from .sweep import Row
 
 if TYPE_CHECKING:
-    from .provenance import Result
+    from .results import Result
 
 TIME_LIMIT = 300.0  # s, of one run
 

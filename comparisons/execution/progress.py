@@ -16,7 +16,7 @@ from contextlib import AbstractContextManager
 from numba.core.dispatcher import Dispatcher
 from numba.core.event import Event, Listener, register, unregister
 
-from .files import readable
+from .writing import readable
 
 COMPILING = "compiling the analytic model, once on this machine"
 PATIENCE = 2.0  # s that something may take without a message

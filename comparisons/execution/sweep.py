@@ -43,9 +43,9 @@ from analytic.errors import SettingError
 from engines.guard import end_with_parent, raised
 
 from .cases import Case, compile_for, root_of, solver
-from .files import Mendable, PlaceError, TemporaryFolder
 from .progress import lines, redirected
-from .provenance import json_ready, scrub
+from .results import json_ready, scrub
+from .writing import Mendable, PlaceError, TemporaryFolder
 
 ENOUGH_SECONDS = 0.2  # after which a task of several short runs ends; a kill loses no more
 MOST_BROKEN = 3  # pools in a row that end without finishing a task

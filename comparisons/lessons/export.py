@@ -17,7 +17,7 @@ from markupsafe import Markup
 
 from analytic import synthetic_motion
 
-from ..execution.files import write_all
+from ..execution.writing import write_all
 from ..plotting import diagrams
 from ..plotting.diagrams import mathml, prose
 from ..plotting.parts import templates

@@ -16,8 +16,8 @@ from typing import Any
 
 from analytic.errors import SettingError
 
-from ..execution.files import TemporaryFolder, write_all
 from ..execution.progress import say
+from ..execution.writing import TemporaryFolder, write_all
 from ..plotting import diagrams
 from ..plotting.parts import templates
 from ..schemas.columns import number

@@ -22,9 +22,9 @@ from analytic.errors import SettingError
 from analytic.rocking import BearingLaw
 from analytic.scene import BASE, BEARINGS, caryatid_block
 from engines import ENGINES, get_engine
-from engines.checks import impulse_error
 from engines.contract import ROUNDING
 from engines.swings import Trace
+from engines.trace_checks import impulse_error
 
 from .errors import compare, impact_errors, rms
 

@@ -11,8 +11,8 @@ rigid ground); J' = J_O - m mt h^2; and w is the rate before the impact:
 
 `pull` is the negative part of the old corner's impulses. The remainder, of second order, comes from bearings and
 gravity during the contact. Two more quantities have the same unit. `flight`: the energy gained in the second half of
-the swing before, as a share of w. `shape`: the change of e by a strike that acts where the weight acted just before,
-when the landing corner is in the air and should be unloaded.
+the swing before, as a share of w. `shape`: the change of e if the strike acts where the weight acted
+just before, although the landing corner is still in the air and should carry no load.
 
 `cause_of` infers the cause of the error from these steps alone, without the variant's settings.
 """
@@ -27,9 +27,9 @@ from analytic import Scene
 from analytic.motion import Motion, vertical_acceleration
 from analytic.rocking import restitution
 from engines import get_engine
-from engines.checks import energy_balance, pivoting_centre
 from engines.loads import ground_velocity
 from engines.swings import ArrayModel, Trace, find_swings, to_contact
+from engines.trace_checks import energy_balance, pivoting_centre
 
 from .agreement import Unmeasurable
 

@@ -21,10 +21,10 @@ from numba import njit
 from analytic import Base, Bearings, Impact, Response, Scene, SceneError, simulate
 from analytic.errors import Values
 from analytic.rocking import RockingModel, base_jump_length, base_jump_length_as_printed, restitution
-from engines.checks import energy_balance, energy_gain
 from engines.comparison import changed_copies
 from engines.events import impacts_of, matched
 from engines.swings import Trace
+from engines.trace_checks import energy_balance, energy_gain
 
 # Least rate of an impact over the fastest of the run: slower impacts are an engine's chatter before rest.
 SLOWEST_IMPACT = 0.1
@@ -246,7 +246,7 @@ def energy_errors(
 
     Drift: the largest change of the balance (mechanical energy + loss in the bearings - input work) within a swing or
     rest, over m g R (1 - cos gamma); 0 if exact. Samples within about one sample or `step` [s] of an event are left
-    out. Gain: as `engines.checks.energy_gain`, without the time `settle` [s] after an uplift or impact.
+    out. Gain: as `engines.trace_checks.energy_gain`, without the time `settle` [s] after an uplift or impact.
     """
     history = _history(response)
     last = min(until, math.inf if response.unstable_time is None else response.unstable_time)

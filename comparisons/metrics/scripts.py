@@ -20,8 +20,8 @@ from engines.observe import failed_response, observe
 from engines.scripting import write_script
 from engines.swings import Trace
 
-from ..execution.files import TemporaryFolder
-from ..execution.provenance import scrub
+from ..execution.results import scrub
+from ..execution.writing import TemporaryFolder
 
 NAME = "script"
 SECONDS = 300.0  # time limit of a script; a script that ends takes 5 s of CPU time at most

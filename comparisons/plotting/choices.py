@@ -7,7 +7,7 @@ from rich.text import Text
 
 from engines import missing_words
 
-from ..execution.files import readable
+from ..execution.writing import readable
 from ..schemas.advice import Choice, Level
 from .plots import TITLE_CHARACTERS, marker, style
 from .terminal import digits, echo, grid

@@ -25,7 +25,7 @@ from matplotlib.ticker import MaxNLocator
 from analytic import PulseMotion
 from engines import ENGINES
 
-from ..execution.provenance import Result
+from ..execution.results import Result
 from ..schemas.columns import NAME, Column, Key, Row, number, percent, short, value_of
 from .charts import REFERENCE, WIDTH, Axis, Chart, curve, engine_of, figure, key_of, log_axis, room, slanting
 from .parts import Figure, Judgement, Mark, Table, grouped, table, where

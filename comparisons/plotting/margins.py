@@ -15,8 +15,8 @@ from analytic.margins import Contact, Margin, limit_states
 from analytic.motion import Motion
 from analytic.response import KINDS
 
-from ..execution.files import readable
-from ..execution.solving import OWN
+from ..execution.command_runs import OWN
+from ..execution.writing import readable
 from ..metrics.statistics import wilson
 from ..schemas.columns import number, percent
 from .plots import TITLE_CHARACTERS
@@ -238,7 +238,7 @@ def headline(rows: Sequence[Mapping[str, Any]], left: Sequence[str] = ()) -> str
     They count records: with failed runs, with warnings, under which the block lifts, and under which it overturns.
     Records are called motions where the scene's own motion is one of them.
 
-    rows : of `execution.solving.rows_of`. left : files and channels that were left out.
+    rows : of `execution.command_runs.rows_of`. left : files and channels that were left out.
     """
     if not rows:
         return None
@@ -366,7 +366,7 @@ def print_bearings(
     """Print `warnings` and a column for each of the `chosen` bearings; without any, the sentence `nothing`.
 
     stroke : room of the base [m]. tilt : limit of the peak tilt, over slenderness. motions : rows of
-    `execution.solving.read_row`.
+    `execution.command_runs.read_row`.
     """
     assert scene.base is not None  # the search asks for one
     name, aim = readable(scene.name, TITLE_CHARACTERS), _aim(scene, stroke, tilt)

@@ -18,7 +18,7 @@ from analytic.bearing_scan import displacement_spectrum
 from analytic.records import Channel, G
 from engines import ENGINES
 
-from ..execution.files import readable
+from ..execution.writing import readable
 from ..schemas import runs
 from .terminal import echo, grid
 

@@ -1,8 +1,8 @@
 """Tables and sentences in the terminal: of responses, their differences and warnings, and of engines.
 
-Below, as ``rocking engines NAME`` prints them: the variants of the subject engines with settings, default level, levels
-and calls. The linked class explains the settings; a variant may have other values than the class's defaults. The
-command prints the same of all other engines.
+The reference adds here the variants of the subject engines (`Engine.subject`: those that the studies are about), as
+``rocking engines NAME`` prints them, with settings, default level, levels and calls. The linked class explains the
+settings; a variant may have other values than the class's defaults. The command prints the same of all other engines.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from engines import ENGINES, available_engines, get_engine
 from engines.contract import Engine, Variant
 from engines.simulating import in_words
 
-from ..execution.files import readable
 from ..execution.progress import stdout_to_stderr
+from ..execution.writing import readable
 from ..metrics.errors import Horizon
 from .parts import grouped
 from .wording import MOST_NAMED, differing, listed, outcomes

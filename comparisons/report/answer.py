@@ -1,4 +1,4 @@
-"""The report's answer: stored studies, the table of trust, the first screen, and its own runs.
+"""The report's answer: stored studies, the table of trust, the first screen, and the runs made for it.
 
 All of it comes from result files. `stored_studies` reads the studies' results and draws their pages. `setups_of` builds
 the table of trust of all variants. `screen` builds the first screen: five lines, two charts, and the recommendation.
@@ -14,8 +14,8 @@ from typing import Any, Self
 from engines import ENGINES, missing_words
 
 from ..execution.by_solver import age, by_engine, date_of, last_check, origins_of, results_in
-from ..execution.files import readable
-from ..execution.provenance import RESULTS, Result, ResultError
+from ..execution.results import RESULTS, Result, ResultError
+from ..execution.writing import readable
 from ..plotting.glance import Advised, Endings, Glance, Peaks, costs, endings, swatches
 from ..plotting.parts import COST, RESTITUTION, Judgement, Mark, Section, Table, grouped
 from ..plotting.wording import listed, outcomes, rating, with_counts

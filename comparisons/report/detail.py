@@ -20,9 +20,9 @@ from markupsafe import Markup, escape
 from analytic.checks.time_stepping import simulate_time_stepping
 
 from ..execution.by_solver import age, briefly
-from ..execution.files import readable, write_all
 from ..execution.plan import Study
-from ..execution.provenance import ResultError
+from ..execution.results import ResultError
+from ..execution.writing import readable, write_all
 from ..lessons.lesson import SCENE, straddled
 from ..plotting import diagrams
 from ..plotting.charts import STYLE, colour, key_of

@@ -19,8 +19,8 @@ from analytic.records import G
 from analytic.response import LEVEL, History, Response
 
 from ..execution.cases import Case
-from ..execution.files import write
-from ..execution.provenance import Result, ResultError
+from ..execution.results import Result, ResultError
+from ..execution.writing import write
 from ..plotting.charts import Axis, Chart, figure
 from ..plotting.parts import Figure
 from ..plotting.plots import mode_spans

@@ -12,8 +12,8 @@ from xml.etree import ElementTree
 from engines import ENGINES
 
 from ..execution.by_solver import by_engine, checked, date_of, held, results_in
-from ..execution.files import write, write_all
-from ..execution.provenance import PROJECT_FOLDER, RESULTS, Result
+from ..execution.results import PROJECT_FOLDER, RESULTS, Result
+from ..execution.writing import write, write_all
 from ..plotting.charts import alone
 from ..schemas.columns import spelled, spelled_page
 from ..studies.rows import read_study

@@ -25,8 +25,8 @@ from engines import available_engines, get_engine
 from ..execution.cases import Case
 from ..execution.plan import Batch, Computed, Plan, Request, Study
 from ..execution.progress import spinner
-from ..execution.provenance import copy_result
-from ..execution.study import compute
+from ..execution.results import copy_result
+from ..execution.runner import compute
 from ..execution.sweep import Row
 from ..metrics.errors import compare, impact_errors, lost_impacts, rms, sensitivity_horizon, solver_horizon, worst
 from ..plotting.parts import grouped

@@ -6,7 +6,7 @@ from typing import Any
 from analytic.records import G
 from analytic.response import UNCOMPARED, Difference
 
-from ..execution.provenance import Result
+from ..execution.results import Result
 from ..plotting.charts import figure
 from ..plotting.parts import Section, Table, across, grouped, table
 from ..plotting.wording import TRUSTED, USABLE, differing, outcomes, trust

@@ -18,8 +18,8 @@ from analytic.motion import Motion
 from analytic.records.folder import reversed_sign, same_reversed
 from analytic.response import JUDGED, about_record, scene_warnings
 
-from ..execution.provenance import Result
-from ..execution.solving import row_of, with_near, with_own
+from ..execution.command_runs import row_of, with_near, with_own
+from ..execution.results import Result
 from ..plotting.margins import LIFTED, counted, doubts, headline, motion_warnings, unit_of
 from ..plotting.parts import across, grouped, table
 from ..plotting.wording import listed

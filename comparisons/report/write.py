@@ -13,8 +13,8 @@ from markupsafe import Markup
 from engines.simulating import RANGE, in_words
 
 from ..execution.by_solver import age
-from ..execution.files import write_all
-from ..execution.provenance import PACKAGES, RESULTS, Result, read_result
+from ..execution.results import PACKAGES, RESULTS, Result, read_result
+from ..execution.writing import write_all
 from ..metrics.statistics import wilson
 from ..plotting import diagrams
 from ..plotting.parts import SIGNS, Section, Table

@@ -3,8 +3,8 @@
 import json
 from typing import Any
 
-from ..execution.files import write_all
-from ..execution.provenance import PROJECT_FOLDER
+from ..execution.results import PROJECT_FOLDER
+from ..execution.writing import write_all
 from . import schema_of
 from .advice import BearingSearch, Choice, Design, Margins
 from .runs import Comparison, New, Record, Report, Run, Sheet, StudyResult, Verification

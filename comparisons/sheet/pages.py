@@ -29,7 +29,7 @@ from analytic import (
     synthetic_motion,
 )
 
-from ..execution.files import write_all
+from ..execution.writing import write_all
 from ..plotting.parts import templates
 from ..plotting.wording import indexed
 

@@ -19,8 +19,8 @@ from pathlib import Path
 from typing import Any
 
 from ..execution.by_solver import MODEL, engine_of, read
-from ..execution.files import readable
-from ..execution.provenance import Result, ResultError
+from ..execution.results import Result, ResultError
+from ..execution.writing import readable
 from ..schemas.columns import Column, declared, flag_of, list_of, number_of, table_of, whole_of, word_of
 from . import STUDIES, get_study
 

@@ -1,9 +1,6 @@
-"""The page of the tolerances, a result of no study.
+"""Columns and page of the tolerance table, which ``rocking verify --output DIR`` measures and no study does."""
 
-``rocking verify --output DIR`` measures and writes it.
-"""
-
-from ..execution.provenance import Result
+from ..execution.results import Result
 from ..plotting.parts import Page, table, where
 from ..schemas.columns import NAME, Column, declared, flag_of, number_of, word_of
 from .rows import SHARED

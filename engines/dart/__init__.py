@@ -1,6 +1,6 @@
 """DART: ``get_engine("dart").simulate(scene, variant=...)``.
 
-Tolerances of the variants of DART; the scenes are those of the tolerance table.
+The record of DART and the tolerances of its variants; their scenes are those of the tolerance table.
 """
 
 from ..contract import EXTRA, HELD, LARGE_STEP, READING, ROUNDING, STEP, Engine, ToleranceRow

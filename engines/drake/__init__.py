@@ -1,6 +1,6 @@
 """Drake: ``get_engine("drake").simulate(scene, variant=...)``.
 
-Tolerances of the variants of Drake; the scenes are those of the tolerance table.
+The record of Drake and the tolerances of its variants; their scenes are those of the tolerance table.
 """
 
 from ..contract import EXTRA, Engine, ToleranceRow

@@ -21,7 +21,7 @@ ENGINE = Engine(
 
 
 # A jump of the ground's acceleration errs as the others only where the block is at rest from the start until then; see
-# `sizing.CompliantCorners`.
+# `scene.CompliantCorners`.
 STIFFNESS = "contact stiffness; goes as its inverse"
 
 TOLERANCES = {

@@ -13,8 +13,8 @@ import numpy as np
 from analytic.response import Failure, State
 from analytic.rocking import BearingLaw
 
-from ..checks import replay_bearing
 from ..contract import Variant
+from ..trace_checks import replay_bearing
 from . import corners, native, stepping
 from .scene import MEASURED
 

@@ -1,6 +1,6 @@
 """MuJoCo: ``get_engine("mujoco").simulate(scene, variant=...)``.
 
-Tolerances of the variants of MuJoCo; the scenes are those of the tolerance table.
+The record of MuJoCo and the tolerances of its variants; their scenes are those of the tolerance table.
 """
 
 from ..contract import EXTRA, HELD, LARGE_STEP, READING, ROUNDING, STEP, Engine, ToleranceRow

@@ -1,6 +1,6 @@
 """pymunk (Chipmunk, planar): ``get_engine("pymunk").simulate(scene, variant=...)``.
 
-Tolerances of the variants of pymunk; the scenes are those of the tolerance table.
+The record of pymunk and the tolerances of its variants; their scenes are those of the tolerance table.
 """
 
 from ..contract import EXTRA, HELD, LARGE_STEP, READING, ROUNDING, Engine, ToleranceRow

@@ -34,8 +34,8 @@ from analytic.bearing_scan import scan_bearings
 from analytic.rocking import design_bearings
 from comparisons import cli
 from comparisons.advice import criteria
-from comparisons.execution import study
-from comparisons.execution import study as check
+from comparisons.execution import runner
+from comparisons.execution import runner as check
 from comparisons.metrics import agreement
 from comparisons.metrics import agreement as tolerances
 from comparisons.metrics import errors as horizon
@@ -141,14 +141,14 @@ WRONG = {
 # What takes the place of what runs elsewhere, of what the code is and of what the machine has; and coarser scans.
 REPLACED = {
     "engines.guard.run_apart": lambda function, *arguments, **_: (function(*arguments), None),
-    "comparisons.execution.study.Processes": lambda *_: Here(),
-    "comparisons.execution.study.source_digests": lambda *_: {},
+    "comparisons.execution.runner.Processes": lambda *_: Here(),
+    "comparisons.execution.runner.source_digests": lambda *_: {},
     "comparisons.execution.cases.source_digests": lambda *_: {},
-    "comparisons.execution.study.digests_of_all": lambda *_: {},
-    "comparisons.execution.provenance.kept_digests": lambda *_: {},
+    "comparisons.execution.runner.digests_of_all": lambda *_: {},
+    "comparisons.execution.results.kept_digests": lambda *_: {},
     "comparisons.execution.by_solver.kept_digests": lambda roots: {root: root[::-1] for root in roots},
     "comparisons.execution.cases.version_of": lambda _: "1",
-    "comparisons.execution.study.SIZE": 1,
+    "comparisons.execution.runner.SIZE": 1,
     "comparisons.report.write.write_page": lambda folder, *_: Path(folder) / "report.html",
     "comparisons.report.statue.STEP": 0.1,
     "comparisons.report.statue.PLATE_STEP": 0.2,
@@ -735,7 +735,7 @@ def sheet_written(ask):
 def studied(ask):
     """A made-up study of two runs, of which one is kept; a check finds that one changed."""
     began = datetime.now(UTC).replace(microsecond=0)
-    (path,) = study.compute(MADE, "studies", engines=(), workers=1, progress=False)
+    (path,) = runner.compute(MADE, "studies", engines=(), workers=1, progress=False)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(fake_solvers, "tilt", fake_solvers.place)
         check.check(path, 60, 11, record=True, workers=1, progress=False)

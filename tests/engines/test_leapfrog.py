@@ -21,7 +21,6 @@ from comparisons.metrics import errors
 from comparisons.metrics.errors import rms
 from engines import get_engine
 from engines import loop as stepping
-from engines.checks import IMPULSE_LIMIT, energy_gain, impulse_error
 from engines.contract import Mismatch
 from engines.loads import added_mass, ground_gain, ground_velocities, ground_velocity, placement
 from engines.loop import (
@@ -43,6 +42,7 @@ from engines.loop import (
     step_limits,
     trace_of,
 )
+from engines.trace_checks import IMPULSE_LIMIT, energy_gain, impulse_error
 
 LINEAR = Bearings(law="linear", count=1, ka=2e6)
 RULED = ["pybullet", "mujoco", "pymunk", "dart"]

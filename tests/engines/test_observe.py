@@ -13,7 +13,9 @@ from sampled_traces import BASE, BEARINGS, EDGE, SCENES, block, observed, sample
 
 from analytic import Base, Bearings, Caution, Failure, PulseMotion, Scene, Start, simulate
 from engines import swings
-from engines.checks import (
+from engines.events import MOST_RESTITUTION, check_impacts, find_events, straddled
+from engines.swings import Trace, find_swings
+from engines.trace_checks import (
     GAIN_LIMIT,
     HEIGHT_TOLERANCE,
     IMPULSE_LIMIT,
@@ -27,8 +29,6 @@ from engines.checks import (
     replay_bearing,
     replayed_force,
 )
-from engines.events import MOST_RESTITUTION, check_impacts, find_events, straddled
-from engines.swings import Trace, find_swings
 
 
 def strong(response):

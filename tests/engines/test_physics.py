@@ -25,13 +25,13 @@ from analytic.rocking import BearingLaw, RockingModel, momentum_restitution, res
 from analytic.scene import BEARINGS
 from comparisons.metrics.errors import impact_errors
 from engines import ENGINES, get_engine
-from engines.checks import energy_balance, energy_gain, pivoting_centre
 from engines.comparison import RESTITUTION, compare
 from engines.events import STILL, contact_measures, impacts_of
 from engines.loads import ALONE, Couple, holding
 from engines.scripting import write_script
 from engines.simulating import Simulator
 from engines.swings import Trace
+from engines.trace_checks import energy_balance, energy_gain, pivoting_centre
 
 
 def ratios(response):

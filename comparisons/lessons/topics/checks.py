@@ -12,7 +12,7 @@ from analytic.checks.twin import simulate_twin
 from analytic.rocking import RockingModel, base_jump_length, base_jump_length_as_printed, restitution
 from analytic.scene import BASE, caryatid_block
 
-from ...execution.provenance import RESULTS
+from ...execution.results import RESULTS
 from ...plotting.parts import where
 from ...schemas.columns import number, power_of_ten
 from ...studies.rows import read_study

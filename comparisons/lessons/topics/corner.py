@@ -11,7 +11,7 @@ from analytic.checks.time_stepping import simulate_time_stepping
 from analytic.scene import RADIUS
 from engines import ENGINES
 
-from ...execution.provenance import RESULTS
+from ...execution.results import RESULTS
 from ...metrics.agreement import RIGID
 from ...plotting.parts import Table, where
 from ...plotting.plots import marker

@@ -12,7 +12,7 @@ from markupsafe import Markup, escape
 
 from engines import missing_words
 
-from ...execution.provenance import Result
+from ...execution.results import Result
 from ...plotting.charts import Axis, Chart, figure
 from ...plotting.figures import Series, lines, regions
 from ...plotting.parts import Figure, Head, Page, Table, grouped, table, where

@@ -6,8 +6,8 @@ itself: the paper's simulations in every solver, the slenderness that it can hav
 intensities and motions. ``caryatid-under-<motion>-histories`` has Figs 4 and 6 over time, which may not be passed on
 where the record may not be.
 
-`branch` and `history_point` are the paper's equations written out literally, misprint included; the corrected ones are
-the model's own.
+`comparisons.metrics.agreement.branch` and `history_point` are the paper's equations written out literally, misprint
+included; the corrected ones are the model's own.
 """
 
 import math
@@ -49,9 +49,9 @@ from analytic.rocking import (
 from engines import available_engines
 
 from ...execution.cases import Case
+from ...execution.command_runs import Channel, Column, Step, Units, ground_motion
 from ...execution.plan import Batch, Computed, Plan, Request, boundaries, drive
 from ...execution.progress import log
-from ...execution.solving import Channel, Column, Step, Units, ground_motion
 from ...execution.sweep import Row
 from ...metrics.agreement import branch, history_point
 from ...schemas.columns import declared, flag_of, list_of, number_of, table_of, whole_of, word_of

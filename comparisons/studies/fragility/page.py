@@ -7,7 +7,7 @@ from scipy.stats import norm
 
 from engines.comparison import FALL
 
-from ...execution.provenance import Result
+from ...execution.results import Result
 from ...plotting.charts import REFERENCE, Axis, Chart, figure
 from ...plotting.figures import as_it_comes, beside, leading, ranks, subject
 from ...plotting.glance import Glance, counted

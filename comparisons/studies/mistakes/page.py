@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from ...execution.provenance import Result
+from ...execution.results import Result
 from ...plotting.charts import Axis, Chart, figure, key_of, log_axis, room
 from ...plotting.parts import Figure, Page, grouped, table, where
 from ...plotting.wording import TRUSTED, listed

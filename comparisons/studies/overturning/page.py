@@ -1,7 +1,4 @@
-"""The page of the overturning study: maps of outcomes, and boundaries of the model and of engines.
-
-Maps of outcomes with the boundaries of the model and of engines.
-"""
+"""The page of the overturning study: maps of outcomes, and boundaries of the model and of engines."""
 
 import itertools
 import math
@@ -9,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from ...execution.provenance import Result
+from ...execution.results import Result
 from ...plotting.charts import Axis, Chart, figure, key_of
 from ...plotting.figures import (
     AMPLITUDE,

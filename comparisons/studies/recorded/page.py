@@ -9,7 +9,7 @@ import numpy as np
 from analytic.records.content import PREFIX
 from engines.comparison import FALL
 
-from ...execution.provenance import Result
+from ...execution.results import Result
 from ...plotting.charts import Axis, Chart, figure, key_of
 from ...plotting.figures import as_it_comes, kind, leading, mains, subject
 from ...plotting.glance import Glance, Peaks, counted

@@ -25,7 +25,7 @@ from engines.events import LEAST_TILT
 from ...ensembles import Folder, peak_velocity, source_of
 from ...execution.cases import Case, variant_settings
 from ...execution.plan import Batch, Computed, Plan, Request
-from ...execution.provenance import Result
+from ...execution.results import Result
 from ...execution.sweep import Row
 from ...metrics.errors import PERTURBATION, SAMPLES_PER_PERIOD, sensitivity_horizon, solver_horizon
 from ...metrics.statistics import EQUAL, class_of

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ...execution.provenance import Result
+from ...execution.results import Result
 from ...metrics.errors import rms
 from ...plotting.charts import Axis, Chart, figure, key_of
 from ...plotting.figures import Series, as_it_comes, beside, kind, lines, shades, subject

@@ -1,6 +1,6 @@
 """The page of the sensitivity study: how often small changes of motion and block change the outcome."""
 
-from ...execution.provenance import Result
+from ...execution.results import Result
 from ...metrics.statistics import wilson
 from ...plotting.charts import REFERENCE, Axis
 from ...plotting.figures import ranks, shades

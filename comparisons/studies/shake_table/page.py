@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ...execution.provenance import Result
+from ...execution.results import Result
 from ...metrics.statistics import EQUAL, TOO_FEW, wilson
 from ...plotting.charts import Axis, Chart, curve, figure, key_of
 from ...plotting.figures import as_it_comes, ranks

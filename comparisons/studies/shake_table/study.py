@@ -27,7 +27,7 @@ from engines.comparison import Reference
 from ...execution.cases import Case, variant_settings
 from ...execution.plan import Batch, Computed, Plan, Request
 from ...execution.progress import bar
-from ...execution.provenance import Result
+from ...execution.results import Result
 from ...execution.sweep import Row
 from ...metrics.statistics import EQUAL, Confusion, clustered, confusion, equality, mcnemar
 from ...schemas.columns import declared, list_of, number_of, whole_of, word_of

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from engines import ENGINES
 
 from ...execution.by_solver import timed_apart
-from ...execution.provenance import Result
+from ...execution.results import Result
 from ...metrics.scripts import NAME as SCRIPT
 from ...plotting.figures import Series, beside, lines, mains
 from ...plotting.glance import Advised, Curve, Glance

@@ -3,12 +3,6 @@
 First stand the block and the motions that several cases share. Cases without friction follow, each with one extreme
 quantity of the start, the motion, the bearings or the block. The last ones have friction: the block slides, or nearly
 so.
-
-What a hard case is, and the block and the motions that several share.
-
-Hard cases without friction of one extreme quantity: of the start, the motion, the bearings or the block.
-
-Hard cases with friction: the block slides, or nearly so.
 """
 
 import functools

@@ -5,7 +5,7 @@ from itertools import product
 
 from engines.simulating import in_words
 
-from ...execution.provenance import Result
+from ...execution.results import Result
 from ...plotting.charts import REFERENCE, Axis, Chart, broad, figure, room
 from ...plotting.figures import as_it_comes, kind, subject
 from ...plotting.parts import Head, Judgement, Mark, Page, grouped, table, where

@@ -13,7 +13,7 @@ from engines.comparison import outcome_of
 
 from ...execution.cases import Case
 from ...execution.plan import Batch, Computed, Plan, Request
-from ...execution.provenance import scrub
+from ...execution.results import scrub
 from ...execution.sweep import Row
 from ...metrics.errors import energy_errors
 from ...schemas.columns import declared, list_of, number_of, table_of, whole_of, word_of

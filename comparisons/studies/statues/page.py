@@ -10,7 +10,7 @@ from analytic.response import EDGE
 from engines.comparison import END, PEAK
 from engines.comparison import RESTITUTION as RESTITUTION_LIMIT
 
-from ...execution.provenance import Result
+from ...execution.results import Result
 from ...metrics.errors import rms
 from ...metrics.statistics import wilson
 from ...plotting.charts import Axis, Chart, curve, figure, key_of

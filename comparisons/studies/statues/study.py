@@ -17,10 +17,10 @@ from analytic.records.content import PREFIX
 from analytic.records.folder import folder_motions
 from analytic.rocking import BearingLaw
 from engines import get_engine
-from engines.checks import LEAST_SLIP
 from engines.comparison import LAST, PEAK, Reference, compare
 from engines.events import LEAST_TILT, impacts_of, matched
 from engines.simulating import RANGE, in_words
+from engines.trace_checks import LEAST_SLIP
 
 from ...ensembles import (
     FRICTION,
@@ -37,7 +37,7 @@ from ...ensembles import (
 from ...execution.cases import Case, variant_settings
 from ...execution.plan import Batch, Computed, Plan, Request
 from ...execution.progress import log
-from ...execution.provenance import commit_seed
+from ...execution.results import commit_seed
 from ...execution.sweep import Row
 from ...metrics.boundaries import TOLERANCE, Edge, Runs, edges
 from ...metrics.statistics import class_of
@@ -299,8 +299,8 @@ def of_engine(case: Case, response: Response) -> dict[str, Any]:
     Of a run without friction it keeps the class, of one with friction also the errors.
 
     slip_error, tilt_error: errors of the peaks of a block that stays upright in both; None for a slip too small to
-    count, see `engines.checks`. slipping, sticking: errors of the restitution at impacts in which the model's corner
-    slides before or after, and at others; lost: slipping ones without a match.
+    count, see `engines.trace_checks`. slipping, sticking: errors of the restitution at impacts in which the model's
+    corner slides before or after, and at others; lost: slipping ones without a match.
     """
     scene, reference = case.scene, Reference.of(case.scene)
     differences = compare(scene, response, reference).differences

@@ -25,7 +25,7 @@ from analytic import (
 from analytic.bearing_scan import DAMPING_STEP, PERIOD_STEP, first_stroke, scan_bearings
 from analytic.checks.twin import simulate_twin
 from analytic.rocking import BearingLaw, design_bearings, properties, steady_cycle
-from comparisons.execution.provenance import commit_seed
+from comparisons.execution.results import commit_seed
 
 KA, KB, ALPHA = 6.22e4, 6.22e3, 44.69
 PAPER = BearingLaw.of(Bearings(ka=KA, kb=KB, alpha=ALPHA))

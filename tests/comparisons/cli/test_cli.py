@@ -19,8 +19,8 @@ from own_scenes import BRONZE, CLIFF
 from analytic import Caution, Failure, load_scene, simulate, solver
 from comparisons import cli, commands
 from comparisons.commands import app
-from comparisons.execution import progress, solving
-from comparisons.execution.files import readable
+from comparisons.execution import command_runs, progress
+from comparisons.execution.writing import readable
 from engines import ENGINES, get_engine, guard, installed_engines
 
 PNG = b"\x89PNG\r\n"
@@ -155,7 +155,7 @@ def test_failed_run_is_told_and_has_a_status_of_its_own(rocking, monkeypatch, tm
     failed = dataclasses.replace(
         simulate(load_scene("free-rocking-rigid"), history=False), engine="exudyn", outcome="failed", failure=failure
     )
-    monkeypatch.setattr(solving, "get_engine", lambda name: SimpleNamespace(simulate=lambda scene, **_: failed))
+    monkeypatch.setattr(command_runs, "get_engine", lambda name: SimpleNamespace(simulate=lambda scene, **_: failed))
     picture = tmp_path / "x.png"
     status, out, err = rocking("run", "free-rocking-rigid", "--engine", "exudyn", "--json", "-", "--plot", picture)
     assert status == 1 and json.loads(out)["failure"]["reason"] == "Newton gave up"
@@ -174,7 +174,7 @@ def test_other_errors_are_not_hidden(monkeypatch):
 
 
 def test_parse_settings():
-    assert solving.parse_settings(["a=1e-4", "b=true", "c=word", "d=x=y", 'e="1"']) == {
+    assert command_runs.parse_settings(["a=1e-4", "b=true", "c=word", "d=x=y", 'e="1"']) == {
         "a": 1e-4,
         "b": True,
         "c": "word",
@@ -216,7 +216,7 @@ def test_warnings_and_undecided_outcomes_are_shown(rocking, monkeypatch, tmp_pat
         warnings=(Caution("model", "N <= 0 [at 1 s]."),),
         decided=False,
     )
-    monkeypatch.setattr("comparisons.execution.solving._analytic", lambda *_: odd)
+    monkeypatch.setattr("comparisons.execution.command_runs._analytic", lambda *_: odd)
     for command in (("compare", "--engine", "analytic"), ("run",)):
         _, out, _ = rocking(*command, "free-rocking-rigid", "--json", tmp_path / "r.json")
         assert "undecided" in out and "(rocks so far)" in out and "Warning, analytic: N <= 0 [at 1 s]." in out

@@ -14,9 +14,9 @@ from forks import fork
 
 from analytic import load_scene, simulate
 from comparisons.cli import stoppable
-from comparisons.execution import study
-from comparisons.execution.files import TemporaryFolder
-from comparisons.execution.provenance import RESULTS
+from comparisons.execution import runner
+from comparisons.execution.results import RESULTS
+from comparisons.execution.writing import TemporaryFolder
 from comparisons.report.runs import UNFINISHED
 from engines.guard import run_apart
 
@@ -146,10 +146,10 @@ def test_an_interrupted_study_or_report_says_what_is_kept_and_goes_on_from_there
 
 def test_nothing_is_said_of_runs_that_are_gone_or_not_yet_there(tmp_path, monkeypatch):
     store, messages = tmp_path / "runs.jsonl", []
-    monkeypatch.setattr(study, "_stored", store)
+    monkeypatch.setattr(runner, "_stored", store)
     for text in ("", "{", "{}\n{", "{}\n{}\n"):  # a line that is not whole is no run
         store.write_text(text)
-        messages.append(study.kept())
+        messages.append(runner.kept())
     assert messages == ["", "", *(kept(store, count).removeprefix("Interrupted. ").rstrip() for count in (1, 2))]
     store.unlink()
-    assert study.kept() == ""
+    assert runner.kept() == ""

@@ -7,7 +7,7 @@ import pytest
 
 from analytic import PulseMotion, SampledMotion, Scene, load_scene, simulate
 from analytic.margins import Band, Contact, Margin, margins
-from comparisons.execution.solving import OWN
+from comparisons.execution.command_runs import OWN
 from comparisons.metrics.statistics import wilson
 from comparisons.plotting.margins import LIFTED, draw_margins, odds, print_margins
 from comparisons.studies.stability.cases import BLOCK, GAP, THRESHOLD

@@ -177,7 +177,7 @@ def place(tmp_path, monkeypatch):
         "comparisons.report.runs.make_own_results",
         "comparisons.report.runs.make_results",
         "comparisons.report.write.write_page",
-        "comparisons.execution.study.compute",
+        "comparisons.execution.runner.compute",
         "comparisons.metrics.agreement.measure_all",
         "comparisons.advice.choose.choose",
         "comparisons.metrics.errors.solver_horizon",

@@ -21,9 +21,9 @@ from analytic import Base, Bearings, bearing_scan, load_scene, margins, simulate
 from analytic.response import DIFFERENCES, JUDGED, Difference, Failure
 from analytic.rocking import properties, restitution
 from comparisons.commands import advice as margin
-from comparisons.execution import solving
-from comparisons.execution.provenance import RESULTS
-from comparisons.execution.solving import OWN
+from comparisons.execution import command_runs
+from comparisons.execution.command_runs import OWN
+from comparisons.execution.results import RESULTS
 from comparisons.report import statue
 from comparisons.schemas.__main__ import schemas
 from engines import BUILT_IN, ENGINES, get_engine, guard
@@ -50,7 +50,7 @@ def here(function, *arguments, **_):
 # what is coarse here, done in this process (so that it finds these engines), or no road: what the code is
 HERE = {
     "engines.guard.run_apart": here,
-    "comparisons.execution.solving.compile_kernels": lambda *_: None,
+    "comparisons.execution.command_runs.compile_kernels": lambda *_: None,
     "comparisons.commands.advice.STEPS": 6,
     "analytic.margins.BISECTIONS": 3,
     "analytic.margins.STEP": 0.0125,
@@ -59,11 +59,11 @@ HERE = {
     "comparisons.report.statue.STEP": 0.1,
     "comparisons.report.statue.PLATE_STEP": 0.2,
     **dict.fromkeys(
-        ("comparisons.execution.study.Processes", "comparisons.advice.choose.Processes"), lambda *_: Here()
+        ("comparisons.execution.runner.Processes", "comparisons.advice.choose.Processes"), lambda *_: Here()
     ),
     **{
         f"comparisons.execution.{place}": lambda *_: {}
-        for place in ("study.source_digests", "cases.source_digests", "provenance.kept_digests", "study.digests_of_all")
+        for place in ("runner.source_digests", "cases.source_digests", "results.kept_digests", "runner.digests_of_all")
     },
     **dict.fromkeys(("comparisons.report.answer.age", "comparisons.report.write.age"), lambda *_: None),
     "comparisons.execution.cases.version_of": lambda _: "1",
@@ -234,7 +234,7 @@ def test_the_status_of_compare_is_that_of_the_model(road, monkeypatch, fails, en
         failed = partial(
             replace, outcome="failed", decided=False, failure=Failure("it gave up", "at 1 s"), history=None
         )
-        monkeypatch.setattr(solving, "_analytic", lambda scene, *_: failed(simulate(scene, history=False)))
+        monkeypatch.setattr(command_runs, "_analytic", lambda scene, *_: failed(simulate(scene, history=False)))
     status, answer, _, err = road("compare", "rocks", *engine_options([engine]))
     assert status == int(fails) and [bool(response["failure"]) for response in answer["responses"]] == [
         fails,

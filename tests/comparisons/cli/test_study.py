@@ -11,11 +11,11 @@ import pytest
 from engine_cases import ACCURATE
 
 from comparisons.commands import study as command
-from comparisons.execution import study as module
+from comparisons.execution import runner as module
 from comparisons.execution.by_solver import read
 from comparisons.execution.plan import Computed, Study
-from comparisons.execution.provenance import RESULTS
-from comparisons.execution.study import Check, compute
+from comparisons.execution.results import RESULTS
+from comparisons.execution.runner import Check, compute
 from comparisons.metrics import agreement
 from comparisons.metrics import agreement as tolerances
 from comparisons.plotting.parts import Page

@@ -26,10 +26,10 @@ from comparisons.execution.by_solver import (
     split,
 )
 from comparisons.execution.cases import name_of
+from comparisons.execution.code_digests import source_digests
 from comparisons.execution.plan import Request, Study
-from comparisons.execution.provenance import RESULTS, ResultError, made_here, read_result, save
-from comparisons.execution.sources import source_digests
-from comparisons.execution.study import RUNS, check, check_all, compute
+from comparisons.execution.results import RESULTS, ResultError, made_here, read_result, save
+from comparisons.execution.runner import RUNS, check, check_all, compute
 from comparisons.report.answer import origin_of
 from comparisons.report.gallery import origins
 from comparisons.studies import BUILT_IN, get_study

@@ -11,12 +11,12 @@ from fake_solvers import cases, scene
 from analytic import PulseMotion, SampledMotion, load_scene, synthetic_motion
 from analytic.motion import paired
 from comparisons.execution import by_solver
-from comparisons.execution import study as run_sample
+from comparisons.execution import runner as run_sample
 from comparisons.execution.by_solver import age, last_check
 from comparisons.execution.cases import Case
 from comparisons.execution.plan import Batch, Computed, Study
-from comparisons.execution.provenance import ResultError, read_result, write_result
-from comparisons.execution.study import case_of, check, check_all, compute, sample_of
+from comparisons.execution.results import ResultError, read_result, write_result
+from comparisons.execution.runner import case_of, check, check_all, compute, sample_of
 from comparisons.execution.sweep import Row
 from comparisons.metrics import agreement
 from comparisons.report.answer import origin_of

@@ -19,10 +19,10 @@ from bad_scenes import SCENE, write_scene
 from forks import fork
 
 from comparisons import cli
-from comparisons.execution import files, provenance, sweep
-from comparisons.execution.files import PlaceError, write, write_all, write_pair
-from comparisons.execution.provenance import copy_result, read_result, record_check, write_result
+from comparisons.execution import results, sweep, writing
+from comparisons.execution.results import copy_result, read_result, record_check, write_result
 from comparisons.execution.sweep import Store, StoreError
+from comparisons.execution.writing import PlaceError, write, write_all, write_pair
 from comparisons.lessons import export
 from comparisons.lessons.topics import lesson
 from engines import guard
@@ -173,8 +173,8 @@ def here(tmp_path, monkeypatch):
     for name in ("place", "else"):
         (tmp_path / name).mkdir()
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "else"))
-    monkeypatch.setattr(provenance, "checkout", lambda: {"commit": None, "dirty": None})
-    monkeypatch.setattr(provenance, "version_of", lambda package: "1")
+    monkeypatch.setattr(results, "checkout", lambda: {"commit": None, "dirty": None})
+    monkeypatch.setattr(results, "version_of", lambda package: "1")
     monkeypatch.setattr(sweep, "SYNC_SECONDS", 0.0)
     monkeypatch.setattr(guard, "run_apart", lambda function, *arguments, **_: (function(*arguments), None))
     monkeypatch.setattr(export, "lessons", lambda: [lesson("bearing")])
@@ -231,7 +231,7 @@ def test_each_file_is_the_old_or_the_new_one_and_the_message_names_it(here, tmp_
     left = [*here.rglob(".rocking-*")]  # another process may be writing it
     assert bool(left) == (met is killed and writer != "runs")
     for part in left:
-        os.utime(part, (0, part.stat().st_mtime - files.STALE - 1))
+        os.utime(part, (0, part.stat().st_mtime - writing.STALE - 1))
     undamaged(writer, here, number + 2)
     assert not [*here.rglob(".*")]
 
@@ -265,7 +265,7 @@ def test_arrays_that_wait_for_a_result_are_not_removed_by_an_equal_one_that_fail
     path = result(tmp_path, 1)
     damaged("replace", killed, 3, lambda: result(tmp_path, 2))
     text, (waiting,), whole = path.read_text(), tmp_path.glob(".r.*.npz"), os.replace
-    monkeypatch.setattr(files.os, "replace", lambda part, place: full() if place == path else whole(part, place))
+    monkeypatch.setattr(writing.os, "replace", lambda part, place: full() if place == path else whole(part, place))
     with pytest.raises(PlaceError):
         write_pair(path, text, path.with_suffix(".npz"), waiting.read_bytes())
     assert content(path)[0] == [{"value": 2}]

@@ -13,7 +13,7 @@ from numba import njit
 
 from comparisons.execution import progress
 from comparisons.execution.progress import Counted
-from comparisons.execution.provenance import PROJECT_FOLDER
+from comparisons.execution.results import PROJECT_FOLDER
 
 COUNTED = re.compile(r"(\d+) of about (\d+) functions")
 

@@ -14,7 +14,7 @@ from analytic.checks.closed_form import swing_energy
 from analytic.checks.twin import simulate_twin
 from analytic.rocking import RockingModel, restitution
 from analytic.scene import BASE, BEARINGS, MASS, RADIUS, caryatid_block
-from comparisons.execution.provenance import RESULTS
+from comparisons.execution.results import RESULTS
 from comparisons.lessons import lesson as engine_runs
 from comparisons.lessons.notebook import answer
 from comparisons.lessons.topics import bearing, caryatid, chaos, checks, corner, cost, impacts, lessons, tipping

@@ -25,11 +25,11 @@ from comparisons.metrics.autopsy import (
     frames,
 )
 from engines import get_engine
-from engines.checks import pivoting_centre
 from engines.events import contact_measures
 from engines.loads import size_scale
 from engines.loop import FixedStep, run_of
 from engines.swings import Trace
+from engines.trace_checks import pivoting_centre
 
 GROUNDS = {"rigid ground": None, "sliding base": BASE}
 

@@ -9,8 +9,8 @@ from sliding_scenes import LOST
 
 from analytic import Block, PulseMotion, SampledMotion, Scene, Start, simulate
 from analytic.rocking import restitution
+from comparisons.execution.command_runs import unsure_outcome
 from comparisons.execution.plan import drive
-from comparisons.execution.solving import unsure_outcome
 from comparisons.metrics.boundaries import Edge, edges, least_normal, locate, pulse
 from comparisons.metrics.errors import (
     LADDER,

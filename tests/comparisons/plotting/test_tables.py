@@ -13,7 +13,7 @@ from analytic.margins import Contact
 from analytic.response import COMPARED, Difference
 from analytic.rocking import design_bearings
 from comparisons.commands.advice import _chosen
-from comparisons.execution.solving import read_row
+from comparisons.execution.command_runs import read_row
 from comparisons.metrics.errors import Horizon
 from comparisons.plotting.choices import print_choice
 from comparisons.plotting.margins import _friction_words, _normal_words, print_bearings

@@ -8,7 +8,7 @@ import pytest
 from answered import edit
 from drawn import ROWS, made
 
-from comparisons.execution.provenance import RESULTS, ResultError
+from comparisons.execution.results import RESULTS, ResultError
 from comparisons.report.answer import stored_studies
 from comparisons.report.detail import write_study
 from comparisons.report.write import write_page

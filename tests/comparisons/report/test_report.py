@@ -15,9 +15,9 @@ from analytic import EngineNotInstalled, load_scene, simulate, synthetic_motion
 from analytic.checks.time_stepping import simulate_time_stepping
 from analytic.response import History
 from comparisons.execution.cases import Case
-from comparisons.execution.files import PlaceError
-from comparisons.execution.provenance import ResultError, read_result
+from comparisons.execution.results import ResultError, read_result
 from comparisons.execution.sweep import Task, lines_of
+from comparisons.execution.writing import PlaceError
 from comparisons.lessons.lesson import SCENE
 from comparisons.plotting.parts import where
 from comparisons.report import figures as histories

@@ -16,7 +16,7 @@ from analytic import Bearings, PulseMotion, SampledMotion, load_scene, simulate,
 from analytic.errors import SceneError
 from analytic.response import COMPARED, EDGE, OUTCOMES
 from comparisons.commands.report import form
-from comparisons.execution.provenance import RESULTS, read_result
+from comparisons.execution.results import RESULTS, read_result
 from comparisons.report import statue
 from comparisons.report.detail import assets, environment
 from comparisons.report.runs import RESTITUTION, SCENES, load_scenes, make_own_results

@@ -7,7 +7,7 @@ import pytest
 
 from analytic import EngineNotInstalled
 from comparisons.execution.by_solver import read, results_in
-from comparisons.execution.provenance import RESULTS
+from comparisons.execution.results import RESULTS
 from comparisons.report.answer import stored_studies
 from comparisons.report.gallery import (
     GALLERY,

@@ -10,8 +10,8 @@ from analytic.bearing_scan import displacement_spectrum
 from analytic.rocking import restitution
 from comparisons.execution.by_solver import read
 from comparisons.execution.plan import Transition
-from comparisons.execution.provenance import RESULTS
-from comparisons.execution.study import compute
+from comparisons.execution.results import RESULTS
+from comparisons.execution.runner import compute
 from comparisons.plotting.parts import where
 from comparisons.studies import get_study
 from comparisons.studies.caryatid.study import (

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from comparisons.execution.provenance import Result
+from comparisons.execution.results import Result
 from comparisons.metrics.statistics import wilson
 from comparisons.studies import get_study
 from comparisons.studies.shake_table.campaign import ALL

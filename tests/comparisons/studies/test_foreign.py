@@ -12,7 +12,7 @@ import pytest
 from installed_package import install, install_fake_engine
 
 from comparisons import studies
-from comparisons.execution.provenance import PROJECT_FOLDER
+from comparisons.execution.results import PROJECT_FOLDER
 
 SOURCE = '''
 """How high does a released block swing back after one impact?"""

@@ -10,7 +10,7 @@ from analytic import simulate
 from analytic.bearing_scan import displacement_spectrum
 from analytic.response import COMPARED
 from comparisons.execution.plan import Request
-from comparisons.execution.provenance import Result
+from comparisons.execution.results import Result
 from comparisons.metrics.statistics import fit_fragility
 from comparisons.plotting.parts import where
 from comparisons.studies import get_study

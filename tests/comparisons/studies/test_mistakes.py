@@ -8,7 +8,7 @@ from answered import answered, by_model, by_runs, stored
 from comparisons.execution.by_solver import read
 from comparisons.execution.cases import Case
 from comparisons.execution.plan import Request
-from comparisons.execution.provenance import RESULTS
+from comparisons.execution.results import RESULTS
 from comparisons.metrics.scripts import ScriptFailed, run_script
 from comparisons.plotting.parts import where
 from comparisons.studies import get_study

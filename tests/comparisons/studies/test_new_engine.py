@@ -12,14 +12,14 @@ import sys
 import pytest
 from answered import answered, by_model, by_runs, stored
 from installed_package import FAKE_ENGINE, install_fake_engine
+from made_up_shake_table import published
 from record_files import pairs
-from table_tests import published
 
 import engines
 from analytic import synthetic_motion
 from comparisons.execution.by_solver import read
 from comparisons.execution.plan import Request
-from comparisons.execution.provenance import RESULTS, json_ready
+from comparisons.execution.results import RESULTS, json_ready
 from comparisons.plotting.parts import where
 from comparisons.report.runs import restitution_cases
 from comparisons.studies import BUILT_IN, get_study

@@ -11,8 +11,8 @@ from analytic import simulate
 from analytic.rocking import restitution
 from comparisons.execution.by_solver import read
 from comparisons.execution.plan import Request
-from comparisons.execution.provenance import Result
-from comparisons.execution.study import compute
+from comparisons.execution.results import Result
+from comparisons.execution.runner import compute
 from comparisons.execution.sweep import Row
 from comparisons.plotting.parts import where
 from comparisons.studies import get_study

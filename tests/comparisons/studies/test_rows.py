@@ -6,14 +6,14 @@ from collections import Counter
 
 import pytest
 from answered import answered, by_model, edit
+from made_up_shake_table import published
 from record_files import pairs
-from table_tests import published
 
 from comparisons.execution.by_solver import read, results_in
 from comparisons.execution.cases import name_of
+from comparisons.execution.code_digests import source_digests
 from comparisons.execution.plan import Request
-from comparisons.execution.provenance import RESULTS, Result, ResultError, read_result, write_result
-from comparisons.execution.sources import source_digests
+from comparisons.execution.results import RESULTS, Result, ResultError, read_result, write_result
 from comparisons.metrics.agreement import TABLE
 from comparisons.plotting.parts import where
 from comparisons.schemas.columns import FACTORS, TYPES, Declaration, declared, number_of

@@ -11,8 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from answered import answered, by_model, by_runs, stored
-from record_files import write
-from table_tests import (
+from made_up_shake_table import (
     MEASURED,
     NAMES,
     RECORDS,
@@ -28,14 +27,15 @@ from table_tests import (
     published,
     pulse,
 )
+from record_files import write
 
 from analytic import SceneError, SettingError, simulate
 from analytic.records import G
 from analytic.rocking import RockingModel
-from comparisons.execution import provenance
+from comparisons.execution import results
 from comparisons.execution.by_solver import check_same, split
 from comparisons.execution.plan import Request
-from comparisons.execution.study import sample_of
+from comparisons.execution.runner import sample_of
 from comparisons.metrics.statistics import wilson
 from comparisons.plotting.parts import where
 from comparisons.studies import get_study
@@ -57,7 +57,7 @@ from engines import ENGINES
 
 pytestmark = pytest.mark.xdist_group("shake table")  # its runs are made once
 
-RESULT = provenance.RESULTS / "shake-table"
+RESULT = results.RESULTS / "shake-table"
 REAL = Path(__file__).parents[4] / "shared" / "experiments" / "granite-blocks"
 ENGINE = next(iter(ENGINES))
 FAILURE = {"kind": "solver", "reason": "the solver gave up", "message": "no convergence"}

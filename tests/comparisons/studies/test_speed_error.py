@@ -15,8 +15,8 @@ from analytic.rocking import restitution
 from comparisons.execution.by_solver import read
 from comparisons.execution.cases import Case, solver
 from comparisons.execution.plan import Request
-from comparisons.execution.provenance import Result
-from comparisons.execution.study import compute
+from comparisons.execution.results import Result
+from comparisons.execution.runner import compute
 from comparisons.metrics import errors as models
 from comparisons.metrics import scripts
 from comparisons.plotting.parts import where

@@ -16,7 +16,7 @@ from analytic.sliding.run import contact_of, marched, slipping_friction
 from analytic.solver import TOLERANCE, ground, options, parameters
 from comparisons.execution.by_solver import read
 from comparisons.execution.plan import Request
-from comparisons.execution.provenance import RESULTS
+from comparisons.execution.results import RESULTS
 from comparisons.execution.sweep import Row
 from comparisons.plotting.parts import where
 from comparisons.studies import get_study

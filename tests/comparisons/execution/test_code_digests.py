@@ -7,8 +7,8 @@ import time
 
 import pytest
 
-from comparisons.execution import sources
-from comparisons.execution.sources import changes, computes, digests_of_all, kept_digests, source_digests
+from comparisons.execution import code_digests
+from comparisons.execution.code_digests import changes, computes, digests_of_all, kept_digests, source_digests
 
 FILES = {
     "__init__": "from .b import f as shown\n",
@@ -164,13 +164,13 @@ def test_a_root_that_was_moved_has_an_alias_and_one_that_is_gone_is_named(packag
     (path,) = (path for path in sys.path if os.path.exists(f"{path}/some_package/a.py"))
     os.remove(f"{path}/some_package/a.py")
     assert changes(kept) == [ROOT]
-    monkeypatch.setitem(sources.ALIASES, ROOT, "some_package.d:run")
+    monkeypatch.setitem(code_digests.ALIASES, ROOT, "some_package.d:run")
     assert not changes(kept)
 
 
 def test_a_root_has_what_those_before_it_have_not(package):
     kept = kept_digests([ROOT, "some_package.a:other", "some_package.b"])
-    assert [len(text) // sources.DIGITS for text in kept.values()] == [9, 3, 0]
+    assert [len(text) // code_digests.DIGITS for text in kept.values()] == [9, 3, 0]
     assert {*source_digests([ROOT]).values()} <= digests_of_all(["some_package"])
 
 

@@ -1,18 +1,18 @@
-"""One way to write a file, `comparisons.execution.files`: no other call that writes stands in the code."""
+"""One way to write a file, `comparisons.execution.writing`: no other call that writes stands in the code."""
 
 import ast
 from pathlib import Path
 
 PROJECT = Path(__file__).parents[3]
-WAY = "comparisons/execution/files.py"
+WAY = "comparisons/execution/writing.py"
 # (file, function, call): why what it writes need not be there whole or not at all
 ELSEWHERE = {
     ("comparisons/execution/sweep.py", "__init__", "open"): "runs are appended, and a torn end is found",
     ("comparisons/execution/sweep.py", "append", "truncate"): "the same",
     ("comparisons/execution/sweep.py", "_read", "truncate"): "the same",
     ("comparisons/execution/sweep.py", "_work", "open"): "what a worker prints, in a temporary folder",
-    ("comparisons/execution/solving.py", "scene_of", "tempfile.NamedTemporaryFile"): "temporary",
-    ("comparisons/execution/provenance.py", "save", "numpy.savez_compressed"): "into memory",
+    ("comparisons/execution/command_runs.py", "scene_of", "tempfile.NamedTemporaryFile"): "temporary",
+    ("comparisons/execution/results.py", "save", "numpy.savez_compressed"): "into memory",
     ("comparisons/metrics/scripts.py", "run_script", "write_text"): "a script, in a temporary folder",
     ("comparisons/report/figures.py", "__call__", "numpy.savez"): "into memory",
     ("comparisons/plotting/plots.py", "picture", "savefig"): "into memory",
@@ -95,5 +95,5 @@ def test_the_code_has_one_way_to_write_a_file():
     }
     assert {function for file, function, _ in calls if file == WAY} >= {"_put", "write_pair"}
     others = {call for call in calls if call[0] != WAY}
-    assert not others - ELSEWHERE.keys(), "write by comparisons.execution.files"
+    assert not others - ELSEWHERE.keys(), "write by comparisons.execution.writing"
     assert not ELSEWHERE.keys() - others, "no longer there: take it off the list"

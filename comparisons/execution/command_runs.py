@@ -39,8 +39,8 @@ from engines.observe import failed_response
 from engines.simulating import RANGE, choose
 
 from .cases import versions
-from .files import readable
 from .progress import bar, compile_kernels, say, spinner
+from .writing import readable
 
 ANALYTIC, KERNEL = "analytic", "kernel"  # the model, and the name of its variant
 TIME_LIMIT = 300.0  # s, of one run

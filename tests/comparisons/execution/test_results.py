@@ -11,19 +11,11 @@ import numpy as np
 import pytest
 
 from analytic.scene_file import SHIPPED
-from comparisons.execution import provenance as module
-from comparisons.execution import sources
+from comparisons.execution import code_digests
+from comparisons.execution import results as module
 from comparisons.execution.by_solver import age, briefly, origins_of, read, results_in
-from comparisons.execution.provenance import (
-    RESULTS,
-    ResultError,
-    json_ready,
-    provenance,
-    read_result,
-    scrub,
-    write_result,
-)
-from comparisons.execution.sources import source_digests, version_of
+from comparisons.execution.code_digests import source_digests, version_of
+from comparisons.execution.results import RESULTS, ResultError, json_ready, provenance, read_result, scrub, write_result
 
 ROWS = [{"engine": "exudyn", "error": 1.25e-5, "outcome": "rocks"}, {"engine": "analytic", "error": 0.1 + 0.2}]
 
@@ -88,12 +80,12 @@ def test_a_shipped_scene_counts_where_a_module_names_it_but_its_comments_do_not(
     shutil.copytree(SHIPPED, tmp_path / "scenes")
     file, digests = tmp_path / "scenes" / "caryatid-rigid.toml", []
     text = file.read_text()
-    monkeypatch.setattr(sources, "SHIPPED", file.parent)
+    monkeypatch.setattr(code_digests, "SHIPPED", file.parent)
     for words in (text, "# another comment\n" + text, text.replace("slenderness = 0.28", "slenderness = 0.29")):
         file.write_text(words)
-        result = sources.source_digests(["comparisons.studies.caryatid.study:plan"])
+        result = code_digests.source_digests(["comparisons.studies.caryatid.study:plan"])
         digests.append(result["analytic.scenes.caryatid-rigid"])
-    assert digests[0] == digests[1] != digests[2] and digests[2] in sources.digests_of_all(["analytic"])
+    assert digests[0] == digests[1] != digests[2] and digests[2] in code_digests.digests_of_all(["analytic"])
 
 
 def test_a_result_survives_a_rename_but_no_change(tmp_path, monkeypatch):
@@ -115,7 +107,7 @@ def test_a_result_survives_a_rename_but_no_change(tmp_path, monkeypatch):
 def test_scrub_keeps_project_files_readable(tmp_path):
     here = Path(__file__)
     text = scrub(f'File "{here}", line 3\nFile "/opt/x/y.py", line 1\n{tmp_path}/z at 0x7f00aa11bb22')
-    assert 'File "./tests/comparisons/execution/test_provenance.py", line 3' in text and 'File "y.py", line 1' in text
+    assert 'File "./tests/comparisons/execution/test_results.py", line 3' in text and 'File "y.py", line 1' in text
     assert str(tmp_path) not in text and "0x7f" not in text
 
 
@@ -180,7 +172,7 @@ def test_every_committed_result_can_be_read_and_says_where_it_comes_from():
 
 
 def test_version_by_the_name_that_is_imported(monkeypatch):
-    monkeypatch.setattr("comparisons.execution.sources.packages_distributions", lambda: {"imported": ["numpy"]})
+    monkeypatch.setattr("comparisons.execution.code_digests.packages_distributions", lambda: {"imported": ["numpy"]})
     assert version_of("imported") == np.__version__ == version_of("numpy")
     assert version_of("not_there") is None
 

@@ -25,8 +25,8 @@ from analytic.errors import read_plain
 from engines import ENGINES
 
 from ..schemas.runs import StudyResult
-from .files import Mendable, PlaceError, readable, waiting, write, write_pair
-from .sources import kept_digests, version_of
+from .code_digests import kept_digests, version_of
+from .writing import Mendable, PlaceError, readable, waiting, write, write_pair
 
 SHORT = 80  # characters of a value in a message
 SCHEMA = StudyResult.model_fields["schema_"].default
@@ -65,7 +65,7 @@ def provenance(modules: Iterable[str] = ("analytic",), seed: object = None) -> d
     Parameters
     ----------
     modules : iterable of str
-        The modules and definitions whose code the numbers depend on: roots of `sources.source_digests`.
+        The modules and definitions whose code the numbers depend on: roots of `code_digests.source_digests`.
     seed : int, list or None
         Seed of the random numbers used; None if none are.
     """

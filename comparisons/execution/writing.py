@@ -1,7 +1,7 @@
 """Writing of files: checked before the work, then complete or not at all; and text made printable.
 
 This project writes every file through `write`, except temporary files and the store of runs, which is appended to
-(tests/comparisons/execution/test_one_way.py checks this). `readable` makes external text (names, paths, values,
+(tests/comparisons/execution/test_writing.py checks this). `readable` makes external text (names, paths, values,
 messages) printable, on one line and of limited length.
 """
 

@@ -42,13 +42,13 @@ from .by_solver import (
 )
 from .cases import Case, name_of, root_of, solver
 from .cluster import Cluster
-from .files import TemporaryFolder, check_folder
+from .code_digests import digests_of_all, package_of, source_digests, today
+from .command_runs import named_engines
 from .plan import Batch, Computed, Request, Study
 from .progress import log, spinner, stdout_to_stderr
-from .provenance import ResultError, checkout, json_ready, made_here, record_check, save
-from .solving import named_engines
-from .sources import digests_of_all, package_of, source_digests, today
+from .results import ResultError, checkout, json_ready, made_here, record_check, save
 from .sweep import Processes, Row, Store, number_of, run_sweep
+from .writing import TemporaryFolder, check_folder
 
 SIZE = 60  # runs stored with a result
 SEED = 0  # of the random choice
