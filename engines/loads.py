@@ -10,8 +10,8 @@ block, at its rate w0 at tilt phi0, would need less than `acts` to reach the gro
 As d(phi')/d(phi) = -k is constant, it takes (1 - f) w0 exactly, whatever the amplitude; f is the given restitution over
 that of (7). Meanwhile gravity and base accelerate the block by a. The couple must take the same share of this gain, so
 that k is larger by a (T - f T0)/phi0, with T0 = |phi0/w0| the time to the ground without couple and
-T = T0 ln(1/f)/(1 - f) with it. The base keeps the momentum of block and base, so the jump of its velocity is that of (8)
-for the given restitution.
+T = T0 ln(1/f)/(1 - f) with it. The base keeps the momentum of block and base, so the jump of its velocity is that of
+(8) for the given restitution.
 
 The ground velocity is exact for records and pulses; its differences are the impulses of an engine's steps. The start of
 the block is the same for every engine. Times scale with the size of the block.

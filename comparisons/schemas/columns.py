@@ -2,7 +2,7 @@
 
 A study declares the columns of its rows once, in its ``study.py``. The check of stored rows, the reference of columns,
 tables and the axes of figures read that declaration. To change a unit, a name or the number of digits everywhere,
-change its line.
+change its line; a unit shown for the first time also needs a line of `UNITS_SHOWN`. Sentences of a page are its own.
 
     COLUMNS = declared(
         number_of("rms", "error, rms", "of restitution by swing energies, over impacts"),
@@ -184,7 +184,7 @@ class Declaration:
     type : str
         Of `TYPES`, or several, as "number or word".
     shown : str
-        The unit in which pages show it, of `FACTORS`; "": the stored one.
+        The unit in which pages show it, of `UNITS_SHOWN`; "": the stored one.
     """
 
     meaning: str
@@ -192,10 +192,14 @@ class Declaration:
     type: str = "number"
     shown: str = ""
 
+    def __post_init__(self) -> None:
+        if self.shown and (self.unit, self.shown) not in UNITS_SHOWN:
+            raise ValueError(f"shown = {self.shown!r} of a column in {self.unit!r}: add it to UNITS_SHOWN")
+
     @property
     def factor(self) -> float:
         """One unit shown, in units stored."""
-        return FACTORS[self.unit, self.shown] if self.shown else 1
+        return UNITS_SHOWN[self.unit, self.shown] if self.shown else 1
 
     def holds(self, value: object) -> bool:
         """Whether a value, other than null, is of this type."""
@@ -216,10 +220,11 @@ TYPES = {
     "list": (list,),
     "table": (dict,),
 }  # of JSON
-FACTORS = {  # (unit stored, unit shown): one of the latter in the former
+UNITS_SHOWN = {  # {(unit stored, unit shown): one of the unit shown, in units stored}: 1 mm = 1e-3 m
     ("s", "ms"): 1e-3,
     ("s", "µs"): 1e-6,
     ("m", "mm"): 1e-3,
+    ("m", "µm"): 1e-6,
     ("rad", "deg"): math.pi / 180,
 }
 

@@ -45,9 +45,9 @@ COLUMNS = SHARED | declared(
     ),
     number_of(
         "displacement",
-        "base displacement, of its peak",
-        "largest difference of the base displacement, as long",
-        "peak of the model's",
+        "error of the base displacement, over its peak",
+        "largest difference of the base displacement from the model's, over the model's peak, until either block is "
+        "beyond its unstable point",
     ),
     whole_of("steps", "steps", "steps of the run"),
 )

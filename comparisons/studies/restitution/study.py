@@ -81,7 +81,6 @@ COLUMNS = SHARED | declared(
         "error of the base's velocity jump against eq. (8) as printed, relative: root mean square",
     ),
     number_of("time_rms", "impact times, relative, rms", "error of impact times, relative: root mean square"),
-    number_of("cpu_per_second", "CPU time per simulated second", "CPU time over simulated time", "s/s"),
     number_of("steps_per_second", "steps per simulated second", "steps over simulated time", "1/s", digits=3),
     number_of("order", "order by swings", "slope of log error over log accuracy parameter"),
     word_of("experiment", "experiment", "setting that is varied by itself"),
@@ -119,7 +118,7 @@ COLUMNS = SHARED | declared(
         percent=True,
     ),
     table_of("frames", "frames", "what is drawn of the impact: times and values by frame"),
-    number_of("deepest", "deepest", "largest penetration of the landing corner", "m", shown="mm"),
+    number_of("deepest", "deepest penetration", "largest penetration of the landing corner", "m", shown="mm"),
     word_of("why_not", "why not", "why the impact cannot be analysed"),
 )
 ERRORS = """runs failed impacts lost bias? rms? worst? rms_state? worst_state? jump_rms? jump_worst? jump_8?

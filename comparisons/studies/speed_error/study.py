@@ -64,7 +64,6 @@ COLUMNS = SHARED | declared(
     number_of("simulated", "simulated", "simulated time", "s"),
     whole_of("steps", "steps", "steps of the run"),
     number_of("step", "mean step", "mean step size", "s"),
-    number_of("cpu_per_second", "CPU time per simulated second", "CPU time over simulated time", "s/s"),
     number_of("cpu_per_step", "CPU time per step", "CPU time over steps", "s"),
     list_of(
         "boundary_shifts",

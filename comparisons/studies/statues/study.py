@@ -88,7 +88,6 @@ COLUMNS = (
         number_of("tilt_error", "tilt error", "relative error of the peak tilt, of a block that stays upright"),
         list_of("slipping", "slipping", "errors of the restitution at impacts in which the corner slides"),
         list_of("sticking", "sticking", "errors of the restitution at other impacts"),
-        number_of("cpu_per_second", "CPU time per simulated second", "CPU time over simulated time", "s/s"),
         number_of("cpu_ratio", "cpu ratio", "CPU time over the analytic model's"),
     )
 )

@@ -16,7 +16,7 @@ from comparisons.execution.plan import Request
 from comparisons.execution.results import RESULTS, Result, ResultError, read_result, write_result
 from comparisons.metrics.agreement import TABLE
 from comparisons.plotting.parts import where
-from comparisons.schemas.columns import FACTORS, TYPES, Declaration, declared, number_of
+from comparisons.schemas.columns import TYPES, Declaration, declared, number_of
 from comparisons.studies import BUILT_IN, STUDIES, TOLERANCES, get_study, study_names
 from comparisons.studies.rows import SHARED, columns_of, fields_of, read_study, wrong_with
 from comparisons.studies.shake_table import campaign
@@ -119,7 +119,8 @@ def test_a_unit_a_name_and_digits_are_those_of_the_declaration_wherever_a_column
     assert (time.head, time.text(row), time.of({})) == ("time [ms]", "250 (200 to 300)", None)
     assert (time.called("first").head, time.called("first", digits=1).digits) == ("first [ms]", 1)
     assert number_of("share", "share", "", percent=True).head == "share"
-    assert all(factor > 0 for factor in FACTORS.values())
+    with pytest.raises(ValueError, match="shown = 'km' of a column in 's': add it to UNITS_SHOWN"):
+        number_of("time", "time", "", "s", shown="km")
     with pytest.raises(AssertionError, match="declared twice"):
         declared(time, time)
 
