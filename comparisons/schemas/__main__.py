@@ -1,15 +1,14 @@
 """The command ``python -m comparisons.schemas``, which writes the schemas after a change of the types."""
 
 import json
+from pathlib import Path
 from typing import Any
 
-from ..execution.results import PROJECT_FOLDER
-from ..execution.writing import write_all
 from . import schema_of
 from .advice import BearingSearch, Choice, Design, Margins
 from .runs import Comparison, New, Record, Report, Run, Sheet, StudyResult, Verification
 
-FOLDER = PROJECT_FOLDER / "comparisons" / "schemas"
+FOLDER = Path(__file__).parent
 FORMS = (Choice, Comparison, Design, Margins, New, Record, Report, Run, Sheet, StudyResult, BearingSearch, Verification)
 
 
@@ -20,4 +19,5 @@ def schemas() -> dict[str, dict[str, Any]]:
 
 
 if __name__ == "__main__":
-    write_all(FOLDER, {f"{name}.json": json.dumps(schema, indent=2) + "\n" for name, schema in schemas().items()})
+    for name, schema in schemas().items():
+        (FOLDER / f"{name}.json").write_text(json.dumps(schema, indent=2) + "\n", encoding="utf-8")

@@ -24,6 +24,7 @@ ELSEWHERE = {
     ("comparisons/cli/__init__.py", "_silence", "os.open"): "no file: os.devnull",
     ("engines/guard.py", "_evidence", "tempfile.TemporaryFile"): "temporary",
     ("engines/guard.py", "without", "tempfile.TemporaryFile"): "temporary",
+    ("comparisons/schemas/__main__.py", "", "write_text"): "of this checkout, in which a change is seen",
     ("engines/guard.py", "_evidence", "open"): "no file: os.devnull",
     ("analytic/records/content.py", "_unzipped", "open"): "a member of an archive, to be read",
     ("analytic/response.py", "to_csv", "numpy.savetxt"): "from Python alone, which says where",
