@@ -35,6 +35,8 @@ DIGITS = 8  # kept of a digest: with a thousand definitions, about one change in
 
 # {name of moved code in stored results: where it stands today}
 ALIASES: dict[str, str] = {
+    "comparisons.measuring.scripts:simulate_script": "comparisons.metrics.scripts:simulate_script",
+    "comparisons.studies.caryatid.runs:measure": "comparisons.studies.caryatid.study:measure",
     "analytic.time_stepping:simulate_time_stepping": "analytic.checks.time_stepping:simulate_time_stepping",
     "analytic.twin:simulate_twin": "analytic.checks.twin:simulate_twin",
     "comparisons.studies.autopsy.study:measure": "comparisons.studies.restitution.study:taken_apart",

@@ -2,6 +2,7 @@
 
 import json
 import sys
+from pkgutil import resolve_name
 
 import fake_solvers
 import pytest
@@ -14,8 +15,9 @@ from comparisons.execution import by_solver
 from comparisons.execution import runner as run_sample
 from comparisons.execution.by_solver import age, last_check
 from comparisons.execution.cases import Case
+from comparisons.execution.code_digests import today
 from comparisons.execution.plan import Batch, Computed, Study
-from comparisons.execution.results import ResultError, read_result, write_result
+from comparisons.execution.results import RESULTS, ResultError, read_result, write_result
 from comparisons.execution.runner import case_of, check, check_all, compute, sample_of
 from comparisons.execution.sweep import Row
 from comparisons.metrics import agreement
@@ -35,6 +37,14 @@ def sampled(*which):
     return sample_of(
         (Batch([case], fake_solvers.tilt, ""), Row(case, {"peak": 1.0}, None, {}, False)) for case in which
     )
+
+
+@pytest.mark.parametrize("path", by_solver.results_in(RESULTS), ids=lambda path: path.name)
+def test_what_a_stored_run_calls_is_there_today(path):
+    """Modules move: `code_digests.ALIASES` says where to, or the run could not be done again."""
+    names = {name for run in by_solver.read(path).runs for name in (run["measure"], run["engine"]) if ":" in name}
+    for name in names:
+        assert callable(resolve_name(today(name))), name
 
 
 @pytest.fixture
