@@ -46,8 +46,8 @@ class ResultError(Mendable):
 class Result:
     """The result of a study: kind, settings, rows (list of dict), arrays (dict of ndarray) and provenance.
 
-    runs: a sample of its runs, see `runner.sample_of`. run_count: the number of all runs; None in results written before
-    runs were stored.
+    runs: a sample of its runs, see `runner.sample_of`. run_count: the number of all runs; None in results written
+    before runs were stored.
     """
 
     kind: str
