@@ -1,7 +1,10 @@
 """Protocol of a bearing law: the hysteretic part z of the force f = kb x + z + c v of one bearing.
 
 A law is one file of this folder with one `Law`. The last argument of its functions is the record c of its constants:
-dk = ka - kb [N/m], f0, the limit of |z| [N], and the law's own. s is the sign of the velocity, 0 at rest.
+dk = ka - kb [N/m], f0 [N], and the law's own. s is the sign of the velocity, 0 at rest.
+
+|z| never exceeds f0, and |dz/dx| never dk: solvers take them as bounds of force and stiffness. f0 = 0 says that the law
+has no z. A law gets z and the travel dx, not the displacement x: an elastic one needs x as a function of z.
 """
 
 from collections.abc import Callable
@@ -45,7 +48,7 @@ class Law:
     needs, ignores : keys of [bearings] beside ka that are required, and that may be there unused; others are errors.
     constant_names : names of its own constants, beside dk and f0.
     constants(bearings) : dict of kb, dk, f0 and its own constants.
-    memory : whether z depends on the path; then every reversal is an event.
+    memory : whether every reversal of the base is an event, as where z depends on the path.
     after_travel(z, dx, c) : z after monotonic travel dx [m].
     work(z, dx, c) : integral of z over that travel [J]; not compiled.
     recoverable(z, c) : energy [J] that a bearing with z > 0 returns while unloading to z = 0.

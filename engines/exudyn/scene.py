@@ -197,7 +197,7 @@ class Bearing:
 
     def __init__(self, law: BearingLaw, displacement: float) -> None:
         self.law, self.x, self.z, self.connector = law, displacement, law.start(displacement), None
-        self.memory = law.unit.memory
+        self.nonlinear = law.constants.f0 > 0
 
     def commit(self, mbs: exu.MainSystem, x: float) -> float:
         """Move history and spring to the displacement x after a step; return the hysteretic force there."""

@@ -127,7 +127,7 @@ def recorder(
         states.frombytes(q.tobytes())
         states.frombytes(v.tobytes())
         if bearing is not None:
-            forces.append(bearing.commit(mbs, q.item(3)) if bearing.memory else bearing.z)
+            forces.append(bearing.commit(mbs, q.item(3)) if bearing.nonlinear else bearing.z)
         if anchor is not None:
             anchor.commit(mbs)
         if twist is not None:

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analytic import Base, Bearings, Block, Failure, Impact, PulseMotion, Scene, Start, load_scene, simulate
+from analytic import Base, Bearings, Block, Failure, Impact, PulseMotion, Response, Scene, Start, load_scene, simulate
 from analytic.errors import SceneError
 from analytic.response import COMPARED, EDGE
 from engines import get_engine
@@ -316,6 +316,9 @@ def test_a_block_that_stands_has_no_tilt_whatever_an_engine_leaves_of_it():
     stands = replace(run_of(scene), peak_tilt_ratio=1e-6)
     for outcome, named in (("stands", []), ("slides", []), ("rocks", ["tilt"])):
         assert [caution.quantity for caution in outside(scene, replace(stands, outcome=outcome))] == named
+    known = {"engine": "crude", "variant": "", "settings": {}, "versions": {}}
+    failed = Response.unmeasured(outcome="failed", failure=Failure("no run", ""), **known)
+    assert not outside(scene, failed)  # its peak tilt is no number
 
 
 @pytest.mark.parametrize("engine", ["exudyn", "pybullet"])
