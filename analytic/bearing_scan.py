@@ -25,7 +25,6 @@ from typing import TYPE_CHECKING, Any
 import numba
 import numpy as np
 from numba import njit
-from scipy.interpolate import RegularGridInterpolator
 
 from .batch import Outcomes, simulate_many
 from .errors import SceneError, SettingError, require
@@ -171,6 +170,8 @@ class BearingScan:
 
     def holds(self, period: float, damping: float) -> bool:
         """Return whether bearings of this period [s] and damping [-] are suitable; False outside the range scanned."""
+        from scipy.interpolate import RegularGridInterpolator  # slow to load
+
         axes = self.dampings, np.log(self.periods)
         interpolated = RegularGridInterpolator(axes, self.demand, bounds_error=False, fill_value=math.inf)
         return bool(interpolated((damping, math.log(period))) <= 1)
@@ -345,6 +346,8 @@ def _between(demand: np.ndarray) -> np.ndarray:
 
     An infinite one counts as the largest finite one.
     """
+    from scipy.interpolate import RegularGridInterpolator  # slow to load
+
     coarse = demand[::COARSE, ::COARSE]
     finite = np.where(np.isinf(coarse), np.max(coarse, where=np.isfinite(coarse), initial=2.0), coarse)
     axes = tuple(np.arange(0, length, COARSE) for length in demand.shape)

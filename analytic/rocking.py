@@ -16,7 +16,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
-from scipy.optimize import brentq, minimize_scalar
 
 from .errors import SettingError, require
 from .kernel.compiled import entry, inner
@@ -370,6 +369,8 @@ def _mismatch(alpha: float, loss: float, secant: float, x_max: float, ratio: flo
 
 def _feasible(damping: float, divisor: float, secant: float, x_max: float, ratio: float) -> tuple[float, float]:
     """Return (alpha of least mismatch, the mismatch there); a design exists where it is below 0."""
+    from scipy.optimize import minimize_scalar  # slow to load, and few need it
+
     loss = damping * divisor * 0.5 * secant * x_max**2
     low = math.log(1 / x_max * (1 + 1e-9))
 
@@ -460,6 +461,8 @@ def _exponent(damping, definition, divisor, secant, x_max, ratio):
 
     `SettingError` states the limit where there are none.
     """
+    from scipy.optimize import brentq  # slow to load, and few need it
+
     turn, least = _feasible(damping, divisor, secant, x_max, ratio)
     if least >= 0:
         # damping -> 0 is always possible: with f0 -> 0 only the ratio term remains

@@ -19,7 +19,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
 
 from analytic.kernel.layout import FLIGHT, MODES
 from analytic.motion import vertical_acceleration
@@ -380,6 +379,8 @@ def _upto_crossing(trace: Trace, last: int, level: float) -> Trace:
 
 def _crossing(time: np.ndarray, value: np.ndarray, rate: np.ndarray, level: float) -> float:
     """Time at which the cubic through both ends of a step first takes `level`."""
+    from scipy.interpolate import CubicHermiteSpline  # slow to load
+
     roots = CubicHermiteSpline(time, value, rate).solve(level, extrapolate=False)
     roots = roots[np.isfinite(roots)]
     if len(roots):

@@ -18,7 +18,6 @@ from dataclasses import astuple, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
 
 from analytic.kernel.decision import model_warnings
 from analytic.motion import SampledMotion
@@ -209,6 +208,8 @@ def _check_finite(measured: Mapping[str, Any]) -> Failure | None:
 
 def _peak(time: np.ndarray, value: np.ndarray, rate: np.ndarray) -> float:
     """Largest |value|, with cubic (Hermite) interpolation between the steps."""
+    from scipy.interpolate import CubicHermiteSpline  # slow to load
+
     i = int(np.abs(value).argmax())
     side, best = math.copysign(1.0, value[i]), abs(value[i])
     for k in (i - 1, i):
@@ -237,6 +238,8 @@ def _history(scene: Scene, trace: Trace) -> History:
 
 def _cubic(trace: Trace, value: str, rate: str, time: np.ndarray) -> np.ndarray:
     """A column of the trace at other times, by cubic interpolation; the times increase and lie within the trace."""
+    from scipy.interpolate import CubicHermiteSpline  # slow to load
+
     values = np.empty_like(time)
     for piece in trace.pieces():
         begin = np.searchsorted(time, piece.time[0])

@@ -10,7 +10,6 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
 
 from analytic.motion import SampledMotion
 from analytic.response import Failure, Sliding
@@ -144,6 +143,8 @@ def check_place(scene: Scene, trace: Trace, overturned: bool) -> Failure | None:
 
 def _work(motion: Motion | None, time: np.ndarray, moved: np.ndarray, rate: np.ndarray) -> np.ndarray:
     """Work [J] of the inertial load up to each step; moved: sum of mass times displacement [kg m]; rate: its rate."""
+    from scipy.interpolate import CubicHermiteSpline  # slow to load
+
     if motion is None:
         return np.zeros_like(time)
     fine, between = time, moved
