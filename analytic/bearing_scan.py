@@ -170,11 +170,8 @@ class BearingScan:
 
     def holds(self, period: float, damping: float) -> bool:
         """Return whether bearings of this period [s] and damping [-] are suitable; False outside the range scanned."""
-        from scipy.interpolate import RegularGridInterpolator  # slow to load
-
         axes = self.dampings, np.log(self.periods)
-        interpolated = RegularGridInterpolator(axes, self.demand, bounds_error=False, fill_value=math.inf)
-        return bool(interpolated((damping, math.log(period))) <= 1)
+        return bool(_on_grid(axes, self.demand, (damping, math.log(period)), outside=math.inf) <= 1)
 
     def bearings(self, period: float, damping: float) -> Bearings:
         """Return the bearings of a period [s] and one of the dampings scanned [-]."""
@@ -346,12 +343,19 @@ def _between(demand: np.ndarray) -> np.ndarray:
 
     An infinite one counts as the largest finite one.
     """
-    from scipy.interpolate import RegularGridInterpolator  # slow to load
-
     coarse = demand[::COARSE, ::COARSE]
     finite = np.where(np.isinf(coarse), np.max(coarse, where=np.isfinite(coarse), initial=2.0), coarse)
     axes = tuple(np.arange(0, length, COARSE) for length in demand.shape)
-    return RegularGridInterpolator(axes, finite)(tuple(np.indices(demand.shape)))
+    return _on_grid(axes, finite, tuple(np.indices(demand.shape)))
+
+
+def _on_grid(
+    axes: tuple[np.ndarray, ...], values: np.ndarray, place: tuple[Any, ...], outside: float | None = None
+) -> np.ndarray:
+    """Return values on a grid of these axes interpolated linearly to places; None: no place is outside."""
+    from scipy.interpolate import RegularGridInterpolator  # slow to load: not with `analytic`
+
+    return RegularGridInterpolator(axes, values, bounds_error=outside is None, fill_value=outside)(place)
 
 
 def _designs(mass: float, stroke: float, design: Mapping[str, Any]) -> tuple[np.ndarray, list[Bearings]]:

@@ -25,7 +25,7 @@ from analytic.motion import vertical_acceleration
 from analytic.response import Failure, Impact, State
 from analytic.rocking import RockingModel
 
-from .swings import LEAST_SLIDING, ArrayModel, Trace, to_contact
+from .swings import LEAST_SLIDING, ArrayModel, Trace, cubic_through, to_contact
 from .trace_checks import HEIGHT_TOLERANCE, pivoting_centre, settled
 
 if TYPE_CHECKING:
@@ -379,9 +379,7 @@ def _upto_crossing(trace: Trace, last: int, level: float) -> Trace:
 
 def _crossing(time: np.ndarray, value: np.ndarray, rate: np.ndarray, level: float) -> float:
     """Time at which the cubic through both ends of a step first takes `level`."""
-    from scipy.interpolate import CubicHermiteSpline  # slow to load
-
-    roots = CubicHermiteSpline(time, value, rate).solve(level, extrapolate=False)
+    roots = cubic_through(time, value, rate).solve(level, extrapolate=False)
     roots = roots[np.isfinite(roots)]
     if len(roots):
         return float(roots.min())

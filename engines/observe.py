@@ -36,7 +36,7 @@ from .events import (
     upright_part,
     upto_overturning,
 )
-from .swings import Trace, find_swings
+from .swings import Trace, cubic_through, find_swings
 from .trace_checks import check_energy, check_impulse, check_place, slip_of, slips
 
 if TYPE_CHECKING:
@@ -208,13 +208,11 @@ def _check_finite(measured: Mapping[str, Any]) -> Failure | None:
 
 def _peak(time: np.ndarray, value: np.ndarray, rate: np.ndarray) -> float:
     """Largest |value|, with cubic (Hermite) interpolation between the steps."""
-    from scipy.interpolate import CubicHermiteSpline  # slow to load
-
     i = int(np.abs(value).argmax())
     side, best = math.copysign(1.0, value[i]), abs(value[i])
     for k in (i - 1, i):
         if 0 <= k < len(time) - 1 and side * rate[k] > 0 > side * rate[k + 1]:
-            cubic = CubicHermiteSpline(time[k : k + 2], value[k : k + 2], rate[k : k + 2])
+            cubic = cubic_through(time[k : k + 2], value[k : k + 2], rate[k : k + 2])
             roots = cubic.derivative().roots(extrapolate=False)
             best = max(best, *np.abs(cubic(roots)), 0.0)
     return float(best)
@@ -238,12 +236,10 @@ def _history(scene: Scene, trace: Trace) -> History:
 
 def _cubic(trace: Trace, value: str, rate: str, time: np.ndarray) -> np.ndarray:
     """A column of the trace at other times, by cubic interpolation; the times increase and lie within the trace."""
-    from scipy.interpolate import CubicHermiteSpline  # slow to load
-
     values = np.empty_like(time)
     for piece in trace.pieces():
         begin = np.searchsorted(time, piece.time[0])
         end = np.searchsorted(time, piece.time[-1], side="right") if piece.time[-1] < trace.time[-1] else None
-        cubic = CubicHermiteSpline(piece.time, getattr(piece, value), getattr(piece, rate))
+        cubic = cubic_through(piece.time, getattr(piece, value), getattr(piece, rate))
         values[begin:end] = cubic(time[begin:end])
     return values

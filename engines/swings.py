@@ -19,6 +19,8 @@ from analytic.motion import vertical_acceleration
 from analytic.rocking import RockingModel
 
 if TYPE_CHECKING:
+    from scipy.interpolate import CubicHermiteSpline
+
     from analytic import Scene
     from analytic.errors import Values
     from analytic.rocking import BearingLaw
@@ -145,6 +147,13 @@ class Swings:
 
     def __len__(self) -> int:
         return len(self.side)
+
+
+def cubic_through(time: np.ndarray, value: np.ndarray, rate: np.ndarray) -> CubicHermiteSpline:
+    """The piecewise cubic through values and rates at these times, each of shape (n,)."""
+    from scipy.interpolate import CubicHermiteSpline  # slow to load: not with an engine's record
+
+    return CubicHermiteSpline(time, value, rate)
 
 
 def find_swings(trace: Trace) -> Swings:

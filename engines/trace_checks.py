@@ -16,7 +16,7 @@ from analytic.response import Failure, Sliding
 from analytic.rocking import BearingLaw
 
 from .loads import ground_velocities
-from .swings import ArrayModel
+from .swings import ArrayModel, cubic_through
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -143,15 +143,13 @@ def check_place(scene: Scene, trace: Trace, overturned: bool) -> Failure | None:
 
 def _work(motion: Motion | None, time: np.ndarray, moved: np.ndarray, rate: np.ndarray) -> np.ndarray:
     """Work [J] of the inertial load up to each step; moved: sum of mass times displacement [kg m]; rate: its rate."""
-    from scipy.interpolate import CubicHermiteSpline  # slow to load
-
     if motion is None:
         return np.zeros_like(time)
     fine, between = time, moved
     if isinstance(motion, SampledMotion):
         samples = motion.dt * np.arange(len(motion.samples))
         fine = np.union1d(time, samples[(samples > time[0]) & (samples < time[-1])])
-        between = CubicHermiteSpline(time, moved, rate)(fine)
+        between = cubic_through(time, moved, rate)(fine)
     return -_trapezoid(motion.acceleration(fine), between)[np.searchsorted(fine, time)]
 
 

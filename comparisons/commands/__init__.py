@@ -1,13 +1,15 @@
 """The commands of ``rocking`` as a Typer application.
 
-The module of a command is imported only when the command is used. Heavy modules (engines, scipy, matplotlib) are
-imported inside the functions, so that ``rocking --help`` is quick.
+The module of a command is imported only when the command is used. ``rocking --help`` imports none: it reads the
+commands' docstrings.
 """
 
+import ast
 import importlib
+from pathlib import Path
 
 import typer
-from typer.core import TyperGroup
+from typer.core import TyperCommand, TyperGroup
 
 # Groups of commands in the order of ``rocking --help``: {group: {command: its module}}.
 GROUPS = {
@@ -33,8 +35,7 @@ class _LazyGroup(TyperGroup):
         """Write the commands in their groups."""
         for title, names in GROUPS.items():
             with formatter.section(title):
-                listed = [(name, self.get_command(ctx, name)) for name in names]
-                formatter.write_dl([(name, command.get_short_help_str(SHORT)) for name, command in listed])
+                formatter.write_dl([(name, _line(name)) for name in names])
 
     def get_command(self, ctx, name):
         if name not in MODULES:
@@ -48,6 +49,14 @@ class _LazyGroup(TyperGroup):
         command = typer.main.get_command(app)
         command.name = name
         return command
+
+
+def _line(name):
+    """Return the first sentence on a command: of the function NAME of its module, or of the callback of its ``app``."""
+    source = Path(__file__).with_name(f"{MODULES[name]}.py").read_text(encoding="utf-8")
+    functions = {node.name: node for node in ast.parse(source).body if isinstance(node, ast.FunctionDef)}
+    function = functions.get(name) or functions["_about"]
+    return TyperCommand(name, help=ast.get_docstring(function)).get_short_help_str(SHORT)
 
 
 app = typer.Typer(

@@ -11,18 +11,17 @@ from ..execution.writing import check_folder, check_writable
 from ..schemas.runs import Asked, Problem, Sheet
 from .output import write_output
 
-app = typer.Typer(
-    add_completion=False,
-    rich_markup_mode=None,
-    help="List, open or export the eight lessons.\n\n"
-    "A lesson opens as a notebook, or as a page that needs no network. Without a command the lessons are listed.\n\n"
-    "Example: rocking lessons open corner",
-)
+app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 
 @app.callback(invoke_without_command=True)
-def _listed(context: typer.Context) -> None:
-    """List the lessons if no command is given."""
+def _about(context: typer.Context) -> None:
+    """List, open or export the eight lessons.
+
+    A lesson opens as a notebook, or as a page that needs no network. Without a command the lessons are listed.
+
+    Example: rocking lessons open corner
+    """
     if context.invoked_subcommand is not None:
         return
     from ..lessons.topics import lessons

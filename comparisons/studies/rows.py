@@ -61,6 +61,9 @@ SHARED = declared(
     list_of("differences", "differences", "what differs from the model, in words"),
     list_of("quantities", "quantities", "names of the quantities that differ from the model"),
     word_of("outcome", "outcome", "outcome of the run: stands, slides, rocks, overturns or failed"),
+    word_of("law", "law", "law of the bearings; null: none"),
+    whole_of("steps", "steps", "steps of the run"),
+    table_of("settings", "settings", "all settings of the run"),
     number_of("cpu_per_second", "CPU time per simulated second", "CPU time over simulated time", "s/s"),
     number_of("cpu_seconds", "CPU time of a run", "CPU time of one run: median over the processes", "s"),
 )

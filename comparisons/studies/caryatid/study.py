@@ -95,8 +95,6 @@ COLUMNS = SHARED | declared(
     number_of("friction_demand", "friction demand", "largest horizontal over normal force under the block", digits=3),
     number_of("min_normal_ratio", "least N/(m g)", "least normal force over the weight", digits=3),
     table_of("end", "end", "time, tilt, displacement and rates at the end", "SI"),
-    whole_of("steps", "steps", "steps of the run"),
-    table_of("settings", "settings", "all settings of the run"),
     table_of("versions", "versions", "versions of the packages that computed the run"),
     list_of("warnings", "warnings", "warnings of the run"),
     number_of("period", "period", "period of the oscillator, or of the isolated structure", "s", digits=3),

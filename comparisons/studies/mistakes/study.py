@@ -16,7 +16,7 @@ from ...execution.cases import Case
 from ...execution.plan import Batch, Computed, Plan, Request
 from ...metrics.errors import impact_errors, rate_restitution, rms
 from ...metrics.scripts import NAME, SECONDS, ScriptFailed, as_written, run_script, version_of, with_mistake
-from ...schemas.columns import declared, number_of, whole_of, word_of
+from ...schemas.columns import declared, number_of, word_of
 from ..rows import SHARED
 
 # The columns of its rows, and by part which of them a row has; see `comparisons.studies.rows`.
@@ -49,7 +49,6 @@ COLUMNS = SHARED | declared(
         "largest difference of the base displacement from the model's, over the model's peak, until either block is "
         "beyond its unstable point",
     ),
-    whole_of("steps", "steps", "steps of the run"),
 )
 PARTS = {
     "run": """engine variant scene mistake? done? group? expected outcome reason? error? energy? graph?

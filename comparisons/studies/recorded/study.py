@@ -42,7 +42,6 @@ COLUMNS = SHARED | declared(
     number_of("base_mass", "base mass", "mass of the base over the block's"),
     number_of("period", "period", "period of block and base on the bearings, secant at x_max of the settings", "s"),
     number_of("damping", "damping", "equivalent viscous damping of the bearings there, over the critical one"),
-    word_of("law", "law", "law of the bearings"),
     number_of("tilt", "tilt", "peak tilt of the run over the slenderness"),
     number_of("displacement", "displacement", "peak base displacement of the run", "m"),
     number_of("horizon", "horizon", "time up to which peaks are compared in all engines", "s"),

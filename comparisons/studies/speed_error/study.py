@@ -49,7 +49,6 @@ from .integrators import PROBLEMS, SOLVER, timed
 # The columns of its rows, and by part which of them a row has; see `comparisons.studies.rows`.
 COLUMNS = SHARED | declared(
     word_of("model", "modelled", "how the engine's model stands for the scene"),
-    word_of("law", "law", "law of the bearings"),
     word_of("parameter", "parameter", "accuracy parameter whose value is the level"),
     table_of(
         "errors",
@@ -62,7 +61,6 @@ COLUMNS = SHARED | declared(
     number_of("cpu_high", "highest CPU time", "CPU time of one run: most", "s"),
     flag_of("repeatable", "repeatable", "whether all of them gave the same numbers, bit for bit"),
     number_of("simulated", "simulated", "simulated time", "s"),
-    whole_of("steps", "steps", "steps of the run"),
     number_of("step", "mean step", "mean step size", "s"),
     number_of("cpu_per_step", "CPU time per step", "CPU time over steps", "s"),
     list_of(
@@ -70,7 +68,6 @@ COLUMNS = SHARED | declared(
         "boundary shifts",
         "relative shift of the overturning boundary from the reference's, run by run",
     ),
-    table_of("settings", "settings", "all settings of the run"),
 )
 PARTS = {
     "work-precision": """scene engine variant model law? parameter? level? outcome? failure? timings errors lost?

@@ -41,8 +41,6 @@ COLUMNS = SHARED | declared(
     table_of("errors", "errors", "[error, tolerance] of each measure, in the measure's unit"),
     number_of("until", "until", "time up to which the motion is compared", "s"),
     whole_of("impacts", "impacts", "impacts of the run"),
-    whole_of("steps", "steps", "steps of the run"),
-    table_of("settings", "settings", "all settings of the run"),
 )
 CASE = "case engine variant level? set cpu_seconds? result outcome | outside errors until? impacts steps"
 PARTS = {"default settings": CASE, "finer settings": CASE}

@@ -51,7 +51,6 @@ COLUMNS = (
     | declared(
         number_of("radius", "R", "distance from a base corner to the centre of mass of a drawn block", "m", digits=3),
         number_of("base_mass", "base mass", "mass of the base over the block's; null: rigid ground"),
-        word_of("law", "law", "law of the bearings; null: none"),
         number_of(
             "period", "period", "period of the block on its bearings, at their stiffness after yielding", "s", digits=3
         ),
