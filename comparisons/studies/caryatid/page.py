@@ -17,7 +17,7 @@ from ...plotting.charts import Axis, Chart, figure
 from ...plotting.figures import Series, lines, regions
 from ...plotting.parts import Figure, Head, Page, Table, grouped, table, where
 from ...schemas.columns import Column, number, percent
-from . import study as paper
+from . import paper
 from .study import CATEGORIES, COLUMNS, FREE, ISOLATED, WITHIN
 
 PRINTED, CORRECT, LIMIT = "var(--ghost)", "var(--accent)", "var(--soft)"  # colours of curves

@@ -14,28 +14,30 @@ from comparisons.execution.results import RESULTS
 from comparisons.execution.runner import compute
 from comparisons.plotting.parts import where
 from comparisons.studies import get_study
-from comparisons.studies.caryatid.study import (
-    BOTH,
+from comparisons.studies.caryatid.paper import (
     CORRECTED,
     DERIVED,
     FREE,
     ISOLATED,
-    NEITHER,
     NOT_CHECKABLE,
     NOT_REPRODUCIBLE,
-    ONLY_FREE,
-    ONLY_ISOLATED,
     OTHER_MOTION,
     REPRODUCED,
-    _intervals,
-    _overlap,
-    benefit,
     caryatid,
-    claims,
     formulas,
     is_papers_motion,
     judged,
     motion_values,
+)
+from comparisons.studies.caryatid.study import (
+    BOTH,
+    NEITHER,
+    ONLY_FREE,
+    ONLY_ISOLATED,
+    _intervals,
+    _overlap,
+    benefit,
+    claims,
     oscillator,
     slender_block,
     uplift_slenderness,
