@@ -42,7 +42,7 @@ from . import content as fema
 from .columns import COLUMNS
 from .content import FEMA, NOT_READ, Content, Format, Given, read_lines
 from .networks import COSMOS, CSMIP, DYNA, KNET, KNET_CSV, PEER, SMC
-from .statements import UNITS, G, Unit, resolve, resolved_step
+from .notation import UNITS, G, Unit, resolve, resolved_step
 
 __all__ = ["FORMATS", "G", "UNITS", "Channel", "read_channels", "read_record", "two_columns"]
 

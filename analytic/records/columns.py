@@ -17,23 +17,19 @@ import numpy as np
 
 from ..errors import SceneError
 from .content import Content, Format, Given
-from .statements import (
+from .notation import (
     SAME,
-    Statements,
     check_count,
     check_last,
     fortran_values,
     in_latin,
     number,
     numbers_in,
-    read_statements,
-    stated_count,
-    stated_unit,
     uniform_step,
-    unused_factors,
     usable,
     value_of,
 )
+from .statements import Statements, read_statements, stated_count, stated_unit, unused_factors
 from .table import (
     ACCELERATED,
     COMMENT,

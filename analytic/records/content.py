@@ -26,7 +26,7 @@ from typing import Any, NoReturn
 import numpy as np
 
 from ..errors import SceneError, read_plain
-from .statements import G, Unit
+from .notation import G, Unit
 
 DAMAGED = "the file is cut or damaged: fetch it again"
 LARGEST = 200_000_000  # bytes: some 1e7 samples

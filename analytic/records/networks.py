@@ -34,7 +34,7 @@ import numpy as np
 
 from ..errors import SceneError
 from .content import DAMAGED, HEADER_WIDTH, MARK, Content, Format, Given, begun_by, first_of
-from .statements import (
+from .notation import (
     NUMBER,
     SAME,
     G,
@@ -48,11 +48,10 @@ from .statements import (
     interval,
     number,
     odd_peak,
-    read_statements,
-    stated_unit,
     uniform_step,
     usable,
 )
+from .statements import read_statements, stated_unit
 
 _PEER_LINES = 8  # the NPTS line is the fourth in every known variant
 

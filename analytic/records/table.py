@@ -9,30 +9,24 @@ from dataclasses import dataclass
 
 from ..errors import SceneError
 from .content import HEADER_WIDTH, UNKNOWN_FORMAT, first_of
-from .statements import (
-    ACCELERATION,
+from .notation import (
     END,
     LENGTHS,
     NOT_ACCELERATIONS,
-    OTHER,
     OTHER_TIMES,
     PER_SECOND,
     START,
-    TIMES,
     UNITS,
     WORDS,
     exact,
-    folded,
     form_of,
     in_latin,
     in_seconds,
     plain,
     printed_as,
-    read_statements,
-    stated_count,
-    stated_unit,
     value_of,
 )
+from .statements import ACCELERATION, OTHER, TIMES, folded, read_statements, stated_count, stated_unit
 
 # A line that begins like a number is data, so that a damaged row is not taken for a header.
 DATA = re.compile(r"\s*(?:[-+.0-9]|[,;](?!\s*(?!nan|inf)[^\W\d_])|(?:nan|inf|infinity)\b)", re.I)

@@ -24,7 +24,7 @@ from undamaged_records import records
 from analytic import SceneError, load_scene
 from analytic.errors import FILE_LENGTH, KEY_LENGTH, TEXT_LENGTH, VALUE_LENGTH
 from analytic.records import read_record
-from analytic.records.statements import NUMBER
+from analytic.records.notation import NUMBER
 
 CORPUS = Path(__file__).parent / "fixtures"
 LONGEST_MESSAGE = FILE_LENGTH + KEY_LENGTH + VALUE_LENGTH + 2 * TEXT_LENGTH + 200  # characters
