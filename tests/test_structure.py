@@ -5,7 +5,7 @@ from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
-from analytic.margins import LIMIT_STATES
+from analytic.advice.margins import LIMIT_STATES
 from analytic.response import DIFFERENCES, KINDS, OUTCOMES
 from comparisons.plotting.margins import COLOURS, DOUBTS, _names
 from comparisons.plotting.wording import OUTCOMES as TOLD

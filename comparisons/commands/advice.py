@@ -8,9 +8,9 @@ from typing import Annotated, Any, Literal
 import typer
 
 from analytic import simulate, simulate_many
-from analytic.bearing_scan import scan_bearings
+from analytic.advice.bearing_scan import scan_bearings
+from analytic.advice.margins import LARGEST_SPAN, LIMIT_STATES, Contact, limit_states, margins
 from analytic.errors import SceneError, SettingError
-from analytic.margins import LARGEST_SPAN, LIMIT_STATES, Contact, limit_states, margins
 from analytic.response import scene_warnings
 from analytic.rocking import design_bearings, properties
 from analytic.scene import Base, Bearings

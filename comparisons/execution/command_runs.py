@@ -25,8 +25,8 @@ import typer
 
 import analytic
 from analytic import Response, SampledMotion, synthetic_motion
+from analytic.advice.margins import SHARE, cliffs, nearby
 from analytic.errors import SceneError, SettingError
-from analytic.margins import SHARE, cliffs, nearby
 from analytic.motion import Motion
 from analytic.records import read_record
 from analytic.records.folder import folder_motions, reversed_sign, same_reversed
@@ -177,7 +177,7 @@ def near_motion(scene: Scene) -> tuple[Caution, ...]:
 
 
 def near(scene: Scene) -> tuple[Caution, ...]:
-    """Return the warnings of `analytic.margins.cliffs` for a scene with a motion, or that these were not determined."""
+    """Return the warnings of `margins.cliffs` for a scene with a motion, or that these were not determined."""
     try:
         return cliffs(scene, *nearby(scene))
     except SceneError as error:

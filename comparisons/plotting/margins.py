@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from analytic import Caution, Scene
-from analytic.bearing_scan import BearingScan, hardest
-from analytic.margins import Contact, Margin, limit_states
+from analytic.advice.bearing_scan import BearingScan, hardest
+from analytic.advice.margins import Contact, Margin, limit_states
 from analytic.motion import Motion
 from analytic.response import KINDS
 

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from rich.text import Text
 
 from analytic import Response, SampledMotion, Scene
-from analytic.bearing_scan import displacement_spectrum
+from analytic.advice.bearing_scan import displacement_spectrum
 from analytic.records import Channel, G
 from engines import ENGINES
 

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from analytic import Block, Scene, SceneError, simulate, simulate_many
-from analytic.bearing_scan import first_stroke
-from analytic.margins import SHARE, SPAN, STEP, TILT, check_cost, cliffs, limit_states, margins, nearby
+from analytic.advice.bearing_scan import first_stroke
+from analytic.advice.margins import SHARE, SPAN, STEP, TILT, check_cost, cliffs, limit_states, margins, nearby
 from analytic.motion import Motion
 from analytic.records.folder import reversed_sign, same_reversed
 from analytic.response import JUDGED, about_record, scene_warnings

@@ -6,13 +6,13 @@ from typing import Any, Literal, Self
 from pydantic import Field, create_model
 from pydantic.fields import FieldInfo
 
-from analytic import margins
+from analytic.advice import margins
 from analytic.scene import SCENE_UNITS, Bearings
 
 from . import Form, Part
 from .runs import MotionRead, MotionRun, Warned
 
-LimitState = Literal[*margins.LIMIT_STATES]  # type: ignore[valid-type]  # the words of `analytic.margins`
+LimitState = Literal[*margins.LIMIT_STATES]  # type: ignore[valid-type]  # the words of `analytic.advice.margins`
 
 
 class Band(Part):
@@ -52,7 +52,7 @@ class Margin(Part):
 
     @classmethod
     def of(cls, margin: margins.Margin, states: Sequence[str]) -> Self:
-        """Return the part for an `analytic.margins.Margin`, with its changes for these limit states."""
+        """Return the part for an `analytic.advice.margins.Margin`, with its changes for these limit states."""
         fields = {name: getattr(margin, name) for name in cls.model_fields if name != "changes"}
         changes = {state: margin.change(state) for state in states}
         return cls.model_validate({**fields, "changes": changes}, from_attributes=True)

@@ -22,9 +22,9 @@ from analytic import (
     simulate_many,
 )
 from analytic import solver as budget
+from analytic.advice.margins import margins
 from analytic.checks.time_stepping import simulate_time_stepping
 from analytic.checks.twin import simulate_twin
-from analytic.margins import margins
 from analytic.response import scene_warnings
 from analytic.rocking import RockingModel
 from analytic.scene import BASE, BEARINGS, caryatid_block

@@ -30,7 +30,7 @@ from roads import BASE, BEARINGS, KINDS, LINEAR, G, pulse, scene, start
 from scipy.optimize import brentq
 
 from analytic import Caution, load_scene, margins, read_record, simulate
-from analytic.bearing_scan import scan_bearings
+from analytic.advice.bearing_scan import scan_bearings
 from analytic.rocking import design_bearings
 from comparisons import cli
 from comparisons.advice import criteria
@@ -153,9 +153,9 @@ REPLACED = {
     "comparisons.report.statue.STEP": 0.1,
     "comparisons.report.statue.PLATE_STEP": 0.2,
     "comparisons.commands.advice.STEPS": 20,
-    "analytic.margins.STEP": 0.0125,
-    "analytic.bearing_scan.PERIOD_STEP": 0.4,
-    "analytic.bearing_scan.DAMPING_STEP": 0.05,
+    "analytic.advice.margins.STEP": 0.0125,
+    "analytic.advice.bearing_scan.PERIOD_STEP": 0.4,
+    "analytic.advice.bearing_scan.DAMPING_STEP": 0.05,
     "psutil.virtual_memory": lambda: type("Memory", (), {"total": 48 * 2**30}),
     "psutil.cpu_count": lambda logical=True: 6 if logical else 3,
 }

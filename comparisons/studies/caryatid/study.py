@@ -29,7 +29,7 @@ from analytic import (
     simulate_many,
     synthetic_motion,
 )
-from analytic.bearing_scan import displacement_spectrum
+from analytic.advice.bearing_scan import displacement_spectrum
 from analytic.motion import Motion
 from analytic.rocking import BearingProperties, properties
 from engines import available_engines

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.stats import norm
 
 from analytic import Response, SampledMotion, Scene, load_scene, synthetic_motion
-from analytic.bearing_scan import displacement_spectrum
+from analytic.advice.bearing_scan import displacement_spectrum
 from analytic.rocking import RockingModel, properties
 from analytic.scene import BASE, BEARINGS, MASS
 from engines import get_engine

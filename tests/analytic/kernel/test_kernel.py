@@ -30,7 +30,7 @@ from analytic import (
     simulate,
     simulate_many,
 )
-from analytic.bearing_scan import displacement_spectrum
+from analytic.advice.bearing_scan import displacement_spectrum
 from analytic.checks import closed_form
 from analytic.kernel import layout
 from analytic.kernel import march as kernel

@@ -16,13 +16,13 @@ from analytic import (
     SceneError,
     SettingError,
     Start,
-    bearing_scan,
     load_scene,
     simulate,
     simulate_many,
     synthetic_motion,
 )
-from analytic.bearing_scan import DAMPING_STEP, PERIOD_STEP, first_stroke, scan_bearings
+from analytic.advice import bearing_scan
+from analytic.advice.bearing_scan import DAMPING_STEP, PERIOD_STEP, first_stroke, scan_bearings
 from analytic.checks.twin import simulate_twin
 from analytic.rocking import BearingLaw, design_bearings, properties, steady_cycle
 from comparisons.execution.results import commit_seed

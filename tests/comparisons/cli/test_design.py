@@ -7,7 +7,7 @@ import pytest
 from own_scenes import BUST
 
 from analytic import PulseMotion, bearing_scan, load_scene, simulate
-from analytic.bearing_scan import BearingScan
+from analytic.advice.bearing_scan import BearingScan
 from analytic.rocking import design_bearings, properties
 from comparisons.plotting.margins import nothing_holds
 from comparisons.schemas.columns import percent

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from analytic import PulseMotion, SampledMotion, Scene, load_scene, simulate
-from analytic.margins import Band, Contact, Margin, margins
+from analytic.advice.margins import Band, Contact, Margin, margins
 from comparisons.execution.command_runs import OWN
 from comparisons.metrics.statistics import wilson
 from comparisons.plotting.margins import LIFTED, draw_margins, odds, print_margins
@@ -27,7 +27,7 @@ def columns(peak, head="t [s],a [m/s2]"):
 def folder(tmp_path, monkeypatch):
     """A pair of components, a weak single one, and a file that is none; the scans of margins are coarse."""
     monkeypatch.setattr("comparisons.commands.advice.STEPS", 20)
-    monkeypatch.setattr("analytic.margins.BISECTIONS", 3)
+    monkeypatch.setattr("analytic.advice.margins.BISECTIONS", 3)
     (tmp_path / "records").mkdir()
     for name, peak in [*PEAKS.items()][:3]:
         (tmp_path / "records" / name).write_text(columns(peak))

@@ -181,7 +181,7 @@ def place(tmp_path, monkeypatch):
         "comparisons.metrics.agreement.measure_all",
         "comparisons.advice.choose.choose",
         "comparisons.metrics.errors.solver_horizon",
-        "analytic.margins.margins",
+        "analytic.advice.margins.margins",
     ):
         monkeypatch.setattr(work, _cut_short)
     return tmp_path

@@ -8,8 +8,8 @@ import pytest
 from sliding_scenes import SAVED
 
 from analytic import Caution, Failure, load_scene, simulate
-from analytic.bearing_scan import BearingScan
-from analytic.margins import Contact
+from analytic.advice.bearing_scan import BearingScan
+from analytic.advice.margins import Contact
 from analytic.response import COMPARED, Difference
 from analytic.rocking import design_bearings
 from comparisons.commands.advice import _chosen

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from analytic import PulseMotion, SampledMotion, load_scene, simulate, synthetic_motion
-from analytic.bearing_scan import displacement_spectrum
+from analytic.advice.bearing_scan import displacement_spectrum
 from analytic.rocking import restitution
 from comparisons.execution.by_solver import read
 from comparisons.execution.plan import Transition

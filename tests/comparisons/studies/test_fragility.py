@@ -7,7 +7,7 @@ import pytest
 from answered import answered, by_model, stored
 
 from analytic import simulate
-from analytic.bearing_scan import displacement_spectrum
+from analytic.advice.bearing_scan import displacement_spectrum
 from analytic.response import COMPARED
 from comparisons.execution.plan import Request
 from comparisons.execution.results import Result

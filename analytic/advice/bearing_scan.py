@@ -26,17 +26,17 @@ import numba
 import numpy as np
 from numba import njit
 
-from .batch import Outcomes, simulate_many
-from .errors import SceneError, SettingError, require
-from .kernel.compiled import inlined, inner
-from .motion import SampledMotion
-from .rocking import design_bearings
-from .scene import Bearings, Scene
+from ..batch import Outcomes, simulate_many
+from ..errors import SceneError, SettingError, require
+from ..kernel.compiled import inlined, inner
+from ..motion import SampledMotion
+from ..rocking import design_bearings
+from ..scene import Bearings, Scene
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from .motion import Motion
+    from ..motion import Motion
 
 PULSE_INTERVALS = 4000  # of a pulse; its interpolation error is then below 1e-6 of the amplitude
 

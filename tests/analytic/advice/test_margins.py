@@ -9,7 +9,7 @@ import pytest
 from random_scenes import random_scene
 
 from analytic import Block, PulseMotion, Scene, SceneError, SettingError, Start, load_scene, simulate, synthetic_motion
-from analytic.margins import (
+from analytic.advice.margins import (
     FINER,
     LIMIT_STATES,
     QUANTITIES,
@@ -292,7 +292,7 @@ def test_the_changes_are_even_and_hold_the_scene_itself():
 
 
 def test_a_scene_that_costs_too_much_is_refused(monkeypatch):
-    monkeypatch.setattr("analytic.margins.NEARBY_STEPS", 1e5)
+    monkeypatch.setattr("analytic.advice.margins.NEARBY_STEPS", 1e5)
     stiff = load_scene("caryatid-isolated").with_(bearings={"ka": 1e9}, duration=10.0)
     with pytest.raises(SceneError, match="201 runs"):
         nearby(stiff)

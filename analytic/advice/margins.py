@@ -22,17 +22,17 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
-from .batch import Outcomes, simulate_many
-from .errors import SceneError, require
-from .laws import LAWS, NUMBERS
-from .motion import SampledMotion
-from .response import Caution
-from .rocking import restitution
-from .scene import KEYS, SCENE_UNITS, Scene
-from .solver import STEPS_PER_SAMPLE, simulate, too_long
+from ..batch import Outcomes, simulate_many
+from ..errors import SceneError, require
+from ..laws import LAWS, NUMBERS
+from ..motion import SampledMotion
+from ..response import Caution
+from ..rocking import restitution
+from ..scene import KEYS, SCENE_UNITS, Scene
+from ..solver import STEPS_PER_SAMPLE, simulate, too_long
 
 if TYPE_CHECKING:
-    from .response import Response
+    from ..response import Response
 
 LIMIT_STATES = ("slides", "lifts", "tilt", "stroke", "overturns")
 TILT = 0.5  # share of the slenderness
