@@ -76,7 +76,7 @@ def solver(name: str) -> Callable:
     """
     if name in ENGINES:
         return get_engine(name).simulate
-    return pkgutil.resolve_name(today(_place(name)))
+    return pkgutil.resolve_name(_place(name))
 
 
 def compile_for(names: Iterable[str]) -> None:
@@ -117,7 +117,7 @@ def fingerprint(name: str, measuring: str) -> str:
 
 
 def _place(name):
-    place = SOLVERS.get(name, name)
+    place = today(SOLVERS.get(name, name))
     if ":" not in place:
         raise KeyError(f"unknown solver {name!r}: choose one of {', '.join([*SOLVERS, *ENGINES])}")
     return place

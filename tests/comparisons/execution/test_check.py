@@ -14,8 +14,8 @@ from analytic.motion import paired
 from comparisons.execution import by_solver
 from comparisons.execution import runner as run_sample
 from comparisons.execution.by_solver import age, last_check
-from comparisons.execution.cases import Case
-from comparisons.execution.code_digests import today
+from comparisons.execution.cases import Case, root_of, solver
+from comparisons.execution.code_digests import source_digests, today
 from comparisons.execution.plan import Batch, Computed, Study
 from comparisons.execution.results import RESULTS, ResultError, read_result, write_result
 from comparisons.execution.runner import case_of, check, check_all, compute, sample_of
@@ -42,9 +42,11 @@ def sampled(*which):
 @pytest.mark.parametrize("path", by_solver.results_in(RESULTS), ids=lambda path: path.name)
 def test_what_a_stored_run_calls_is_there_today(path):
     """Modules move: `code_digests.ALIASES` says where to, or the run could not be done again."""
-    names = {name for run in by_solver.read(path).runs for name in (run["measure"], run["engine"]) if ":" in name}
-    for name in names:
+    runs = by_solver.read(path).runs
+    for name in {run["measure"] for run in runs}:
         assert callable(resolve_name(today(name))), name
+    for name in {run["engine"] for run in runs if ":" in run["engine"]}:
+        assert callable(solver(name)) and source_digests([root_of(name)]), name
 
 
 @pytest.fixture
