@@ -20,6 +20,7 @@ from ...plotting.wording import TRUSTED, USABLE, rating, trust, with_counts
 from ...schemas.columns import NAME, Column, Row, number, percent, short
 from .study import COLUMNS
 
+STEPS_NAMED = ((1 / 60, "1/60 s"), (1 / 240, "1/240 s"), (1e-3, "1 ms"), (1e-4, "0.1 ms"))  # beside the axis
 FLOOR = 1e-9  # smaller errors are drawn here
 
 ERROR = COLUMNS["rms"]
@@ -336,7 +337,7 @@ def page(result: Result) -> Page:
             "includes what built-in damping dissipates in flight. A variant is rated by the worst of both measures "
             "on both grounds.",
         ),
-        first=_summary(result, cells, ranked),
+        first=(*_summary(result, cells, ranked), _over_step(levels)),
         more=_details(result, variants, default, cells, levels, orders, ratings, why),
         how=(*_how(result.settings), *why.how),
         evidence=(
@@ -574,6 +575,20 @@ def _on_bearings(result):
         NAME,
         Column("law or excitation", lambda row: "released" if row["of"] == "let go" else row["of"]),
         *columns,
+    )
+
+
+def _over_step(levels):
+    """Error over a fixed step, of all variants that take one."""
+    return lines(
+        where(levels, parameter="step"),
+        COLUMNS["level"].called("fixed step [s]"),
+        DRAWN_ERROR,
+        "Error of restitution by swings over a fixed step, of defaults and tuned variants. Variants that refine their "
+        "step at impacts are not shown.",
+        panel="ground",
+        log="xy",
+        rules=[("x", step, words) for step, words in STEPS_NAMED],
     )
 
 

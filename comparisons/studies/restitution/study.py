@@ -266,13 +266,22 @@ def variants_of(engines: Sequence[str]) -> list[tuple[str, str, Variant]]:
     return [(engine, name, kind) for engine in engines for name, kind in get_engine(engine).variants.items()]
 
 
+# s, fixed steps at which every variant with a fixed step is run, beside its own levels: a game's frame, to a fine one
+STEPS = (1 / 60, 1 / 240, 1e-3, 2.5e-4, 1e-4)
+
+
+def levels_run(kind: Variant) -> list[float]:
+    """Return the values of a variant's accuracy parameter that are run: its levels, and `STEPS` where it is a step."""
+    return sorted({*kind.levels, *(STEPS if kind.accuracy_parameter == "step" else ())})
+
+
 def grid_cases(grid: Grid, engines: Sequence[str]) -> Iterator[Case]:
     """Yield the cases of the grid, tagged with part, ratio, slenderness, start and level."""
     for ratio in grid.ratios:
         for slenderness in grid.slendernesses:
             scenes = {start: free_scene(slenderness, ratio, start) for start in grid.starts}
             for engine, variant, kind in variants_of(engines):
-                for level in sorted(kind.levels) if (slenderness, ratio) in grid.refined else (kind.default,):
+                for level in levels_run(kind) if (slenderness, ratio) in grid.refined else (kind.default,):
                     settings = {} if level == kind.default else {kind.accuracy_parameter: level}
                     for start, scene in scenes.items():
                         tag = {"ratio": ratio, "slenderness": slenderness, "start": start, "level": level}
@@ -501,13 +510,13 @@ def _summaries(cells, engines, grid):
             if everywhere:
                 yield _row("summary", {"scope": "all", **key, "level": kind.default}, everywhere)
             points = []
-            for level in sorted(kind.levels):
+            for level in levels_run(kind):
                 runs = [run for (run_level, *place), runs in runs_at.items() for run in runs
                         if run_level == level and tuple(place) in grid.refined]  # fmt: skip
                 if runs:
                     points.append(_row("summary", {"scope": "levels", **key, "level": level}, runs))
             yield from points
-            errors = [(row["level"], row["rms"]) for row in points if row["rms"]]
+            errors = [(row["level"], row["rms"]) for row in points if row["rms"] and row["level"] in kind.levels]
             steps, sizes = np.log(np.transpose(errors)) if errors else ((), ())
             order = float(np.polyfit(steps, sizes, 1)[0]) if len(errors) > 1 else None
             yield {"part": "order", **key, "order": order}

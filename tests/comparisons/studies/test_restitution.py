@@ -24,6 +24,7 @@ from comparisons.studies.restitution.study import (
     IMPACT_SECONDS,
     IMPACTS,
     LAWS,
+    STEPS,
     Grid,
     bearing_cases,
     damped_error,
@@ -45,6 +46,14 @@ def test_scenes_end_past_the_third_swing(start):
     scene = free_scene(0.2, CARYATID_BASE, start)
     response = simulate(scene)
     assert len(response.impacts) == 3 and response.end.tilt_rate * response.end.tilt < 0  # past its peak
+
+
+@pytest.mark.parametrize(("variant", "fixed"), [("fixed-step", True), ("impact-aware", False)])
+def test_a_variant_with_a_fixed_step_is_run_at_the_steps_that_people_use_beside_its_levels(variant, fixed):
+    kind = get_engine("pybullet").variants[variant]
+    grid = Grid((0.2,), (None,), (0.3,), ((0.2, None),), 1, ())
+    levels = [case.tag["level"] for case in grid_cases(grid, ["pybullet"]) if case.variant == variant]
+    assert sorted(levels) == sorted({*kind.levels, *(STEPS if fixed else ())})
 
 
 def test_damping_in_flight_lowers_restitution_by_what_it_takes():
