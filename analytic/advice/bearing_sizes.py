@@ -85,14 +85,12 @@ class BearingSizes:
         if self.kind == "pendulum":
             return f"Each pendulum bearing: {pendulum}.", *unmade
         sizes = (
-            f"Each {self.kind} bearing: {f'lead core {1000 * self.core:.3g} mm, ' if self.core else ''}"
-            f"rubber {1000 * self.diameter:.3g} mm in diameter, "  # type: ignore[operator]  # all but a pendulum has it
-            f"{1000 * self.height:.3g} mm high; {self.overlap:.0%} of its area overlaps at x_max; "  # type: ignore[operator]  # likewise
+            f"Each {self.kind} bearing: {f'lead core {round(1000 * self.core, 1):g} mm, ' if self.core else ''}"
+            f"rubber {round(1000 * self.diameter, 1):g} mm in diameter, "  # type: ignore[operator]  # all but a pendulum has it
+            f"{round(1000 * self.height, 1):g} mm high; {self.overlap:.0%} of its area overlaps at x_max; "  # type: ignore[operator]  # likewise
             f"pressure {self.pressure / 1e6:.3g} MPa"  # type: ignore[operator]  # likewise
             + (f", {self.overlap_pressure / 1e6:.3g} MPa on the overlap." if self.overlap_pressure else ".")
         )
-        if not self.reasons:
-            return (sizes,)
         outside = _unmade({"radius": self.radius, "friction": self.friction}) if self.radius else ()
         instead = (
             "Light statues stand on sliders or on pendulum bearings instead, as the Hermes of Olympia does."
@@ -100,7 +98,7 @@ class BearingSizes:
             + (f" (outside what is made: {'; '.join(outside)})" if outside else "")
             + ("." if pendulum else "")
         )
-        return sizes, *unmade, instead
+        return (sizes, *unmade, instead) if self.reasons else (sizes,)
 
 
 def _unmade(values):
@@ -110,7 +108,7 @@ def _unmade(values):
         words, unit, factor, least, most, source = MADE[name]
         if value is not None and not least * (1 - 1e-9) <= value <= most * (1 + 1e-9):
             side, limit = ("below", least) if value < least else ("above", most)
-            size, end = f"{factor * value:.3g} {unit}".rstrip(), f"{factor * limit:.3g} {unit}".rstrip()
+            size, end = (f"{float(f'{factor * number:.3g}'):g} {unit}".rstrip() for number in (value, limit))
             clauses.append(f"{words} {size}, {side} {end} ({source})")
     return tuple(clauses)
 
@@ -129,28 +127,28 @@ def bearing_sizes(bearings: Bearings, mass: float, gravity: float = 9.81) -> Bea
     law, weight, x_max = BearingLaw.of(bearings), mass * gravity / bearings.count, bearings.x_max
     if bearings.law == "bilinear" and law.f0 <= STIFF * law.dk and law.kb > 0:
         radius, friction = weight / law.kb, law.f0 / weight
-        reasons = _unmade({"radius": radius, "friction": friction})
-        return BearingSizes("pendulum", None, None, None, None, None, None, radius, friction, reasons)
+        unmade = _unmade({"radius": radius, "friction": friction})
+        return BearingSizes("pendulum", None, None, None, None, None, None, radius, friction, unmade)
     if x_max is None or not law.kb > 0:
         return None
     height = x_max / STRAIN
-    area, core = law.kb * height / RUBBER, math.sqrt(4 * law.f0 / (math.pi * LEAD)) or None
-    diameter = math.sqrt(4 * area / math.pi)
-    overlap = overlap_share(diameter, x_max)
+    area, core = law.kb * height / RUBBER, 2 * math.sqrt(law.f0 / (math.pi * LEAD)) or None
+    diameter = 2 * math.sqrt(area / math.pi)
+    overlap, pressure = overlap_share(diameter, x_max), weight / area
     back, pendulum = properties(bearings, mass, x_max), (None, None)
-    viscous = math.pi * bearings.damping / (back.period * back.secant_stiffness)
+    damping = back.damping_equivalent + math.pi * bearings.damping / (back.period * back.secant_stiffness)
     with contextlib.suppress(SettingError):  # no friction has that damping
-        pendulum = pendulum_of(back.period, back.damping_equivalent + viscous, x_max, gravity)  # type: ignore[assignment]  # as above, or numbers
+        pendulum = pendulum_of(back.period, damping, x_max, gravity)  # type: ignore[assignment]  # as above, or numbers
     return BearingSizes(
         "lead-rubber" if core else "rubber",
         core,
         diameter,
         height,
         overlap,
-        weight / area,
-        weight / (overlap * area) if overlap > 0 else None,
+        pressure,
+        pressure / overlap if overlap > 0 else None,
         *pendulum,
-        _unmade({"core": core, "diameter": diameter, "overlap": overlap, "pressure": weight / area}),
+        _unmade({"core": core, "diameter": diameter, "overlap": overlap, "pressure": pressure}),
     )
 
 

@@ -398,7 +398,7 @@ def _sentences(statue):
         sentences.append(("Motion reversed", f"The block {_copy_words(statue['reversed'])}."))
     elif statue["near"]:
         sentences.append(("Motion reversed", "The same, mirrored: block and start are symmetric."))
-    if sizes := statue["sizes"]:
+    if sizes := statue.get("sizes"):
         sentences.append(("Bearings", " ".join([*sizes["sentences"], sizes["assumed"]])))
     if rows := statue["motions"]:
         sentences.append((_heading(statue), headline(rows, statue["left_out"])))
