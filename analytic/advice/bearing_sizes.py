@@ -28,6 +28,7 @@ STIFF = (
     2e-3  # m: a bilinear bearing that yields before is taken as a pendulum; lead-rubber bearings yield later: assumed
 )
 
+SORTS = ("lead-rubber", "rubber", "pendulum")
 ASSUMED = (
     f"Assumed: lead yields at {LEAD / 1e6:g} MPa (Robinson 2011 measured 10.5), the rubber is soft, "
     f"G = {RUBBER / 1e6:g} MPa, and sheared by {STRAIN:.0%} at x_max."
@@ -52,7 +53,7 @@ MADE = {
 class BearingSizes:
     """Sizes of one bearing under its share of the weight.
 
-    kind : "lead-rubber", "rubber" or "pendulum".
+    kind : one of SORTS.
     core, diameter, height : of lead core and rubber [m]; None where it has none.
     overlap : share of the rubber's area that overlaps at x_max.
     pressure, overlap_pressure : weight over the rubber's area and over the overlap [Pa]; None: no area.

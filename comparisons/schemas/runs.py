@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field
 
-from analytic.advice.bearing_sizes import bearing_sizes
+from analytic.advice.bearing_sizes import SORTS, bearing_sizes
 from analytic.response import DIFFERENCES, KINDS, OUTCOMES
 from analytic.scene import Bearings
 
@@ -117,7 +117,7 @@ class Sizes(Part):
     radius, friction: of a pendulum; for other bearings of one with their period and damping at x_max. reasons: why no
     such bearing is made; none if such bearings are made. sentences: the same in words. assumed: by what."""
 
-    kind: Literal["lead-rubber", "rubber", "pendulum"]
+    kind: Literal[*SORTS]  # type: ignore[valid-type]  # the words of `BearingSizes`
     core: float | None = Field(description="m, diameter of the lead core")
     diameter: float | None = Field(description="m, of the rubber")
     height: float | None = Field(description="m, of the rubber")
