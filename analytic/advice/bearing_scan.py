@@ -178,6 +178,12 @@ class BearingScan:
         """Return the bearings of a period [s] and one of the dampings scanned [-]."""
         return softened(self.designs[int(np.abs(self.dampings - damping).argmin())], period)
 
+    def among(self, allowed: Callable[[Bearings], bool]) -> BearingScan:
+        """Return the scan in which only bearings that are allowed are suitable; the same if none of these is."""
+        nodes = np.array([[allowed(softened(design, period)) for period in self.periods] for design in self.designs])
+        keeps = nodes | ~np.any(nodes & (self.demand <= 1) & ~np.isnan(self.stroke))
+        return replace(self, demand=np.where(keeps, self.demand, np.inf))
+
     @property
     def least_stroke(self) -> tuple[float, float] | None:
         """Return (period, damping) of the suitable bearings with the least stroke; None without any."""

@@ -9,7 +9,7 @@ import typer
 
 from analytic import simulate, simulate_many
 from analytic.advice.bearing_scan import scan_bearings
-from analytic.advice.bearing_sizes import design_pendulum, pendulum_bearings, pendulum_note
+from analytic.advice.bearing_sizes import bearing_sizes, design_pendulum, pendulum_bearings, pendulum_note
 from analytic.advice.margins import LARGEST_SPAN, LIMIT_STATES, Contact, limit_states, margins
 from analytic.errors import SceneError, SettingError
 from analytic.response import scene_warnings
@@ -295,9 +295,8 @@ def design(
 
 def _check_pendulum(ratio, definition, period, damping):
     """Refuse options of lead-rubber bearings beside those of pendula."""
-    given = {"--ratio": ratio != 10.0, "--definition": definition != "equivalent"}
-    given |= {"--period": period is not None, "--damping": damping is not None}
-    if wrong := [option for option, is_given in given.items() if is_given]:
+    of_design = {"--ratio": ratio != 10.0, "--definition": definition != "equivalent", "--period": period is not None}
+    if wrong := [option for option, given in {**of_design, "--damping": damping is not None}.items() if given]:
         raise SettingError(f"{wrong[0]}: belongs to lead-rubber bearings; leave it out, or the options of pendula")
 
 
@@ -314,9 +313,13 @@ def _by_targets(targets, pendula, options, of_scene, json_file):
     if wrong:
         raise SettingError(f"{wrong[0]}: belongs to a scene; rocking design SCENE --stroke METRES")
     mass, xmax, swings = targets["mass"], targets["xmax"], set(pendula.values()) != {None}
-    needed = {PENDULUM[name]: value for name, value in pendula.items()} if swings else {}
-    needed |= {f"--{name}": value for name, value in targets.items() if not swings or name in ("mass", "xmax")}
-    missing = [name for name, value in needed.items() if value is None]
+    needed = {
+        "pendulum-radius": pendula["radius"],
+        "pendulum-friction": pendula["friction"],
+        "mass": mass,
+        "xmax": xmax,
+    }
+    missing = [f"--{name}" for name, value in (needed if swings else targets).items() if value is None]
     if missing:
         raise SettingError(f"{missing[0]} is missing; give all targets, or a scene and --stroke")
     check_writable([json_file])
@@ -339,8 +342,7 @@ def _by_targets(targets, pendula, options, of_scene, json_file):
         f"loss {back.cycle_loss:.5g} J a cycle and bearing",
         *(() if sizes is None else (*sizes.sentences, sizes.assumed)),
     )
-    form = forms.Design(bearings=constants, properties=given, sizes=sizes)
-    write_output({json_file: form}, lambda: echo(*lines))
+    write_output({json_file: forms.Design(bearings=constants, properties=given, sizes=sizes)}, lambda: echo(*lines))
 
 
 def _for_scene(place, base_mass, stroke, tilt, options, many, write, plot, json_file):
@@ -357,6 +359,8 @@ def _for_scene(place, base_mass, stroke, tilt, options, many, write, plot, json_
     options |= {"gravity": scene.gravity} if "designer" in options else {}
     with bar(f"{scene.name}: bearings") as progress, named_by_options(OF_SCENE), in_file(place):
         scan = scan_bearings(scene, motions, stroke, tilt=tilt, **options, progress=progress)
+        if "designer" in options:
+            scan = scan.among(lambda pendula: not bearing_sizes(pendula, scene.total_mass, scene.gravity).reasons)  # type: ignore[union-attr]  # pendula have sizes
     points = {LEAST: scan.least_stroke, SOFTEST: scan.softest}  # (period, damping), None without any
     chosen = {name: _chosen(scene, scan, point, groups, left) for name, point in points.items() if point is not None}
     nothing = "" if chosen else nothing_holds(scene, scan, stroke, tilt, motions)
@@ -366,9 +370,8 @@ def _for_scene(place, base_mass, stroke, tilt, options, many, write, plot, json_
     warnings = scene_warnings(scene.with_(bearings=scan.designs[0]))  # it is to have some
     results = {json_file: _design_form(scene, stroke, tilt, read, left, scan, chosen, warnings)}
     if write:
-        bearings = chosen[write]["bearings"]
-        note = pendulum_note(bearings, scene.total_mass, scene.gravity)
-        results[place] = _written(place, bearings, None if base_mass is None else scene.base, note)
+        note = pendulum_note(chosen[write]["bearings"], scene.total_mass, scene.gravity)
+        results[place] = _written(place, chosen[write]["bearings"], None if base_mass is None else scene.base, note)
     write_output(
         results,
         lambda: print_bearings(scene, scan, stroke, tilt, read, chosen, warnings, nothing),

@@ -247,9 +247,15 @@ def _show_derived(file: str, scene: Any, json_file: str | None, targets: Mapping
         quantities.append(Derived(name=name, value=value, unit=unit, asked=target))
         shown[f"{name}, {words}" if words else name] = f"{value:.5g} {unit}".removesuffix(" -")
     sizes = Sizes.of(scene.bearings, scene.total_mass, scene.gravity)
-    sentences = [] if sizes is None else [*sizes.sentences, sizes.assumed]
     form = New(file=file, scene=scene.name, derived=quantities, sizes=sizes)
-    write_output({json_file: form}, lambda: echo(named_values(shown, f"{file}: {scene.name}"), *sentences, wrap=True))
+    write_output(
+        {json_file: form},
+        lambda: echo(
+            named_values(shown, f"{file}: {scene.name}"),
+            *((*sizes.sentences, sizes.assumed) if sizes else ()),
+            wrap=True,
+        ),
+    )
 
 
 def record(

@@ -353,6 +353,12 @@ def odds(rows: Sequence[Mapping[str, Any]], outcomes: Sequence[str], word: str) 
 HELD = "#009E73"  # Okabe and Ito
 
 
+OF_LEAD_RUBBER, OF_PENDULA = (  # {label: format of the constants}
+    {"ka of each [N/m]": "{bearings.ka:.6g}", "kb of each [N/m]": "{bearings.kb:.6g}", "alpha": "{bearings.alpha:.6g}"},
+    {"radius of curvature [m]": "{sizes.radius:.4g}", "friction of the bearings": "{sizes.friction:.3g}"},
+)
+
+
 def print_bearings(
     scene: Scene,
     scan: BearingScan,
@@ -380,12 +386,10 @@ def print_bearings(
     if len({(design["period"], design["damping"]) for design in chosen.values()}) == 1:
         chosen = {" and ".join(chosen): next(iter(chosen.values()))}
     swings = any(design["sizes"] and design["sizes"].kind == "pendulum" for design in chosen.values())
-    pendulum = {"radius of curvature [m]": "{sizes.radius:.4g}", "friction of the bearings": "{sizes.friction:.3g}"}
-    stiffnesses = {f"{name} of each [N/m]": f"{{bearings.{name}:.6g}}" for name in ("ka", "kb")}
     rows = {
         "secant period at the stroke [s]": "{period:.3g}",
         "equivalent damping at the stroke": "{damping:.3g}",
-        **(pendulum if swings else {**stiffnesses, "alpha": "{bearings.alpha:.6g}"}),
+        **(OF_PENDULA if swings else OF_LEAD_RUBBER),
         "base displacement, worst motion [m]": "{stroke:.4g}",
         "acceleration over that of uplift": "{uplift:.3g}",
         **({} if scene.friction is None else {"friction demand over the friction": "{friction:.3g}"}),
