@@ -404,6 +404,7 @@ def scene_text(
     tilt: float | None = None,
     friction: float | None = None,
     about: Sequence[str] = (),
+    note: Sequence[str] = (),
 ) -> str:
     """Return a commented scene file (TOML) that `load_scene` reads.
 
@@ -417,8 +418,8 @@ def scene_text(
         Tilt at the start [rad].
     friction : float or None
         Coefficient between the block and its support; None: it does not slide.
-    about : sequence of str
-        Comment lines at the top.
+    about, note : sequence of str
+        Comment lines at the top, and on the bearings.
     """
     slides = "# friction = 0.6  # of the block on its support; without it the block does not slide"
     if friction is not None:
@@ -442,7 +443,7 @@ def scene_text(
     if base is not None:
         lines += ["", *_base(base)]
     if bearings is not None:
-        lines += ["", *_bearings(bearings)]
+        lines += ["", *_bearings(bearings, note)]
     if motion:
         lines += ["", "[motion]", *(f"{key} = {_toml(value)}" for key, value in motion.items())]
     if tilt is not None:
@@ -450,10 +451,11 @@ def scene_text(
     return "\n".join(lines) + "\n"
 
 
-def with_bearings(text: str, bearings: Bearings, base: Base | None = None) -> str:
+def with_bearings(text: str, bearings: Bearings, base: Base | None = None, note: Sequence[str] = ()) -> str:
     """Return the text of a scene file with other bearings: the table [bearings] is replaced, or added at the end.
 
-    base : for a scene without one; its table is added before that of the bearings.
+    base : for a scene without one; its table is added before that of the bearings. note : comment lines on the
+    bearings.
 
     Examples
     --------
@@ -468,18 +470,19 @@ def with_bearings(text: str, bearings: Bearings, base: Base | None = None) -> st
     before = lines[:begin] if begin < len(lines) else [*lines, ""]
     after = ["", *lines[following:]] if following < len(lines) else []
     under = [] if base is None else [*_base(base), ""]
-    return "\n".join([*before, *under, *_bearings(bearings), *after]) + "\n"
+    return "\n".join([*before, *under, *_bearings(bearings, note), *after]) + "\n"
 
 
 def _base(base):
     return ["[base]", *_rows({"mass": (base.mass, "kg")})]
 
 
-def _bearings(bearings):
+def _bearings(bearings, note):
     values = {key: (value, SCENE_UNITS.get(f"bearings.{key}", "")) for key, value in _given(bearings).items()}
     if bearings.x_max is not None:
         values["x_max"] = bearings.x_max, "m; design displacement: a run beyond it has a warning"
-    return ["[bearings]  # per bearing", *_rows({"law": (bearings.law, ""), **values})]
+    comments = [f"# {line}" for line in note]
+    return ["[bearings]  # per bearing", *comments, *_rows({"law": (bearings.law, ""), **values})]
 
 
 def _given(bearings):

@@ -9,6 +9,8 @@ BLOCK = "[block]\nmass = 400.0\nradius = 1.0\nslenderness = {gamma}\n"
 BASE = "[base]\nmass = 200.0\n"
 BEARINGS = '[bearings]\nlaw = "{law}"\ncount = 4\nka = {ka}\n'
 LINEAR = BASE + BEARINGS.format(law="linear", ka=2000.0)
+# of .5 m and a friction of .1, as `rocking new --pendulum-radius` writes them: 1471.5 N on each
+PENDULUM = BASE + BEARINGS.format(law="bilinear", ka=150093.0) + "kb = 2943.0\nyield_force = 150.093\nx_max = 0.3\n"
 LAWS = {
     "linear": LINEAR,
     "algebraic": BASE + BEARINGS.format(law="algebraic", ka=2e4) + "kb = 2e3\nalpha = 40.0\n",
@@ -69,6 +71,7 @@ KINDS = {
     "undecided": (scene(motion=pulse(4.0), more="[run]\nduration = 0.7\n"), "rocks"),
     "a copy is refused": (scene(friction=0.15, more=start(0.26)), "overturns"),
     "free-standing it is refused": (scene(LINEAR, friction=0.185, more=start(0.2)), "rocks"),
+    "on pendulum bearings": (scene(PENDULUM, pulse(4.0, 9.0)), "rocks"),
 }
 # {kind: (field, part of the problem)}: the model refuses the scene itself
 REFUSED = {

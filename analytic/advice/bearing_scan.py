@@ -17,8 +17,9 @@ A first stroke is estimated by the displacement spectrum of the linear oscillato
 
 from __future__ import annotations
 
+import functools
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -177,6 +178,12 @@ class BearingScan:
         """Return the bearings of a period [s] and one of the dampings scanned [-]."""
         return softened(self.designs[int(np.abs(self.dampings - damping).argmin())], period)
 
+    def among(self, allowed: Callable[[Bearings], bool]) -> BearingScan:
+        """Return the scan in which only bearings that are allowed are suitable; the same if none of these is."""
+        nodes = np.array([[allowed(softened(design, period)) for period in self.periods] for design in self.designs])
+        keeps = nodes | ~np.any(nodes & (self.demand <= 1) & ~np.isnan(self.stroke))
+        return replace(self, demand=np.where(keeps, self.demand, np.inf))
+
     @property
     def least_stroke(self) -> tuple[float, float] | None:
         """Return (period, damping) of the suitable bearings with the least stroke; None without any."""
@@ -224,7 +231,8 @@ def softened(design: Bearings, period: float) -> Bearings:
 
     At a given displacement forces scale with stiffness.
     """
-    return design.model_copy(update={"ka": design.ka / period**2, "kb": design.given("kb") / period**2})
+    scaled = [name for name in ("ka", "kb", "yield_force") if getattr(design, name) is not None]
+    return design.model_copy(update={name: design.given(name) / period**2 for name in scaled})
 
 
 def scan_bearings(
@@ -236,6 +244,7 @@ def scan_bearings(
     periods: tuple[float, float] = PERIODS,
     workers: int | None = None,
     progress: Callable[[int, int], None] | None = None,
+    designer: Callable[..., Bearings] = design_bearings,
     **design: Any,
 ) -> BearingScan:
     """Run the scene on bearings of each period and damping under each of the motions.
@@ -254,8 +263,10 @@ def scan_bearings(
         Range scanned [s].
     progress : callable or None
         Called with (runs done, all runs) in each of two scans.
+    designer : callable
+        Returns bearings for (mass, period, damping, x_max); their forces scale with 1/period^2.
     design : count, stiffness_ratio, definition
-        See `design_bearings`.
+        Further arguments of the designer, see `design_bearings`.
 
     Raises
     ------
@@ -265,7 +276,7 @@ def scan_bearings(
         A number is out of range, there is no motion, or no bearings of any damping can be designed.
     """
     _check(scene, motions, stroke, tilt, periods)
-    dampings, designs = _designs(scene.total_mass, stroke, design)
+    dampings, designs = _designs(functools.partial(designer, scene.total_mass, x_max=stroke, **design))
     number = COARSE * math.ceil(math.log(periods[1] / periods[0]) / PERIOD_STEP / COARSE)
     columns = np.geomspace(*periods, number + 1)
     shape = len(dampings), len(columns)
@@ -358,11 +369,11 @@ def _on_grid(
     return RegularGridInterpolator(axes, values, bounds_error=outside is None, fill_value=outside)(place)
 
 
-def _designs(mass: float, stroke: float, design: Mapping[str, Any]) -> tuple[np.ndarray, list[Bearings]]:
+def _designs(designer: Callable[..., Bearings]) -> tuple[np.ndarray, list[Bearings]]:
     """Return (evenly spaced dampings for which bearings exist, their designs for 1 s)."""
 
     def designed(damping):
-        return design_bearings(mass, 1.0, float(damping), stroke, **design)
+        return designer(period=1.0, damping=float(damping))
 
     possible = []
     for damping in np.arange(DAMPINGS[0], DAMPINGS[1], DAMPING_STEP):

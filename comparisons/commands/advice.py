@@ -9,6 +9,7 @@ import typer
 
 from analytic import simulate, simulate_many
 from analytic.advice.bearing_scan import scan_bearings
+from analytic.advice.bearing_sizes import bearing_sizes, design_pendulum, pendulum_bearings, pendulum_note
 from analytic.advice.margins import LARGEST_SPAN, LIMIT_STATES, Contact, limit_states, margins
 from analytic.errors import SceneError, SettingError
 from analytic.response import scene_warnings
@@ -19,6 +20,7 @@ from analytic.scene_file import load_scene, shipped_scenes, with_bearings
 from ..execution.command_runs import (
     DEFINITION,
     OPTIONS,
+    PENDULUM,
     RATIO,
     BothSigns,
     Directions,
@@ -41,7 +43,7 @@ from ..execution.progress import bar, compile_kernels, say, spinner, stdout_to_s
 from ..execution.writing import check_writable
 from ..schemas import advice as forms
 from ..schemas.columns import percent
-from ..schemas.runs import Warned
+from ..schemas.runs import Sizes, Warned
 from .output import write_output
 
 
@@ -211,7 +213,7 @@ def _changes(scene, scan):
 
 
 LEAST, SOFTEST = "least-stroke", "softest"
-WRITTEN = ("ka", "kb", "alpha")  # numbers written with six digits
+WRITTEN = ("ka", "kb", "alpha", "yield_force")  # numbers written with six digits
 OF_SCENE = {  # names in errors of the search, and their options
     **{"stroke": "--stroke", "x_max": "--stroke", "tilt": "--tilt"},
     **{name: OPTIONS[name] for name in ("count", "stiffness_ratio", "definition")},
@@ -249,6 +251,11 @@ def design(
     count: Annotated[int, typer.Option(help="Number of bearings.")] = 4,
     ratio: Annotated[float, typer.Option(help=RATIO)] = 10.0,
     definition: Annotated[str, typer.Option(help=DEFINITION)] = "equivalent",
+    pendulum: Annotated[bool, typer.Option("--pendulum", help="Scene: find pendulum bearings.")] = False,
+    pendulum_radius: Annotated[
+        float | None, typer.Option(help="Target: radius of curvature of pendulum bearings [m].")
+    ] = None,
+    pendulum_friction: Annotated[float | None, typer.Option(help="Target: friction of pendulum bearings.")] = None,
     json_file: JsonFile = None,
 ) -> None:
     """Find suitable bearings, or compute bearing constants.
@@ -257,31 +264,46 @@ def design(
     gives a friction, the block must not slide on its base either. For a block on the ground, also give the mass of a
     base; --write adds it to the file. Status 1: on the bearings found, the model failed under a motion.
 
-    Without a scene: compute the constants of the bearings from a target period, damping, displacement and mass.
+    Without a scene: compute the constants of the bearings from a target period, damping, displacement and mass; or
+    those of pendulum bearings from radius, friction, displacement and mass.
 
     Example: rocking design bust.toml --stroke 0.25 --plot bearings.svg --write least-stroke
 
     Example: rocking design --period 2 --damping 0.30 --definition paper --xmax 0.30 --mass 3384.05
     """
     targets = {"period": period, "damping": damping, "xmax": xmax, "mass": mass}
+    pendula = {"radius": pendulum_radius, "friction": pendulum_friction}
     given = [f"--{name}" for name, value in targets.items() if value is not None]
+    given += [PENDULUM[name] for name, value in pendula.items() if value is not None]
     bearings: dict[str, Any] = {"count": count, "stiffness_ratio": ratio, "definition": definition}
+    if pendulum or set(pendula.values()) != {None}:
+        _check_pendulum(ratio, definition, period, damping)
+        bearings = {"count": count}
     if scene is None:
         of_scene = {"--stroke": stroke, "--write": write, "--plot": plot, "--records": records, "--tilt": tilt or None}
-        of_scene["--base-mass"] = base_mass
-        return _by_targets(targets, bearings, of_scene, json_file)
+        of_scene |= {"--base-mass": base_mass, "--pendulum": pendulum or None}
+        return _by_targets(targets, pendula, bearings, of_scene, json_file)
     if given:
         raise SettingError(f"{given[0]}: a target, which does not go with a scene; give --stroke only")
     if stroke is None:
         raise SettingError("--stroke is missing: give the largest displacement of the base [m]")
+    if pendulum:
+        bearings["designer"] = design_pendulum
     many = {"records": records, "both_signs": both_signs, "directions": directions, "units": units}
     _for_scene(scene, base_mass, stroke, tilt, bearings, many, write, plot, json_file)
 
 
-def _by_targets(targets, options, of_scene, json_file):
-    """Compute the constants of bearings that meet the four targets; print and write them.
+def _check_pendulum(ratio, definition, period, damping):
+    """Refuse options of lead-rubber bearings beside those of pendula."""
+    of_design = {"--ratio": ratio != 10.0, "--definition": definition != "equivalent", "--period": period is not None}
+    if wrong := [option for option, given in {**of_design, "--damping": damping is not None}.items() if given]:
+        raise SettingError(f"{wrong[0]}: belongs to lead-rubber bearings; leave it out, or the options of pendula")
 
-    of_scene: {option: value} of the options that belong to a scene, None where they are not given.
+
+def _by_targets(targets, pendula, options, of_scene, json_file):
+    """Compute the constants of bearings that meet the four targets, or of pendula; print and write them.
+
+    pendula: radius and friction. of_scene: {option: value} of the options that belong to a scene. None: not given.
     """
     from rich.text import Text
 
@@ -290,26 +312,37 @@ def _by_targets(targets, options, of_scene, json_file):
     wrong = [name for name, value in of_scene.items() if value is not None]
     if wrong:
         raise SettingError(f"{wrong[0]}: belongs to a scene; rocking design SCENE --stroke METRES")
-    missing = [name for name, value in targets.items() if value is None]
+    mass, xmax, swings = targets["mass"], targets["xmax"], set(pendula.values()) != {None}
+    needed = {
+        "pendulum-radius": pendula["radius"],
+        "pendulum-friction": pendula["friction"],
+        "mass": mass,
+        "xmax": xmax,
+    }
+    missing = [f"--{name}" for name, value in (needed if swings else targets).items() if value is None]
     if missing:
-        raise SettingError(f"--{missing[0]} is missing; give all four targets, or a scene and --stroke")
+        raise SettingError(f"{missing[0]} is missing; give all targets, or a scene and --stroke")
     check_writable([json_file])
-    mass, xmax = targets["mass"], targets["xmax"]
-    with named_by_options(OPTIONS):
-        bearings = design_bearings(mass, targets["period"], targets["damping"], xmax, **options)
-    back = properties(bearings, mass, xmax)
+    with named_by_options(OPTIONS | PENDULUM):
+        if swings:
+            bearings = pendulum_bearings(mass, **pendula, **options, x_max=xmax)
+        else:
+            bearings = design_bearings(mass, targets["period"], targets["damping"], xmax, **options)
+    back, sizes = properties(bearings, mass, xmax), Sizes.of(bearings, mass)
     constants, given = forms.Constants(**bearings.model_dump()), forms.Properties(**dataclasses.asdict(back))
-    lines = (
+    last = f"yield force[/bold] = {bearings.yield_force:.5g} N" if swings else f"alpha[/bold] = {bearings.alpha:.4f}"
+    lines: tuple[Any, ...] = (
         Text.from_markup(
             f"[bold]ka[/bold] = {bearings.ka:.5g} N/m   [bold]kb[/bold] = {bearings.kb:.5g} N/m   "
-            f"[bold]alpha[/bold] = {bearings.alpha:.4f}   for each of {bearings.count} bearings"
+            f"[bold]{last}   for each of {bearings.count} bearings"
         ),
         f"back: secant period {back.period:.5g} s at {xmax:g} m ({back.period_kb:.4g} s with kb alone); "
         f"damping {percent(back.damping_paper, 4)} as W_D/(2 pi E_s), "
         f"{percent(back.damping_equivalent, 4)} as W_D/(4 pi E_s); "
         f"loss {back.cycle_loss:.5g} J a cycle and bearing",
+        *(() if sizes is None else (*sizes.sentences, sizes.assumed)),
     )
-    write_output({json_file: forms.Design(bearings=constants, properties=given)}, lambda: echo(*lines))
+    write_output({json_file: forms.Design(bearings=constants, properties=given, sizes=sizes)}, lambda: echo(*lines))
 
 
 def _for_scene(place, base_mass, stroke, tilt, options, many, write, plot, json_file):
@@ -323,8 +356,11 @@ def _for_scene(place, base_mass, stroke, tilt, options, many, write, plot, json_
     groups, left = motions_of(scene, **many)
     motions = [motion for group in groups.values() for motion in group]
     compile_kernels(any(motion.vertical for motion in motions))
+    options |= {"gravity": scene.gravity} if "designer" in options else {}
     with bar(f"{scene.name}: bearings") as progress, named_by_options(OF_SCENE), in_file(place):
         scan = scan_bearings(scene, motions, stroke, tilt=tilt, **options, progress=progress)
+        if "designer" in options:
+            scan = scan.among(lambda pendula: not bearing_sizes(pendula, scene.total_mass, scene.gravity).reasons)  # type: ignore[union-attr]  # pendula have sizes
     points = {LEAST: scan.least_stroke, SOFTEST: scan.softest}  # (period, damping), None without any
     chosen = {name: _chosen(scene, scan, point, groups, left) for name, point in points.items() if point is not None}
     nothing = "" if chosen else nothing_holds(scene, scan, stroke, tilt, motions)
@@ -334,7 +370,8 @@ def _for_scene(place, base_mass, stroke, tilt, options, many, write, plot, json_
     warnings = scene_warnings(scene.with_(bearings=scan.designs[0]))  # it is to have some
     results = {json_file: _design_form(scene, stroke, tilt, read, left, scan, chosen, warnings)}
     if write:
-        results[place] = _written(place, chosen[write]["bearings"], None if base_mass is None else scene.base)
+        note = pendulum_note(chosen[write]["bearings"], scene.total_mass, scene.gravity)
+        results[place] = _written(place, chosen[write]["bearings"], None if base_mass is None else scene.base, note)
     write_output(
         results,
         lambda: print_bearings(scene, scan, stroke, tilt, read, chosen, warnings, nothing),
@@ -363,7 +400,8 @@ def _chosen(scene, scan, point, groups, left=()):
     from ..plotting.margins import LIFTED, headline
 
     exact = scan.bearings(*point)
-    bearings = Bearings(**{**exact.model_dump(), **{name: float(f"{exact.given(name):.6g}") for name in WRITTEN}})
+    rounded = {name: float(f"{exact.given(name):.6g}") for name in WRITTEN if getattr(exact, name) is not None}
+    bearings = Bearings(**exact.model_dump() | rounded)
     borne = scene.with_(bearings=bearings, duration=None)
     rows = rows_of(borne, groups, lambda moved: simulate(moved, history=False), _demand)
     demand, worst = max(row.pop("demand", math.inf) for row in rows), max(rows, key=lambda row: row["stroke"])
@@ -371,6 +409,7 @@ def _chosen(scene, scan, point, groups, left=()):
         "period": point[0],
         "damping": point[1],
         "bearings": bearings,
+        "sizes": Sizes.of(bearings, scene.total_mass, scene.gravity),
         "stroke": worst["stroke"],
         "lifts": sum(row["outcome"] in LIFTED for row in rows),
         "slides": sum(bool(row["slip"]) for row in rows),
@@ -388,15 +427,15 @@ def _demand(scene):
     return {"demand": float(simulate_many([scene], contact=True).friction_demand[0])}
 
 
-def _written(place, bearings, base):
-    """The text of the scene file with these bearings, and with this base if it has none.
+def _written(place, bearings, base, note):
+    """The text of the scene file with these bearings and the note on them, and with this base if it has none.
 
     Raises
     ------
     SettingError
         The file holds its bearings in another form than a table.
     """
-    text = with_bearings(Path(place).read_text(encoding="utf-8-sig"), bearings, base)
+    text = with_bearings(Path(place).read_text(encoding="utf-8-sig"), bearings, base, note)
     try:
         read_back = scene_of(text, place)
         same = read_back.bearings == bearings and base in (None, read_back.base)

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
+from analytic.advice.bearing_sizes import pendulum_bearings, pendulum_note
 from analytic.errors import SettingError
 from analytic.records import G, read_channels, two_columns
 from analytic.records import content as fema
@@ -18,6 +19,7 @@ from analytic.scene_file import DAMPING, MATERIALS, PERIOD, block_from, derived,
 from ..execution.command_runs import (
     DEFINITION,
     OPTIONS,
+    PENDULUM,
     RATIO,
     RECORD_OPTIONS,
     Channel,
@@ -32,8 +34,10 @@ from ..execution.command_runs import (
     scene_of,
 )
 from ..execution.writing import check_writable, write_text
-from ..schemas.runs import Derived, New, Record
+from ..schemas.runs import Derived, New, Record, Sizes
 from .output import write_output
+
+BEARINGS = "--period and --xmax, or --ka, --kb and --alpha, or --pendulum-radius and --pendulum-friction"
 
 
 # Long because of its many options.
@@ -70,6 +74,12 @@ def new(
     ka: Annotated[float | None, typer.Option(help="Bearings by constants: stiffness before yielding [N/m].")] = None,
     kb: Annotated[float | None, typer.Option(help="Bearings by constants: stiffness after yielding [N/m].")] = None,
     alpha: Annotated[float | None, typer.Option(help="Bearings by constants: exponent of eq. (13).")] = None,
+    pendulum_radius: Annotated[
+        float | None, typer.Option(help="Pendulum bearings: radius of curvature of the sliding surface [m].")
+    ] = None,
+    pendulum_friction: Annotated[
+        float | None, typer.Option(help="Pendulum bearings: coefficient of friction, constant.")
+    ] = None,
     record: Annotated[
         str | None, typer.Option(metavar="FILE", help="Recorded ground motion. Default: the shipped synthetic motion.")
     ] = None,
@@ -105,7 +115,8 @@ def new(
         block = block_from(height, width, depth=depth, density=_density(density, material), mass=mass)
         targets = {"period": period, "damping": damping, "stiffness_ratio": ratio, "definition": definition}
         constants = {"ka": ka, "kb": kb, "alpha": alpha}
-        support = _support(ctx, block.mass, base_mass, slides_freely, count, xmax, targets, constants)
+        pendulum = {"radius": pendulum_radius, "friction": pendulum_friction}
+        support = _support(ctx, block.mass, base_mass, slides_freely, count, xmax, targets, constants, pendulum)
         motion = _motion(file, record, tilt, {"units": units, "dt": dt, "column": column, "channel": channel})
         about = f"A block {height:g} m high and {width:g} m wide along the motion; rocking run {Path(file).name}"
         text = scene_text(
@@ -157,16 +168,18 @@ def _support(
     xmax: float | None,
     targets: Mapping[str, Any],
     constants: Mapping[str, Any],
+    pendulum: Mapping[str, Any],
 ) -> dict[str, Any]:
-    """The `Base` under the block and its `Bearings`, each None where there is none."""
+    """The `Base` under the block and its `Bearings`, each None where there is none, and a note on pendula."""
     base = None if base_mass is None else Base(mass=base_mass)
     for option in ("damping", "definition", "ratio"):
         if targets["period"] is None and str(ctx.get_parameter_source(option)).endswith("COMMANDLINE"):
             raise SettingError(f"--{option} belongs to bearings by design; give --period and --xmax, or remove it")
-    borne = any(value is not None for value in (targets["period"], xmax, *constants.values()))
+    borne = any(value is not None for value in (targets["period"], xmax, *constants.values(), *pendulum.values()))
     _check_base(base_mass, borne, slides_freely)
     carried = block_mass + (base_mass or 0.0)
-    return {"base": base, "bearings": _bearings(carried, count, xmax, targets, constants) if borne else None}
+    bearings = _bearings(carried, count, xmax, targets, constants, pendulum) if borne else None
+    return {"base": base, "bearings": bearings, "note": pendulum_note(bearings, carried)}
 
 
 def _check_base(mass: float | None, borne: bool, slides_freely: bool) -> None:
@@ -180,21 +193,29 @@ def _check_base(mass: float | None, borne: bool, slides_freely: bool) -> None:
     if mass is not None and not borne and not slides_freely:
         raise SettingError(
             f"--base-mass {mass:g}: nothing holds that base. If it is a pedestal fixed to the ground, leave it out; on "
-            "bearings, give --period and --xmax, or --ka, --kb and --alpha; without bearings and friction, as in a "
+            f"bearings, give {BEARINGS}; without bearings and friction, as in a "
             "thought experiment or before rocking design, give --slides-freely"
         )
 
 
 def _bearings(
-    carried: float, count: int, xmax: float | None, targets: Mapping[str, Any], constants: Mapping[str, Any]
+    carried: float,
+    count: int,
+    xmax: float | None,
+    targets: Mapping[str, Any],
+    constants: Mapping[str, Any],
+    pendulum: Mapping[str, Any],
 ) -> Any:
-    """The `Bearings` under the mass `carried` [kg], by design or by constants."""
-    by_design, by_constants = targets["period"] is not None, any(value is not None for value in constants.values())
-    needed = (targets["period"], xmax) if by_design else constants.values()
-    if by_design == by_constants or None in needed:
-        raise SettingError("give the bearings' --period and --xmax (and --damping), or their --ka, --kb and --alpha")
-    if by_constants:
+    """The `Bearings` under the mass `carried` [kg], by design, by constants, or pendula."""
+    ways = ({"period": targets["period"]}, constants, pendulum)
+    given = [way for way in ways if any(value is not None for value in way.values())]
+    if len(given) != 1 or None in given[0].values() or (given[0] is ways[0] and xmax is None):
+        raise SettingError(f"give the bearings' {BEARINGS}")
+    if given[0] is constants:
         return Bearings(count=count, **constants, x_max=xmax)
+    if given[0] is pendulum:
+        with named_by_options(PENDULUM):
+            return pendulum_bearings(carried, **pendulum, count=count, x_max=xmax)
     return design_bearings(carried, x_max=xmax, count=count, **targets)  # type: ignore[arg-type]  # given, see above
 
 
@@ -225,8 +246,16 @@ def _show_derived(file: str, scene: Any, json_file: str | None, targets: Mapping
         target, words = targets.get(name, (None, ""))
         quantities.append(Derived(name=name, value=value, unit=unit, asked=target))
         shown[f"{name}, {words}" if words else name] = f"{value:.5g} {unit}".removesuffix(" -")
-    form = New(file=file, scene=scene.name, derived=quantities)
-    write_output({json_file: form}, lambda: echo(named_values(shown, f"{file}: {scene.name}")))
+    sizes = Sizes.of(scene.bearings, scene.total_mass, scene.gravity)
+    form = New(file=file, scene=scene.name, derived=quantities, sizes=sizes)
+    write_output(
+        {json_file: form},
+        lambda: echo(
+            named_values(shown, f"{file}: {scene.name}"),
+            *((*sizes.sentences, sizes.assumed) if sizes else ()),
+            wrap=True,
+        ),
+    )
 
 
 def record(

@@ -323,6 +323,7 @@ OPTIONS = {
     **{"x_max": "--xmax", "bearings.x_max": "--xmax", "stiffness_ratio": "--ratio", "start.tilt": "--tilt"},
     **{"block.mass": "--mass", "base.mass": "--base-mass"},
 }
+PENDULUM = {"radius": "--pendulum-radius", "friction": "--pendulum-friction"}
 
 
 @contextlib.contextmanager
@@ -546,12 +547,12 @@ def doubts(
         )
     values = {name: value for name, value, _ in derived(scene)}
     if values.get(YIELD, 0.0) >= values[UPLIFT]:  # before they yield they are stiff, and the block lifts
-        given = "--period, --damping and --xmax" if designed else "--ka, --kb and --alpha"
-        remedy = (
-            "give a longer --period, a lower --damping or a smaller --xmax"
-            if designed
-            else "give a lower --ka or a higher --alpha"
-        )
+        given, remedy = "--ka, --kb and --alpha", "give a lower --ka or a higher --alpha"
+        if designed:
+            given = "--period, --damping and --xmax"
+            remedy = "give a longer --period, a lower --damping or a smaller --xmax"
+        elif scene.bearings is not None and scene.bearings.law == "bilinear":  # by no other option
+            given, remedy = " and ".join(PENDULUM.values()), f"give a lower {PENDULUM['friction']}"
         sentences.append(
             f"{given} give bearings that yield at {values[YIELD]:.3g} m/s2, and so do not isolate before the block "
             f"lifts at {values[UPLIFT]:.3g} m/s2: they should yield below that; {remedy}"

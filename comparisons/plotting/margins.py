@@ -353,6 +353,12 @@ def odds(rows: Sequence[Mapping[str, Any]], outcomes: Sequence[str], word: str) 
 HELD = "#009E73"  # Okabe and Ito
 
 
+OF_LEAD_RUBBER, OF_PENDULA = (  # {label: format of the constants}
+    {"ka of each [N/m]": "{bearings.ka:.6g}", "kb of each [N/m]": "{bearings.kb:.6g}", "alpha": "{bearings.alpha:.6g}"},
+    {"radius of curvature [m]": "{sizes.radius:.4g}", "friction of the bearings": "{sizes.friction:.3g}"},
+)
+
+
 def print_bearings(
     scene: Scene,
     scan: BearingScan,
@@ -379,12 +385,11 @@ def print_bearings(
         return echo(*motion_warnings(motions), nothing, wrap=True)
     if len({(design["period"], design["damping"]) for design in chosen.values()}) == 1:
         chosen = {" and ".join(chosen): next(iter(chosen.values()))}
+    swings = any(design["sizes"] and design["sizes"].kind == "pendulum" for design in chosen.values())
     rows = {
         "secant period at the stroke [s]": "{period:.3g}",
         "equivalent damping at the stroke": "{damping:.3g}",
-        "ka of each [N/m]": "{bearings.ka:.6g}",
-        "kb of each [N/m]": "{bearings.kb:.6g}",
-        "alpha": "{bearings.alpha:.6g}",
+        **(OF_PENDULA if swings else OF_LEAD_RUBBER),
         "base displacement, worst motion [m]": "{stroke:.4g}",
         "acceleration over that of uplift": "{uplift:.3g}",
         **({} if scene.friction is None else {"friction demand over the friction": "{friction:.3g}"}),
@@ -396,9 +401,11 @@ def print_bearings(
         f"Of bearings {_scan_words(scan)}, {percent(float(np.mean(scan.demand <= 1)))} hold.",
         *(words for design in chosen.values() for words in motion_warnings(design["motions"])),
         *(
-            f"{'On the ' + name + ' bearings: ' if len(chosen) > 1 else ''}{design['headline']}"
+            f"{'On the ' + name + ' bearings: ' if len(chosen) > 1 else ''}{sentence}"
             for name, design in chosen.items()
+            for sentence in (design["headline"], *(design["sizes"].sentences if design["sizes"] else ()))
         ),
+        *dict.fromkeys(design["sizes"].assumed for design in chosen.values() if design["sizes"]),
         wrap=True,
     )
 

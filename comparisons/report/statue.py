@@ -24,6 +24,7 @@ from ..plotting.margins import LIFTED, counted, doubts, headline, motion_warning
 from ..plotting.parts import across, grouped, table
 from ..plotting.wording import listed
 from ..schemas.columns import Column, number, signed
+from ..schemas.runs import Sizes
 from .sections import different
 
 BROAD = 10.0  # width over height of a block that no motion lifts
@@ -235,7 +236,8 @@ def statue_of(
         for motion in of_record
     ]
     statue |= {"motions": rows if motions else [], "left_out": [*left]}
-    statue["needed"] = None
+    sizes = Sizes.of(scene.bearings, scene.total_mass, scene.gravity)
+    statue |= {"needed": None, "sizes": sizes and sizes.model_dump()}
     if _lifts_or_goes_too_far(scene, statue, rows):
         statue["needed"] = needed_by(scene, [motion for of_record in records.values() for motion in of_record])
     return statue
@@ -396,6 +398,8 @@ def _sentences(statue):
         sentences.append(("Motion reversed", f"The block {_copy_words(statue['reversed'])}."))
     elif statue["near"]:
         sentences.append(("Motion reversed", "The same, mirrored: block and start are symmetric."))
+    if sizes := statue.get("sizes"):
+        sentences.append(("Bearings", " ".join([*sizes["sentences"], sizes["assumed"]])))
     if rows := statue["motions"]:
         sentences.append((_heading(statue), headline(rows, statue["left_out"])))
     return sentences

@@ -10,7 +10,7 @@ from analytic.advice import margins
 from analytic.scene import SCENE_UNITS, Bearings
 
 from . import Form, Part
-from .runs import MotionRead, MotionRun, Warned
+from .runs import MotionRead, MotionRun, Sizes, Warned
 
 LimitState = Literal[*margins.LIMIT_STATES]  # type: ignore[valid-type]  # the words of `analytic.advice.margins`
 
@@ -132,9 +132,10 @@ class Properties(Part):
 class Design(Form):
     """Bearings designed."""
 
-    schema_: str = Field(default="rocking design 1", serialization_alias="schema")
+    schema_: str = Field(default="rocking design 2", serialization_alias="schema")
     bearings: Constants
     properties: Properties
+    sizes: Sizes | None
 
 
 class BearingProposal(Part):
@@ -145,6 +146,7 @@ class BearingProposal(Part):
     period: float = Field(description="s, secant at the stroke")
     damping: float = Field(description="share of critical at the stroke")
     bearings: Constants
+    sizes: Sizes | None
     stroke: float = Field(description="m, peak base displacement")
     lifts: int = Field(description="motions under which the block lifts")
     uplift: float = Field(description="acceleration at the block's foot over that of uplift; at least 1 where it lifts")
@@ -164,7 +166,7 @@ class BearingSearch(Form):
     If the scene gives a friction, the block must not slide either. holds: a row for each damping, a column for each
     period [s]. chosen: "least-stroke" and "softest"; none if nothing holds."""
 
-    schema_: str = Field(default="rocking bearings 2", serialization_alias="schema")
+    schema_: str = Field(default="rocking bearings 3", serialization_alias="schema")
     scene: str
     base_mass: float = Field(description="kg, of the scene's base or as given")
     stroke: float = Field(description="m, allowed")

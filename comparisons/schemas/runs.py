@@ -3,11 +3,14 @@
 Null means not known, or none. `comparisons.studies.rows` explains the columns of a study's result.
 """
 
-from typing import Annotated, Any, Literal
+from dataclasses import asdict
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field
 
+from analytic.advice.bearing_sizes import SORTS, bearing_sizes
 from analytic.response import DIFFERENCES, KINDS, OUTCOMES
+from analytic.scene import Bearings
 
 from . import Form, Part
 
@@ -106,6 +109,35 @@ class Difference(Part):
     model: str | float | None
     limit: float | None
     near: tuple[float, float] | None = Field(description="its range in the model for scenes within 1e-4 of this one")
+
+
+class Sizes(Part):
+    """Sizes of one bearing under its share of the weight, as `analytic.advice.bearing_sizes` has them.
+
+    radius, friction: of a pendulum; for other bearings of one with their period and damping at x_max. reasons: why no
+    such bearing is made; none if such bearings are made. sentences: the same in words. assumed: by what."""
+
+    kind: Literal[*SORTS]  # type: ignore[valid-type]  # the words of `BearingSizes`
+    core: float | None = Field(description="m, diameter of the lead core")
+    diameter: float | None = Field(description="m, of the rubber")
+    height: float | None = Field(description="m, of the rubber")
+    overlap: float | None = Field(description="share of the rubber's area that overlaps at x_max")
+    pressure: float | None = Field(description="Pa")
+    overlap_pressure: float | None = Field(description="Pa, on the overlap at x_max")
+    radius: float | None = Field(description="m, of curvature")
+    friction: float | None
+    reasons: list[str]
+    sentences: list[str]
+    assumed: str
+
+    @classmethod
+    def of(cls, bearings: Bearings | None, mass: float, gravity: float = 9.81) -> Self | None:
+        """Return the sizes of bearings under a mass [kg], see `bearing_sizes`; None without bearings or sizes."""
+        sizes = None if bearings is None else bearing_sizes(bearings, mass, gravity)
+        if sizes is None:
+            return None
+        words = {"reasons": list(sizes.reasons), "sentences": list(sizes.sentences), "assumed": sizes.assumed}
+        return cls(**asdict(sizes) | words)
 
 
 COMPARABLE = 'compared with the analytic model: "yes", "no" (not asked for), "on an edge", else the reason why not'
@@ -259,9 +291,9 @@ class Report(Form):
 
     results: the result files it is made from. motions: {scene: a row for each of many motions}. left_out: files and
     channels of the folder, and why. headlines: under how many records runs fail or warn, and the block lifts or
-    overturns."""
+    overturns. sizes: of the bearings of each scene."""
 
-    schema_: str = Field(default="rocking report 5", serialization_alias="schema")
+    schema_: str = Field(default="rocking report 6", serialization_alias="schema")
     page: str
     results: list[str]
     missing: dict[str, str]
@@ -269,6 +301,7 @@ class Report(Form):
     motions: dict[str, list[MotionRun]] = {}
     left_out: dict[str, list[str]] = {}
     headlines: dict[str, str | None] = {}
+    sizes: dict[str, Sizes | None] = {}
 
 
 class Derived(Part):
@@ -281,12 +314,13 @@ class Derived(Part):
 
 
 class New(Form):
-    """The scene file that was written."""
+    """The scene file that was written. sizes: of its bearings."""
 
-    schema_: str = Field(default="rocking new 1", serialization_alias="schema")
+    schema_: str = Field(default="rocking new 2", serialization_alias="schema")
     file: str
     scene: str
     derived: list[Derived]
+    sizes: Sizes | None
 
 
 class Channel(Part):

@@ -9,7 +9,7 @@ from own_scenes import BUST
 from analytic import PulseMotion, load_scene, simulate
 from analytic.advice import bearing_scan
 from analytic.advice.bearing_scan import BearingScan
-from analytic.rocking import design_bearings, properties
+from analytic.rocking import BearingLaw, design_bearings, properties
 from comparisons.plotting.margins import nothing_holds
 from comparisons.schemas.columns import percent
 
@@ -59,6 +59,58 @@ def test_the_scene_it_writes_does_not_lift_and_stays_within_the_stroke(rocking, 
         assert scene.base.mass == form["base_mass"] == 400.123 and "base: 400.123 kg" in out
         status, _, err = rocking("design", file, "--stroke", "0.2", *added)
         assert status == 2 and "has a base, of 400.123 kg; leave it out" in err
+
+
+def test_pendula_are_found_for_a_scene_and_written(rocking, tmp_path):
+    file, json_file = tmp_path / "bust.toml", tmp_path / "found.json"
+    file.write_text(BUST.format(bearings=BEARINGS))
+    options = ("--pendulum", "--write", "least-stroke", "--json", json_file)
+    status, out, err = rocking("design", file, "--stroke", "0.2", *options)
+    assert status == 0, err
+    scene, chosen = load_scene(file), json.loads(json_file.read_text())["chosen"]["least-stroke"]
+    response, law = simulate(scene, history=False), BearingLaw.of(scene.bearings)
+    assert response.outcome == "stands" and chosen["stroke"] == response.peak_base_displacement <= 0.2
+    weight = scene.total_mass * scene.gravity / scene.bearings.count
+    sizes = chosen["sizes"]
+    assert (sizes["kind"], sizes["reasons"], sizes["radius"], sizes["friction"]) == (
+        "pendulum",
+        [],  # of those that hold, one that is made
+        pytest.approx(weight / law.kb),
+        pytest.approx(law.f0 / weight),
+    )
+    got = properties(scene.bearings, scene.total_mass, 0.2)
+    assert (got.period, got.damping_equivalent) == pytest.approx((chosen["period"], chosen["damping"]), rel=1e-3)
+    words = " ".join(out.split())
+    assert "radius of curvature [m]" in words and "friction of the bearings" in words and "alpha" not in words
+    assert words.count("Not modelled: friction that depends on velocity") == 1
+    assert "# Each pendulum bearing: radius of curvature" in file.read_text()
+
+
+def test_a_pendulum_by_targets_gives_its_closed_forms(rocking):
+    targets = "--pendulum-radius 2 --pendulum-friction 0.05 --mass 1951.83 --xmax 0.2 --count 1"
+    status, out, _ = rocking("design", *targets.split())
+    force = 1951.83 * 9.81 * (0.05 + 0.2 / 2)
+    assert status == 0 and f"secant period {2 * np.pi * np.sqrt(1951.83 * 0.2 / force):.5g} s" in out
+    assert f"{2 * np.pi * np.sqrt(2 / 9.81):.4g} s with kb alone" in out and "sliding begins at 1 mm" in out
+
+
+@pytest.mark.parametrize(
+    "options, message",
+    [
+        ("--pendulum-radius 2 --mass 1000 --xmax 0.2", "--pendulum-friction is missing"),
+        ("--pendulum-radius 2 --pendulum-friction 0.05 --xmax 0.2", "--mass is missing"),
+        ("--pendulum-radius 2 --pendulum-friction 0.05 --mass 1000 --xmax 0.2 --period 2", "--period: belongs to lead"),
+        ("--pendulum-radius 0 --pendulum-friction 0.05 --mass 1000 --xmax 0.2", "--pendulum-radius = 0.0: give"),
+        ("--pendulum --period 2 --damping 0.1 --mass 1000 --xmax 0.2", "--period: belongs to lead-rubber"),
+        ("--pendulum --mass 1000", "--pendulum: belongs to a scene"),
+        ("caryatid-isolated --stroke 0.3 --pendulum-radius 2", "--pendulum-radius: a target"),
+        ("caryatid-isolated --stroke 0.3 --pendulum --ratio 20", "--ratio: belongs to lead-rubber"),
+        ("caryatid-isolated --stroke 0.001 --pendulum", "--stroke = 0.001: a pendulum slides from 0.001 m on"),
+    ],
+)
+def test_options_that_do_not_go_with_pendula_are_refused(rocking, options, message):
+    status, _, err = rocking("design", *options.split())
+    assert status == 2 and message in err
 
 
 def test_where_nothing_holds_it_says_what_comes_nearest_and_writes_nothing(rocking, tmp_path):

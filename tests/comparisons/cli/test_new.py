@@ -2,6 +2,7 @@
 
 import io
 import json
+import math
 from pathlib import Path
 
 import pytest
@@ -9,6 +10,7 @@ from made_up_records import VALUES, cosmos
 
 from analytic import load_scene
 from analytic.records import read_record
+from analytic.rocking import BearingLaw
 from comparisons.sheet.pages import PROBLEMS
 
 BUST = ("--height", "1.9", "--width", "0.55", "--material", "marble")
@@ -64,6 +66,15 @@ IMPLAUSIBLE = {
         (*ISOLATED, "--ka", "1e6", "--kb", "1e4", "--alpha", "44"),
         ("yield at 23.6 m/s2", "lifts at 2.84 m/s2", "a lower --ka"),
     ),
+    "rough pendula": (
+        (*ISOLATED, "--pendulum-radius", "2", "--pendulum-friction", "0.3"),
+        (
+            "yield at 2.94 m/s2",
+            "lifts at 2.84 m/s2",
+            "--pendulum-radius and --pendulum-friction",
+            "a lower --pendulum-fric",
+        ),
+    ),
     "a short period": (
         (*ISOLATED, "--period", "0.5", "--xmax", "0.2"),
         ("yield at 8.07 m/s2", "lifts at 2.84 m/s2", "a longer --period, a lower --damping or a smaller --xmax"),
@@ -115,6 +126,47 @@ def test_a_base_that_nothing_holds_is_asked_for_by_name(rocking, tmp_path):
 def test_no_other_block_slides_freely(rocking, tmp_path, more):
     status, _, err = rocking("new", tmp_path / "bust.toml", *more, "--slides-freely")
     assert status == 2 and err.startswith("Error: --slides-freely") and not (tmp_path / "bust.toml").exists()
+
+
+PENDULUM = (*ISOLATED, "--pendulum-radius", 2, "--pendulum-friction", 0.05)
+
+
+def test_a_pendulum_is_written_with_its_limits_and_told(rocking, tmp_path):
+    """Q = mu W and kb = W/R of the weight W on each of four; the period is that of the radius."""
+    scene, out = new(rocking, tmp_path, *PENDULUM, "--xmax", 0.2)
+    weight, law = scene.total_mass * 9.81 / 4, BearingLaw.of(scene.bearings)
+    assert scene.bearings.law == "bilinear" and scene.bearings.x_max == 0.2
+    assert (law.f0, law.kb) == pytest.approx((0.05 * weight, weight / 2), rel=1e-5)
+    assert f"{2 * math.pi * math.sqrt(2 / 9.81):.4g}" in out
+    text = (tmp_path / "bust.toml").read_text()
+    for words in ("radius of curvature 2 m, friction 0.05", "Not modelled: friction that depends on velocity"):
+        assert words in text and words in " ".join(out.split())
+    (tmp_path / "bust.toml").unlink()
+    form = json.loads(rocking("new", tmp_path / "bust.toml", *PENDULUM, "--json", "-")[1])  # without x_max, too
+    assert form["sizes"]["kind"] == "pendulum" and form["sizes"]["radius"] == pytest.approx(2.0, rel=1e-5)
+
+
+def test_new_says_that_no_such_bearing_is_made(rocking, tmp_path):
+    _, out = new(rocking, tmp_path, *DESIGN)
+    words = " ".join(out.split())
+    assert "Each lead-rubber bearing: lead core 4.5 mm, rubber 31.2 mm in diameter, 133.3 mm high" in words
+    assert "No such bearing is made: lead core 4.48 mm, below 50 mm" in words and "Assumed: lead yields at" in words
+    (tmp_path / "bust.toml").unlink()
+    assert "bearing:" not in new(rocking, tmp_path, *CONSTANTS)[1]  # without x_max the rubber is unknown
+
+
+@pytest.mark.parametrize(
+    "more, message",
+    [
+        (PENDULUM[:-2], "give the bearings' --period and --xmax, or --ka"),
+        ((*PENDULUM, "--period", 2, "--xmax", 0.2), "or --pendulum-radius and --pendulum-friction"),
+        ((*PENDULUM[:-1], -0.1), "--pendulum-friction = -0.1: give a number from"),
+        ((*BUST, *PENDULUM[-4:]), "give its mass with --base-mass"),
+    ],
+)
+def test_half_a_pendulum_is_refused(rocking, tmp_path, more, message):
+    status, _, err = rocking("new", tmp_path / "bust.toml", *more)
+    assert status == 2 and message in err and not (tmp_path / "bust.toml").exists()
 
 
 def test_new_overwrites_nothing(rocking, tmp_path):

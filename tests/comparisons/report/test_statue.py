@@ -23,6 +23,7 @@ from comparisons.report.runs import RESTITUTION, SCENES, load_scenes, make_own_r
 from comparisons.report.statue import (
     _by_record,
     _engine_sentences,
+    _sentences,
     _worst_words,
     needed_by,
     next_step,
@@ -68,6 +69,9 @@ def test_a_copy_reversed_or_free_standing_is_a_run_of_its_own(quick, tmp_path):
     statue = statue_of(scene, {})
     free = simulate(scene.with_(base=None, bearings=None), history=False)
     assert "reversed" not in statue and statue["free"]["outcome"] == free.outcome == "overturns"
+    assert statue["sizes"]["core"] == pytest.approx(4.48e-3, rel=1e-3) and statue["sizes"]["reasons"]
+    about = dict(_sentences(statue))["Bearings"]
+    assert "No such bearing is made: lead core 4.48 mm" in about and "Assumed: lead yields at 10 MPa" in about
     started = GROUND.with_(start={"tilt": 0.05})
     statue, mirrored = statue_of(started, {}), simulate(started.with_(start={"tilt": -0.05}), history=False)
     assert "free" not in statue and statue["reversed"]["outcome"] == mirrored.outcome
@@ -136,7 +140,7 @@ def test_one_that_rocks_gets_its_own_restitution_and_replaces_an_older_report(qu
     assert sum(row["impacts"] for row in result.rows) >= 8
     assert "Table 1(a)" not in page and "aryatid" not in page
     report = json.loads(form(tmp_path / PAGE).text())
-    assert report["schema"] == "rocking report 5" and len(report["results"]) == 2
+    assert report["schema"] == "rocking report 6" and len(report["results"]) == 2
     assert [(row["scene"], row["outcome"]) for row in report["rows"]] == [("bust", "stands"), ("released", "rocks")]
     make_own_results(tmp_path, {"bust": bust}, engines=[])
     assert not (tmp_path / RESTITUTION).exists()  # of a block that never rocks
