@@ -217,6 +217,7 @@ def _changes(scene, scan):
 
 
 MOTIONS = 100  # synthetic ones: more motions narrow the interval more than more draws do
+MOST_MOTIONS, MOST_SEED = 5000, 2**63 - 1  # the motions take 40 kB each
 SCALES = (0.25, 0.5, 0.75, 1.25, 1.5, 1.75, 2.0)  # of the motions, besides 1, in the figure
 FEWER = 4  # of the draws, by this factor, at each of these
 
@@ -276,11 +277,12 @@ def risk(
     compile_kernels(any(each and each.vertical for members in groups.values() for each in members))
     for scale in (1.0, *(SCALES if plot else ())):
         count = draws if scale == 1 else max(2, draws // FEWER)
-        run = {"draws": count, "spreads": sizes, "seed": seed, "scale": scale}
+        run = {"draws": count, "spreads": given, "seed": seed, "scale": scale}
         with bar(f"{loaded.name}: draws, motions times {scale:g}") as progress, named_by_options(names), in_file(scene):
             odds[scale] = draws_of.risk(loaded, [*groups.values()], **run, progress=progress)
     alone = [*groups] == [OWN]
-    responses = [_decided(loaded.with_(motion=groups[OWN][0]))] if alone else []
+    with in_file(scene):
+        responses = [_decided(loaded.with_(motion=groups[OWN][0]))] if alone else []
     rows = [] if alone else rows_of(loaded, groups, _decided)
     form = forms.Risk(
         scene=loaded.name,
@@ -315,8 +317,8 @@ def _many_motions(scene, count, records, both_signs, directions, units, seed):
         return groups, left, f"each of {len(groups)} {'motions' if OWN in groups else 'records'}"
     if count is None:
         count = MOTIONS if isinstance(scene.motion, SampledMotion) else 0
-    for name, value in (("motions", count), ("seed", seed)):
-        require(value >= 0, f"--{name} {value}: give a whole number from 0 on")
+    for name, value, most in (("motions", count, MOST_MOTIONS), ("seed", seed, MOST_SEED)):
+        require(0 <= value <= most, f"--{name} {value}: give a whole number from 0 to {most}")
     if not count:
         return {OWN: [scene.motion]}, [], OWN if scene.motion else "no motion"
     family = [synthetic_motion(seed=int(each)) for each in np.random.SeedSequence(seed).generate_state(count)]
