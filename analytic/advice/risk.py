@@ -162,17 +162,17 @@ def risk(
     longest = max((motion for motions in records for motion in motions), key=lambda motion: motion.end if motion else 0)
     check_cost(scene.with_(motion=longest, friction=None), total)  # a friction may be refused for some draws only
     states = [state for state in REACHED if state in limit_states(scene)]
-    columns = [[*SPREADS].index(name) for name in sizes]
-    scores = np.stack([_scores(seed, record, draws)[:, columns] for record in range(len(records))])
+    scores = np.stack([_scores(seed, record, draws, sizes) for record in range(len(records))])
     runs, hits, why = np.zeros(scores.shape[:2], dtype=int), np.zeros((len(states), *scores.shape[:2])), ""
-    inner = workers if len(records) == 1 else 1
 
     def run(record):
         motions = records[record]
         drawn, why = _drawn(scene.with_(motion=motions[0]), sizes, scores[record])
         for motion in motions:
             scenes = [each if motion is motions[0] else each.with_(motion=motion) for each in drawn.values()]
-            outcomes = simulate_many(scenes, scales=np.full(len(scenes), scale), workers=inner)
+            outcomes = simulate_many(
+                scenes, scales=np.full(len(scenes), scale), workers=workers if len(records) == 1 else 1
+            )
             sound = ~outcomes.failed & outcomes.decided
             places = np.array([*drawn], dtype=int)[sound]
             runs[record, places] += 1
@@ -192,10 +192,11 @@ def risk(
     return Risk(sizes, scores, runs, dict(zip(states, hits, strict=True)), why)
 
 
-def _scores(seed, record, draws):
-    """Return standard normal numbers, shape (draws, SPREADS). The raw stream is the same in all versions of numpy."""
-    raw = np.random.PCG64([seed, record]).random_raw(draws * len(SPREADS))
-    return ndtri(((raw >> np.uint64(11)) + 0.5) * 2.0**-53).reshape(draws, -1)
+def _scores(seed, record, draws, names):
+    """Return standard normal numbers, shape (draws, names). The raw stream is the same in all versions of numpy."""
+    raw = np.random.PCG64([seed, record]).random_raw(draws * len(SPREADS)).reshape(draws, -1)
+    columns = [[*SPREADS].index(name) for name in names]
+    return ndtri(((raw[:, columns] >> np.uint64(11)) + 0.5) * 2.0**-53)
 
 
 def _drawn(scene, sizes, scores):

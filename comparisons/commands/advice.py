@@ -44,7 +44,7 @@ from ..execution.command_runs import (
 )
 from ..execution.progress import bar, compile_kernels, say, spinner, stdout_to_stderr
 from ..execution.writing import check_writable
-from ..metrics.statistics import wilson
+from ..metrics.statistics import wilson_by_group
 from ..schemas import advice as forms
 from ..schemas.columns import percent
 from ..schemas.runs import MotionRun, Warned
@@ -276,10 +276,16 @@ def risk(
     groups = {record: [_scaled(loaded, each, pga, pgv) for each in members] for record, members in groups.items()}
     compile_kernels(any(each and each.vertical for members in groups.values() for each in members))
     for scale in (1.0, *(SCALES if plot else ())):
-        count = draws if scale == 1 else max(2, draws // FEWER)
-        run = {"draws": count, "spreads": given, "seed": seed, "scale": scale}
         with bar(f"{loaded.name}: draws, motions times {scale:g}") as progress, named_by_options(names), in_file(scene):
-            odds[scale] = draws_of.risk(loaded, [*groups.values()], **run, progress=progress)
+            odds[scale] = draws_of.risk(
+                loaded,
+                [*groups.values()],
+                draws=draws if scale == 1 else max(2, draws // FEWER),
+                spreads=given,
+                seed=seed,
+                scale=scale,
+                progress=progress,
+            )
     alone = [*groups] == [OWN]
     with in_file(scene):
         responses = [_decided(loaded.with_(motion=groups[OWN][0]))] if alone else []
@@ -341,14 +347,15 @@ def _scaled(scene, motion, pga, pgv):
 
 
 def _odds(result):
-    """Return the `Odds` of each limit state. The interval is Wilson's over records or, of one record, over draws."""
-    rows = []
+    """Return the `Odds` of each limit state. The interval is over records or, of one record, over draws."""
+    rows, alone = [], len(result.runs) == 1
+    known = result.runs[0] > 0 if alone else result.runs.sum(axis=1) > 0
     for state, reached in result.reached.items():
-        values = result.by_record(state) if len(reached) > 1 else reached[0] / np.maximum(result.runs[0], 1)
-        values = values[result.runs.sum(axis=1) > 0] if len(reached) > 1 else values[result.runs[0] > 0]
-        low, high = wilson(float(values.sum()), len(values))
-        effects = result.effects(state)
-        rows.append(forms.Odds(state=state, probability=float(values.mean()), low=low, high=high, effects=effects))
+        shares = (reached[0, known] / result.runs[0, known]) if alone else result.by_record(state)[known]
+        low, high = wilson_by_group(shares, 1 if alone else result.runs.shape[1])
+        rows.append(
+            forms.Odds(state=state, probability=float(shares.mean()), low=low, high=high, effects=result.effects(state))
+        )
     return rows
 
 

@@ -521,7 +521,7 @@ def print_risk(scene: Scene, risk: Risk, rows: Sequence[Mapping[str, Any]]) -> N
         f"{readable(scene.name, TITLE_CHARACTERS)}: {readable(risk.headline)}",
         "The intervals hold for this one motion; under another the odds may be quite different (--motions, --records)."
         if len(risk.records) == 1
-        else "The intervals count each record once, not each run.",
+        else "The intervals take records, not runs, as independent.",
         *(
             [f"{risk.failed} runs failed and count neither way. The first: {readable(risk.why)}."]
             if risk.failed
