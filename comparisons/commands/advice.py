@@ -216,7 +216,7 @@ def _changes(scene, scan):
     return {"reached": _reached(margin), "changes": changes, "interleaved": margin.interleaved}
 
 
-MOTIONS = 100  # synthetic ones: more motions narrow the interval more than more draws do
+MOTIONS, ALONE = 100, 1000  # synthetic motions, more of which narrow the interval most; draws under one motion
 MOST_MOTIONS, MOST_SEED = 5000, 2**63 - 1  # the motions take 40 kB each
 SCALES = (0.25, 0.5, 0.75, 1.25, 1.5, 1.75, 2.0)  # of the motions, besides 1, in the figure
 FEWER = 4  # of the draws, by this factor, at each of these
@@ -233,7 +233,14 @@ def risk(
             "repeated. The defaults are shown with the answer.",
         ),
     ] = None,
-    draws: Annotated[int, typer.Option(metavar="NUMBER", help="Draws of the values for each record.")] = draws_of.DRAWS,
+    draws: Annotated[
+        int | None,
+        typer.Option(
+            metavar="NUMBER",
+            help=f"Draws of the values for each record. Default: {draws_of.DRAWS}, or {ALONE} under the scene's own "
+            "motion alone.",
+        ),
+    ] = None,
     motions: Annotated[
         int | None,
         typer.Option(
@@ -274,6 +281,8 @@ def risk(
         sizes = draws_of.spreads_of(loaded, given)
     groups, left, under = _many_motions(loaded, motions, records, both_signs, directions, units, seed)
     groups = {record: [_scaled(loaded, each, pga, pgv) for each in members] for record, members in groups.items()}
+    alone = [*groups] == [OWN]
+    draws = draws if draws is not None else ALONE if alone else draws_of.DRAWS
     compile_kernels(any(each and each.vertical for members in groups.values() for each in members))
     for scale in (1.0, *(SCALES if plot else ())):
         with bar(f"{loaded.name}: draws, motions times {scale:g}") as progress, named_by_options(names), in_file(scene):
@@ -286,7 +295,6 @@ def risk(
                 scale=scale,
                 progress=progress,
             )
-    alone = [*groups] == [OWN]
     with in_file(scene):
         responses = [_decided(loaded.with_(motion=groups[OWN][0]))] if alone else []
     rows = [] if alone else rows_of(loaded, groups, _decided)
@@ -315,20 +323,20 @@ def risk(
 
 
 def _many_motions(scene, count, records, both_signs, directions, units, seed):
-    """Return ({record: its motions}, lines on what was left out, what they are called in a sentence)."""
+    """Return ({record: its motions}, lines on what was left out, under which motions in a sentence)."""
     require(records is None or count is None, f"--motions {count}: does not go with --records; leave one out")
     require(records is not None or not both_signs, "--both-signs: give the folder of the records with --records")
     if records is not None or directions is not None or units is not None:
         groups, left = motions_of(scene, records, both_signs, directions, units)
-        return groups, left, f"each of {len(groups)} {'motions' if OWN in groups else 'records'}"
+        return groups, left, f"under each of {len(groups)} {'motions' if OWN in groups else 'records'}"
     if count is None:
         count = MOTIONS if isinstance(scene.motion, SampledMotion) else 0
     for name, value, most in (("motions", count, MOST_MOTIONS), ("seed", seed, MOST_SEED)):
         require(0 <= value <= most, f"--{name} {value}: give a whole number from 0 to {most}")
     if not count:
-        return {OWN: [scene.motion]}, [], OWN if scene.motion else "no motion"
+        return {OWN: [scene.motion]}, [], f"under {OWN}" if scene.motion else "without a motion"
     family = [synthetic_motion(seed=int(each)) for each in np.random.SeedSequence(seed).generate_state(count)]
-    return {motion.label: [motion] for motion in family}, [], f"each of {count} synthetic motions"
+    return {motion.label: [motion] for motion in family}, [], f"under each of {count} synthetic motions"
 
 
 def _scaled(scene, motion, pga, pgv):

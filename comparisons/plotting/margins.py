@@ -485,14 +485,14 @@ MOST_RECORDS = 5  # shown
 
 
 def risk_headline(odds: Sequence[Odds], under: str, draws: int, pga: float | None, pgv: float | None) -> str:
-    """Return the odds in sentences, the gravest first. under: what the motions are called. pga [g], pgv [m/s]."""
+    """Return the odds in sentences, the gravest first. under: which motions. pga [g], pgv [m/s]."""
     scaled = f", scaled to {pga:g} g" if pga else f", scaled to {pgv:g} m/s" if pgv else ""
     shares = [
         f"{ODDS[each.state][1]} in {percent(each.probability)} "
         f"({number(100 * each.low, 2)} to {percent(each.high)} at 95 %)"
         for each in odds
     ]
-    sentences = [f"{shares[0]} of {draws} draws of its values under {under}{scaled}", *shares[1:]]
+    sentences = [f"{shares[0]} of {draws} draws of its values {under}{scaled}", *shares[1:]]
     if any(each.state == "stroke" and each.probability > 0 for each in odds):
         sentences.append("beyond x_max bearings may tear or hit a stop, and the other odds do not hold")
     return " ".join(f"{words[0].upper()}{words[1:]}." for words in sentences)
@@ -509,7 +509,10 @@ def print_risk(scene: Scene, risk: Risk, rows: Sequence[Mapping[str, Any]]) -> N
             each.quantity,
             f"{each.value:.4g} {each.unit}".removesuffix(" -"),
             percent(each.spread),
-            *(_effect_text(*odds.effects[each.quantity]) for odds in risk.odds),
+            *(
+                f"{100 * change:+.2g}" if abs(change) > noise else "."
+                for change, noise in (odds.effects[each.quantity] for odds in risk.odds)
+            ),
         ]
         for each in risk.drawn
     ]
@@ -519,28 +522,22 @@ def print_risk(scene: Scene, risk: Risk, rows: Sequence[Mapping[str, Any]]) -> N
     records = [[readable(name), *map(percent, shares.values())] for name, shares in worst]
     parts: list[Grid | str] = [
         f"{readable(scene.name, TITLE_CHARACTERS)}: {readable(risk.headline)}",
-        "The intervals hold for this one motion; under another the odds may be quite different (--motions, --records)."
+        "The intervals are over draws alone: under other motions odds may be quite different (--motions, --records)."
         if len(risk.records) == 1
         else "The intervals take records, not runs, as independent.",
-        *(
-            [f"{risk.failed} runs failed and count neither way. The first: {readable(risk.why)}."]
-            if risk.failed
-            else []
-        ),
+        f"Runs that failed, and count neither way: {risk.failed}. The first: {readable(risk.why)}."
+        if risk.failed
+        else "",
         *(f"Warning: {readable(warning.text)}" for warning in risk.warnings),
         *motion_warnings(rows),
         grid(["drawn", "value", "spread", *names], quantities) if quantities else "",
         "Columns: change of the odds, in percentage points, if the value is higher by one spread; a dot: within noise.",
         *map(_most_important, risk.odds),
         *(f"Spread of {each.quantity}: {each.source}." for each in risk.drawn),
-        grid(["record", *names], records, wraps=["record"]),
+        grid(["record", *names], records, wraps=["record"]) if len(risk.records) > 1 else "",
         f"{len(risk.records) - len(records)} more records are in --json." if len(risk.records) > len(records) else "",
     ]
     echo(*(part for part in parts if part), wrap=True)
-
-
-def _effect_text(change, noise):
-    return f"{100 * change:+.2g}" if abs(change) > noise else "."
 
 
 def _most_important(odds):

@@ -11,13 +11,15 @@ from dataclasses import replace
 from functools import cache, partial
 from importlib import import_module
 
+import numpy as np
 import pytest
 from answered import Here
 from jsonschema.validators import validator_for
 from lying_engine import FAULTS, LIES, SHARE, liars
 from roads import KINDS, REFUSED, write_records
+from scipy.integrate import cumulative_trapezoid
 
-from analytic import Base, Bearings, load_scene, simulate
+from analytic import Base, Bearings, load_scene, simulate, synthetic_motion
 from analytic.advice import bearing_scan, margins
 from analytic.response import DIFFERENCES, JUDGED, Difference, Failure
 from analytic.rocking import properties, restitution
@@ -303,6 +305,24 @@ def test_risk_under_one_motion(road, kind):
     assert set(by_state.values()) <= {0.0, 1.0}
 
 
+def test_risk_draws_a_thousand_times_under_one_motion(road):
+    status, answer, out, _ = road("risk", "stands")
+    assert status == 0 and answer["draws"] == 1000 and [*answer["records"]] == [OWN] and answer["motions"] == []
+    assert "of 1000 draws of its values under the scene's own motion" in out
+
+
+def test_risk_under_synthetic_motions_of_a_seed(road, monkeypatch):
+    monkeypatch.setattr(margin, "MOTIONS", 3)
+    words = ("risk", "record", "--draws", 3, "--pgv", 0.3)
+    (_, first, out, _), (_, again, _, _), (_, other, _, _) = (road(*words, "--seed", seed) for seed in (4, 4, 5))
+    assert first == again and len(first["records"]) == 3 and not set(first["records"]) & set(other["records"])
+    assert "under each of 3 synthetic motions, scaled to 0.3 m/s" in out
+    for row in first["motions"]:
+        motion = synthetic_motion(seed=int(row["motion"].split()[-1]))
+        velocity = np.abs(cumulative_trapezoid(motion.samples, dx=motion.dt)).max()
+        assert row["peak"] == pytest.approx(0.3 / velocity * motion.peak, rel=1e-9)
+
+
 def drawn_in(kind):
     """The quantities that are drawn of a kind of scene."""
     text = KINDS[kind][0]
@@ -314,7 +334,7 @@ def drawn_in(kind):
 
 def odds_are_told(answer, out):
     """Their sentences are printed; an interval holds its probability; failed runs are counted."""
-    assert shown(answer["headline"], out) and (f"{answer['failed']} runs failed" in out) == bool(answer["failed"])
+    assert shown(answer["headline"], out) and (f"way: {answer['failed']}." in out) == bool(answer["failed"])
     assert all(0 <= each["low"] <= each["probability"] <= each["high"] <= 1 for each in answer["odds"])
     states = [each["state"] for each in answer["odds"]]
     assert all(list(shares) == states for shares in answer["records"].values())
