@@ -47,7 +47,7 @@ class Spread:
 SPREADS = {
     "slenderness": Spread(0.03, "assumed: the centre of mass and the worn edges of a statue are not known better"),
     "restitution": Spread(
-        0.03, "assumed; tests on concrete gave 0.95 to 0.97 of eq. (7) (ElGawady, Butterworth and Ingham 2006)"
+        0.03, "assumed; tests on concrete gave 0.95 to 0.97 of eq. (7) (ElGawady et al., doi:10.1201/9781003060888-45)"
     ),
     "friction": Spread(0.15, "assumed: a coefficient that was estimated, not measured"),
     "ka": Spread(
@@ -180,7 +180,7 @@ def risk(
             why = why or next(map(why_it_fails, compress(scenes, ~sound)), "")
         return why
 
-    # Records in parallel, as drawing a scene takes a fifth of its run and would keep the other threads waiting.
+    # Records in parallel: drawing scenes takes a fifth of the time, for which the threads of a batch would wait.
     with ThreadPoolExecutor(workers or os.cpu_count()) as pool:
         for record, reason in enumerate(pool.map(run, range(len(records)))):
             why = why or reason

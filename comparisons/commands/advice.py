@@ -285,7 +285,11 @@ def risk(
     draws = draws if draws is not None else ALONE if alone else draws_of.DRAWS
     compile_kernels(any(each and each.vertical for members in groups.values() for each in members))
     for scale in (1.0, *(SCALES if plot else ())):
-        with bar(f"{loaded.name}: draws, motions times {scale:g}") as progress, named_by_options(names), in_file(scene):
+        with (
+            bar(f"{loaded.name}: draws{f', motions times {scale:g}' if plot else ''}") as progress,
+            named_by_options(names),
+            in_file(scene),
+        ):
             odds[scale] = draws_of.risk(
                 loaded,
                 [*groups.values()],

@@ -531,11 +531,13 @@ def print_risk(scene: Scene, risk: Risk, rows: Sequence[Mapping[str, Any]]) -> N
         *(f"Warning: {readable(warning.text)}" for warning in risk.warnings),
         *motion_warnings(rows),
         grid(["drawn", "value", "spread", *names], quantities) if quantities else "",
-        "Columns: change of the odds, in percentage points, if the value is higher by one spread; a dot: within noise.",
+        "Columns: change of the odds, in percentage points, if the value is higher by one spread; a dot: within noise."
+        if quantities
+        else "",
         *map(_most_important, risk.odds),
         *(f"Spread of {each.quantity}: {each.source}." for each in risk.drawn),
         grid(["record", *names], records, wraps=["record"]) if len(risk.records) > 1 else "",
-        f"{len(risk.records) - len(records)} more records are in --json." if len(risk.records) > len(records) else "",
+        f"Further records, in --json: {len(risk.records) - len(records)}." if len(risk.records) > len(records) else "",
     ]
     echo(*(part for part in parts if part), wrap=True)
 
