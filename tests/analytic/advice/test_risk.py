@@ -76,7 +76,7 @@ def test_the_odds_converge_with_the_root_of_the_draws():
     """The boundary in slenderness is known, and so is the scatter of the estimate from seed to seed."""
     spreads = {"slenderness": COV, "restitution": 0.0}
     wanted, seeds = below(math.atan(LEVEL / G), GAMMA), range(40)
-    for draws in (50, 450):
+    for draws in (25, 225):
         shares = [
             risk(GROUND, [[constant(LEVEL)]], draws=draws, spreads=spreads, seed=seed).by_record("lifts")[0]
             for seed in seeds
