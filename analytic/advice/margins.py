@@ -370,17 +370,17 @@ def _scanned(scene, name, changes, tilt, workers):
     states, failed = _states(scene, name, changes, scenes, tilt, workers)
     if failed[changes == 0].any():
         raise SceneError(
-            name, None, f"the analytic model fails on the scene as it is: {_why(scene)}", "change the scene"
+            name, None, f"the analytic model fails on the scene as it is: {why_it_fails(scene)}", "change the scene"
         )
     beyond = np.flatnonzero(failed)
     first = max(beyond[changes[beyond] < 0], default=-1)
     last = min(beyond[changes[beyond] > 0], default=len(changes))
-    ends |= {"ends_down": _why(scenes[first])} if first >= 0 else {}
-    ends |= {"ends_up": _why(scenes[last])} if last < len(changes) else {}
+    ends |= {"ends_down": why_it_fails(scenes[first])} if first >= 0 else {}
+    ends |= {"ends_up": why_it_fails(scenes[last])} if last < len(changes) else {}
     return changes[first + 1 : last], states[first + 1 : last], ends
 
 
-def _why(scene):
+def why_it_fails(scene: Scene) -> str:
     """Return why a scene cannot be run."""
     try:
         response = simulate(scene, history=False)

@@ -47,7 +47,7 @@ TIME_LIMIT = 300.0  # s, of one run
 TIME_LIMIT_HELP = "End a run that takes longer; it counts as failed."
 
 
-def parse_settings(pairs: Iterable[str]) -> dict[str, Any]:
+def parse_settings(pairs: Iterable[str], option: str = "--set") -> dict[str, Any]:
     """Parse ``["step=1e-4"]`` into ``{"step": 0.0001}``. Values are JSON; anything else is text.
 
     Raises
@@ -59,7 +59,7 @@ def parse_settings(pairs: Iterable[str]) -> dict[str, Any]:
     for pair in pairs:
         name, equals, text = pair.partition("=")
         if not (equals and name):
-            raise SettingError(f"--set {pair}: write name=value")
+            raise SettingError(f"{option} {pair}: write name=value")
         name = name.strip()
         try:
             settings[name] = json.loads(text)

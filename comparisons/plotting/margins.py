@@ -1,4 +1,4 @@
-"""Margins of a scene, its outcomes under many motions, and bearings for it: tables and pictures."""
+"""Margins of a scene, its outcomes under many motions, its odds, and bearings for it: tables and pictures."""
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -18,6 +18,7 @@ from analytic.response import KINDS
 from ..execution.command_runs import OWN
 from ..execution.writing import readable
 from ..metrics.statistics import wilson
+from ..schemas.advice import Odds, Risk
 from ..schemas.columns import number, percent
 from .plots import TITLE_CHARACTERS
 from .terminal import Grid, digits, echo, grid, warned
@@ -478,3 +479,100 @@ def _aim(scene, stroke, tilt):
     limit = "no uplift" if tilt == 0 else f"tilt up to {tilt:g} of the slenderness"
     limit += "" if scene.friction is None else f" and no slip at friction {scene.friction:g}"
     return f"bearings for {limit} within {stroke:g} m"
+
+
+# {limit state: (its name in tables, its clause in sentences, its colour)}
+ODDS = {
+    "overturns": ("overturns", "the block overturns", COLOURS["overturns"][0]),
+    "stroke": ("base > x_max", "the base exceeds x_max", STROKE[0]),
+    "lifts": ("lifts", "the block lifts", OUTSIDE[0]),
+    "slides": ("slides", "the block slides", COLOURS["slides"][0]),
+}
+MOST_RECORDS = 5  # shown
+
+
+def risk_headline(odds: Sequence[Odds], under: str, draws: int, pga: float | None, pgv: float | None) -> str:
+    """Return the odds in sentences, the gravest first. under: which motions. pga [g], pgv [m/s]."""
+    scaled = f", scaled to {pga:g} g" if pga else f", scaled to {pgv:g} m/s" if pgv else ""
+    shares = [
+        f"{ODDS[each.state][1]} in {percent(each.probability)} "
+        f"({number(100 * each.low, 2)} to {percent(each.high)} at 95 %)"
+        for each in odds
+    ]
+    sentences = [f"{shares[0]} of {draws} draws of its values {under}{scaled}", *shares[1:]]
+    if any(each.state == "stroke" and each.probability > 0 for each in odds):
+        sentences.append("beyond x_max bearings may tear or hit a stop, and the other odds do not hold")
+    return " ".join(f"{words[0].upper()}{words[1:]}." for words in sentences)
+
+
+def print_risk(scene: Scene, risk: Risk, rows: Sequence[Mapping[str, Any]]) -> None:
+    """Print the answer, warnings, the spreads with their effects and sources, and the records of the largest odds.
+
+    rows : of `execution.command_runs.rows_of`, the unchanged scene under each motion.
+    """
+    names = [ODDS[each.state][0] for each in risk.odds]
+    quantities = [
+        [
+            each.quantity,
+            f"{each.value:.4g} {each.unit}".removesuffix(" -"),
+            percent(each.spread),
+            *(
+                f"{100 * change:+.2g}" if abs(change) > noise else "."
+                for change, noise in (odds.effects[each.quantity] for odds in risk.odds)
+            ),
+        ]
+        for each in risk.drawn
+    ]
+    worst = sorted(risk.records.items(), key=lambda item: [-(item[1][each.state] or 0) for each in risk.odds])[
+        :MOST_RECORDS
+    ]
+    records = [[readable(name), *map(percent, shares.values())] for name, shares in worst]
+    parts: list[Grid | str] = [
+        f"{readable(scene.name, TITLE_CHARACTERS)}: {readable(risk.headline)}",
+        "The intervals are over draws alone: under other motions odds may be quite different (--motions, --records)."
+        if len(risk.records) == 1
+        else "The intervals take records, not runs, as independent.",
+        f"Runs that failed, and count neither way: {risk.failed}. The first: {readable(risk.why)}."
+        if risk.failed
+        else "",
+        *(f"Warning: {readable(warning.text)}" for warning in risk.warnings),
+        *motion_warnings(rows),
+        grid(["drawn", "value", "spread", *names], quantities) if quantities else "",
+        "Columns: change of the odds, in percentage points, if the value is higher by one spread; a dot: within noise."
+        if quantities
+        else "",
+        *map(_most_important, risk.odds),
+        *(f"Spread of {each.quantity}: {each.source}." for each in risk.drawn),
+        grid(["record", *names], records, wraps=["record"]) if len(risk.records) > 1 else "",
+        f"Further records, in --json: {len(risk.records) - len(records)}." if len(risk.records) > len(records) else "",
+    ]
+    echo(*(part for part in parts if part), wrap=True)
+
+
+def _most_important(odds):
+    """Return a sentence on the quantity on which a limit state depends most; "" where its odds are 0 or 1."""
+    changes = {name: abs(change) for name, (change, noise) in odds.effects.items() if abs(change) > noise}
+    clause = f"Whether {ODDS[odds.state][1]} depends"
+    if changes:
+        return f"{clause} most on {max(changes, key=changes.__getitem__)}."
+    noise = max((noise for _, noise in odds.effects.values()), default=0.0)
+    return f"{clause} on no value beyond the noise of {100 * noise:.2g} points." if noise else ""
+
+
+def draw_odds(risk: Risk) -> Figure:
+    """Draw the probability of each limit state, with its interval, over the scale of the motions."""
+    figure = Figure(figsize=(7, 4.2), layout="constrained")
+    axis = figure.subplots()
+    at = [(risk.pga or risk.pgv or 1.0) * scale for scale in risk.intensities]
+    for index, first in enumerate(risk.odds):
+        name, _, colour = ODDS[first.state]
+        rows = [odds[index] for odds in risk.intensities.values()]
+        axis.plot(at, [100 * each.probability for each in rows], "o-", color=colour, label=name)
+        axis.fill_between(
+            at, [100 * each.low for each in rows], [100 * each.high for each in rows], color=colour, alpha=0.2
+        )
+    axis.set(ylim=(0, 100), ylabel="probability, and its 95 % interval [%]")
+    axis.set_xlabel("PGA [g]" if risk.pga else "PGV [m/s]" if risk.pgv else "scale of the motions [-]")
+    axis.set_title(readable(risk.scene, TITLE_CHARACTERS), loc="left")
+    figure.legend(loc="outside lower center", ncols=len(ODDS), frameon=False)
+    return figure

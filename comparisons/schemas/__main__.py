@@ -5,11 +5,14 @@ from pathlib import Path
 from typing import Any
 
 from . import schema_of
-from .advice import BearingSearch, Choice, Design, Margins
+from .advice import BearingSearch, Choice, Design, Margins, Risk
 from .runs import Comparison, New, Record, Report, Run, Sheet, StudyResult, Verification
 
 FOLDER = Path(__file__).parent
-FORMS = (Choice, Comparison, Design, Margins, New, Record, Report, Run, Sheet, StudyResult, BearingSearch, Verification)
+FORMS = (
+    *(Choice, Comparison, Design, Margins, New, Record, Report, Risk, Run, Sheet, StudyResult),
+    *(BearingSearch, Verification),
+)
 
 
 def schemas() -> dict[str, dict[str, Any]]:

@@ -1,4 +1,4 @@
-"""Types of what `rocking choose`, `rocking margin` and `rocking design` write."""
+"""Types of what `rocking choose`, `rocking margin`, `rocking risk` and `rocking design` write."""
 
 from collections.abc import Sequence
 from typing import Any, Literal, Self
@@ -97,6 +97,55 @@ class Margins(Form):
     motions: list[MotionMargin]
     left_out: list[str] = Field(description="files and channels of the folder, and why")
     headline: str | None
+
+
+class Drawn(Part):
+    """A quantity that is drawn about its value in the scene."""
+
+    quantity: str
+    value: float = Field(description="in the scene")
+    unit: str
+    spread: float = Field(description="coefficient of variation")
+    source: str = Field(description='of the spread; "given" if an option states it')
+
+
+class Odds(Part):
+    """The probability of a limit state, the mean over records, and its 95 % interval.
+
+    effects: for each quantity drawn, the change of the probability for a value higher by one spread, and its noise; a
+    smaller change may be chance."""
+
+    state: LimitState
+    probability: float
+    low: float
+    high: float
+    effects: dict[str, tuple[float, float]]
+
+
+class Risk(Form):
+    """The odds of a scene whose values are drawn, under many motions.
+
+    draws: for each record. pga [g], pgv [m/s]: to which each motion is scaled; null if it is not. records: {record:
+    {limit state: its probability}}, null where all runs failed; the interval counts records or, of one, draws. failed:
+    runs that count neither way. why: the reason of the first, or "". intensities: {scale of the motions: odds}, as
+    --plot draws them. warnings: of the unchanged scene. motions: what it does under each, if they are several."""
+
+    schema_: str = Field(default="rocking risk 1", serialization_alias="schema")
+    scene: str
+    draws: int
+    seed: int
+    pga: float | None
+    pgv: float | None
+    drawn: list[Drawn]
+    odds: list[Odds]
+    records: dict[str, dict[LimitState, float | None]]
+    failed: int
+    why: str
+    intensities: dict[float, list[Odds]]
+    warnings: list[Warned]
+    motions: list[MotionRun]
+    left_out: list[str] = Field(description="files and channels of the folder, and why")
+    headline: str
 
 
 def _constant(name: str, given: FieldInfo) -> tuple[Any, Any]:

@@ -28,8 +28,10 @@ from made_up_records import knet_csv
 from pytest import approx
 from roads import BASE, BEARINGS, KINDS, LINEAR, G, pulse, scene, start
 from scipy.optimize import brentq
+from scipy.stats import norm
+from scipy.stats import t as student
 
-from analytic import Caution, load_scene, read_record, simulate
+from analytic import Caution, SceneError, load_scene, read_record, simulate
 from analytic.advice import margins
 from analytic.advice.bearing_scan import scan_bearings
 from analytic.rocking import design_bearings
@@ -68,6 +70,7 @@ SCENES = {
     "quiet.toml": "friction = 0.3\n" + KINDS["quiet on bearings"][0],
     "past.toml": scene(LINEAR, pulse(0.1), more=start(0.26)),
     "near.toml": KINDS["a copy is refused"][0],
+    "rough.toml": KINDS["free-standing it is refused"][0],
     "bears.toml": scene(LINEAR + "x_max = 0.02\n", pulse(4.0, 9.0)),
 }
 MANY = ("--records", "records")  # of which one is there: two horizontal components and a vertical one, cut off
@@ -405,6 +408,97 @@ def changed(ask):
     yield "Margins", documents["flies"], {"margins": {"of": 4, 0: left}}
     failed = {"outcome": "failed", "failure": re.compile(REFUSED).fullmatch, "reached": [], "changes": {}}
     yield "Margins", ask("margin", "refused.toml", *MANY), {"motions": {"of": 3, 2: failed}}
+
+
+def risked(ask):
+    """Friction drawn about the acceleration at which a block slides; draws that are refused; scaled motions."""
+    raw = np.random.PCG64([5, 0]).random_raw(200).reshape(40, 5)[:, 2]  # friction is the third quantity
+    score = norm.ppf(((raw >> np.uint64(11)) + 0.5) / 2**53)
+    drawn = 0.15 * np.exp(math.sqrt(math.log1p(0.15**2)) * score)
+    quantile = float(student.ppf(0.975, 39))
+
+    def odds(peak):
+        slides = drawn < peak / G
+        share, product = slides.mean(), 40 / 39 * score * (slides - slides.mean())
+        middle, spread = share + quantile**2 / 80, quantile * math.sqrt(share * (1 - share) / 40 + (quantile / 80) ** 2)
+        low, high = (float(middle + side * spread) / (1 + quantile**2 / 40) for side in (-1, 1))
+        effect = [float(product.mean()), float(3 * product.std() / math.sqrt(40))]
+        known = {"state": "slides", "probability": float(share), "low": approx(max(low, 0.0), abs=1e-12), "high": high}
+        none = {"probability": 0.0, "low": 0.0, "high": quantile**2 / (40 + quantile**2)}
+        still = {name: [0.0, 0.0] for name in ("slenderness", "friction")}
+        return [
+            {"state": "overturns", **none, "effects": still},
+            {"state": "lifts", **none, "effects": still},
+            {**known, "effects": lambda effects: agrees(effects.get("friction"), effect)},
+        ]
+
+    share = float((drawn < 1.6 / G).mean())
+    yield (
+        "Risk",
+        ask("risk", "creeps.toml", "--draws", 40, "--seed", 5, "--spread", "friction=0.15"),
+        {
+            "schema": "rocking risk 1",
+            "scene": "creeps",
+            "draws": 40,
+            "seed": 5,
+            "drawn": {
+                "of": 2,
+                0: {"quantity": "slenderness", "value": 0.25, "unit": "rad", "spread": 0.03},
+                1: {"quantity": "friction", "value": 0.15, "unit": "-", "spread": 0.15, "source": "given"},
+            },
+            "odds": odds(1.6),
+            "records": {"the scene's own motion": {"overturns": 0.0, "lifts": 0.0, "slides": share}},
+            "failed": 0,
+            "why": "",
+            "headline": re.compile(
+                r"The block overturns in 0 % \(0 to 9\.3 % at 95 %\) of 40 draws of its values under the scene's own "
+                rf"motion\. The block lifts in 0 % .* The block slides in {100 * share:.0f} % \([\d.]+ to [\d.]+ % at "
+                r"95 %\)\."
+            ).fullmatch,
+        },
+    )
+    scales = [0.25, 0.5, 0.75, 1.25, 1.5, 1.75, 2.0]  # with a quarter of the draws
+    plotted = ask("risk", "creeps.toml", "--draws", 160, "--seed", 5, "--plot", "odds.svg")
+    yield "Risk", plotted, {"intensities": {"1.0": {"of": 3}, **{str(scale): odds(1.6 * scale) for scale in scales}}}
+    raw = np.random.PCG64([0, 0]).random_raw(150).reshape(30, 5)[:, 2]
+    reasons = []
+    for score in norm.ppf(((raw >> np.uint64(11)) + 0.5) / 2**53):
+        rough = {"friction": 0.185 * math.exp(math.sqrt(math.log1p(0.3**2)) * score)}
+        try:
+            simulate(load_scene("rough.toml").with_(**rough, duration=None), history=False)
+        except SceneError as error:
+            reasons.append(f"friction = {error.value:.5g}: {error.problem}")
+    spreads = [word for each in ("slenderness=0", "ka=0", "friction=0.3") for word in ("--spread", each)]
+    yield ("Risk", ask("risk", "rough.toml", "--draws", 30, *spreads), {"failed": len(reasons), "why": reasons[0]})
+    past = {"of": 1, 0: {"kind": "limit", "text": PAST}}
+    yield "Risk", ask("risk", "near.toml", "--draws", 2), {"warnings": past}
+    what, peak = load_scene("yields.toml"), 0.1 * G
+    document = ask("risk", "yields.toml", *MANY, "--draws", 2, "--pga", 0.1)
+    rows = []
+    for row, motion in zip(under(what, "one-sine pulse, 3.5 m/s2, 9 rad/s"), motions_of(what), strict=True):
+        scaled = motion.scaled(peak / motion.peak)
+        run = simulate(what.with_(motion=scaled, duration=None), history=False)
+        peaks = {"tilt": run.peak_tilt_ratio, "stroke": run.peak_base_displacement, "slip": None}
+        rows.append({**row, **peaks, "motion": scaled.label, "peak": peak, "outcome": run.outcome})
+        rows[-1]["warnings"] = [Caution("record", CUT)] * (row["record"] == "quake.csv") + [
+            warning for warning in run.warnings if warning.kind != "record"
+        ]
+    yield (
+        "Risk",
+        document,
+        {
+            "pga": 0.1,
+            "drawn": {"of": 4, 3: {"quantity": "kb", "source": "as that of ka"}},
+            "motions": rows,
+            "left_out": LEFT_OUT,
+        },
+    )
+    yield "Risk", ask("risk", "bears.toml", "--motions", 2, "--draws", 2, "--pgv", 0.5), {"pgv": 0.5}
+
+
+def motions_of(what):
+    """The motion of a scene, and the two of the record."""
+    return [what.motion, *(read_record("records/quake.csv", channel=at) for at in (1, 2))]
 
 
 def designed(ask):
@@ -858,7 +952,7 @@ def studied(ask):
     )
 
 
-DOCUMENTS = (runs, compared, changed, designed, searched, chosen, reported, verified, sheet_written, studied)
+DOCUMENTS = (runs, compared, changed, risked, designed, searched, chosen, reported, verified, sheet_written, studied)
 EMPTY = (None, "", [], {})  # what shows nothing of a field
 
 

@@ -27,6 +27,7 @@ BASES = {
     "compare": (("compare", "rigid.toml", "--engine", "exudyn"),),
     "choose": (("choose", "rigid.toml", "--engine", "exudyn"),),
     "margin": (("margin", "rigid.toml"),),
+    "risk": (("risk", "rigid.toml"),),
     "record": (("record", "own.csv"), ("record", "plain.txt", "--units", "g")),
     "report": (("report", "rigid.toml"), ("report", "--record", "own.csv")),
     "verify": (("verify", "--engine", "exudyn"),),
@@ -102,6 +103,19 @@ MISTAKES = {
     "design caryatid-isolated --stroke 0.2 --directions 3": "--records",
     "design caryatid-rigid --stroke 0.2": "--base-mass is missing: in caryatid-rigid the block stands on the ground",
     "design caryatid-rigid --stroke 0.2 --base-mass -1": "--base-mass = -1.0: out of range",
+    "risk caryatid-rigid --directions 3": "--records",
+    "risk caryatid-rigid --both-signs": "--both-signs: give the folder of the records with --records",
+    "risk caryatid-rigid --motions 3 --records records": "--motions 3: does not go with --records; leave one out",
+    "risk caryatid-rigid --motions -1": "--motions -1: give a whole number from 0 to 5000",
+    "risk caryatid-rigid --seed -1": "--seed -1: give a whole number from 0 to 9223372036854775807",
+    "risk caryatid-rigid --draws 1": "--draws = 1: give at least 2",
+    "risk caryatid-rigid --spread slenderness": "--spread slenderness: write name=value",
+    "risk caryatid-rigid --spread mass=0.1": "--spread = mass=0.1: nothing that is drawn for this scene; choose",
+    "risk caryatid-rigid --spread ka=0.1": "--spread = ka=0.1: nothing that is drawn for this scene; choose",
+    "risk caryatid-rigid --spread slenderness=3": "give a coefficient of variation from 0 to 0.5",
+    "risk caryatid-rigid --pga 0": "--pga 0: give a peak above 0, in g",
+    "risk caryatid-rigid --pga 0.3 --pgv 0.5": "--pgv 0.5: does not go with --pga; leave one out",
+    "risk free-rocking-rigid --pga 0.3": "--pga 0.3: there is no motion to scale; give --motions or --records",
     "design caryatid-rigid --stroke 0.2 --base-mass nan": "--base-mass",
     "design caryatid-isolated --stroke 0.2 --base-mass 400": "--base-mass 400: caryatid-isolated has a base, of 212 kg",
     "design caryatid-isolated --stroke -1": "--stroke = -1.0: give metres above 0",
@@ -140,6 +154,7 @@ MISTAKES = {
 }
 READERS = (
     *(("run", "FILE"), ("compare", "FILE"), ("choose", "FILE"), ("margin", "FILE"), ("report", "FILE")),
+    ("risk", "FILE"),
     *(("record", "FILE"), ("report", "--record", "FILE"), (*BUST, "--record", "FILE")),
     *(("study", "restitution", "--replot", "FILE"), ("study", "fragility", "--replot", "FILE")),
 )
@@ -182,6 +197,7 @@ def place(tmp_path, monkeypatch):
         "comparisons.advice.choose.choose",
         "comparisons.metrics.errors.solver_horizon",
         "analytic.advice.margins.margins",
+        "analytic.advice.risk.check_cost",
     ):
         monkeypatch.setattr(work, _cut_short)
     return tmp_path

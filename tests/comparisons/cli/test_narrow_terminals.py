@@ -21,6 +21,7 @@ COMMANDS = {
     "run, sliding": ("run", "slides.toml"),
     "compare, sliding": ("compare", "slides.toml", "--engine", "exudyn", "--engine", "pybullet"),
     "margin": ("margin", "bronze.toml", "--records", "records"),
+    "risk": ("risk", "bust.toml", "--records", "records", "--draws", "2"),
     "design": ("design", "bust.toml", "--stroke", "0.25"),
     "choose": ("choose", "bronze.toml", "--engine", "exudyn", "--all"),
     "engines": ("engines",),

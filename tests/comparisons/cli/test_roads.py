@@ -11,13 +11,15 @@ from dataclasses import replace
 from functools import cache, partial
 from importlib import import_module
 
+import numpy as np
 import pytest
 from answered import Here
 from jsonschema.validators import validator_for
 from lying_engine import FAULTS, LIES, SHARE, liars
 from roads import KINDS, REFUSED, write_records
+from scipy.integrate import cumulative_trapezoid
 
-from analytic import Base, Bearings, load_scene, simulate
+from analytic import Base, Bearings, load_scene, simulate, synthetic_motion
 from analytic.advice import bearing_scan, margins
 from analytic.response import DIFFERENCES, JUDGED, Difference, Failure
 from analytic.rocking import properties, restitution
@@ -276,6 +278,68 @@ def test_margin(road, kind):
     motions_are_told(answer, out, counted(kind))
 
 
+@pytest.mark.parametrize("kind", half(0))
+def test_risk(road, kind):
+    """Each limit state has odds, each record and failed run is counted, and a single motion is the scene's own."""
+    status, answer, out, _ = road("risk", kind, "--records", "records", "--units", "m/s2", "--draws", 2)
+    assert status == some_failed(answer["motions"])
+    rows = answer["motions"]
+    assert {row["record"] for row in rows} == set(answer["records"]) and len(answer["records"]) == counted(kind)
+    all_is_told([warning for row in rows for warning in row["warnings"]] + answer["warnings"], out)
+    odds_are_told(answer, out)
+    assert [line.partition(":")[0] for line in answer["left_out"]] == LEFT_OUT
+
+
+@pytest.mark.parametrize("kind", half(1))
+def test_risk_under_one_motion(road, kind):
+    """With nothing drawn, the odds are those of the scene as it is: 0 or 1."""
+    nothing = [f"--spread={name}=0" for name in drawn_in(kind)]
+    status, answer, out, _ = road("risk", kind, "--motions", 0, "--draws", 2, *nothing)
+    assert status == 0 and answer["drawn"] == [] and answer["motions"] == [] and answer["failed"] == 0
+    all_is_told(answer["warnings"], out)
+    odds_are_told(answer, out)
+    by_state = {each["state"]: each["probability"] for each in answer["odds"]}
+    outcome = simulate(load_scene("scene.toml").with_(duration=None), history=False).outcome
+    assert by_state["overturns"] == (outcome == "overturns")
+    assert by_state["lifts"] == (outcome in ("rocks", "overturns"))
+    assert set(by_state.values()) <= {0.0, 1.0}
+
+
+def test_risk_draws_a_thousand_times_under_one_motion(road):
+    status, answer, out, _ = road("risk", "stands")
+    assert status == 0 and answer["draws"] == 1000 and [*answer["records"]] == [OWN] and answer["motions"] == []
+    assert "of 1000 draws of its values under the scene's own motion" in out
+
+
+def test_risk_under_synthetic_motions_of_a_seed(road, monkeypatch):
+    monkeypatch.setattr(margin, "MOTIONS", 3)
+    words = ("risk", "record", "--draws", 3, "--pgv", 0.3)
+    (_, first, out, _), (_, again, _, _), (_, other, _, _) = (road(*words, "--seed", seed) for seed in (4, 4, 5))
+    assert first == again and len(first["records"]) == 3 and not set(first["records"]) & set(other["records"])
+    assert "under each of 3 synthetic motions, scaled to 0.3 m/s" in out
+    for row in first["motions"]:
+        motion = synthetic_motion(seed=int(row["motion"].split()[-1]))
+        velocity = np.abs(cumulative_trapezoid(motion.samples, dx=motion.dt)).max()
+        assert row["peak"] == pytest.approx(0.3 / velocity * motion.peak, rel=1e-9)
+
+
+def drawn_in(kind):
+    """The quantities that are drawn of a kind of scene."""
+    text = KINDS[kind][0]
+    yield "slenderness"
+    if "friction" not in text or "restitution" in text:
+        yield "restitution"
+    yield from (name for name in ("friction", "ka", "kb") if f"{name} = " in text)
+
+
+def odds_are_told(answer, out):
+    """Their sentences are printed; an interval holds its probability; failed runs are counted."""
+    assert shown(answer["headline"], out) and (f"way: {answer['failed']}." in out) == bool(answer["failed"])
+    assert all(0 <= each["low"] <= each["probability"] <= each["high"] <= 1 for each in answer["odds"])
+    states = [each["state"] for each in answer["odds"]]
+    assert all(list(shares) == states for shares in answer["records"].values())
+
+
 def design(road, kind, *words):
     """The answer of the command and what it prints, the same in JSON."""
     added = () if "[base]" in KINDS[kind][0] else ("--base-mass", 200)
@@ -447,7 +511,9 @@ def test_script(rocking, tmp_path, monkeypatch, kind):
     compile((tmp_path / "own.py").read_text(), "own.py", "exec")
 
 
-@pytest.mark.parametrize("command", ["run", "compare", "margin", "report"])  # a design is of the block, not the scene
+@pytest.mark.parametrize(
+    "command", ["run", "compare", "margin", "risk", "report"]
+)  # a design is of the block, not the scene
 @pytest.mark.parametrize("kind", REFUSED)
 def test_a_scene_that_the_model_refuses_is_named_with_its_remedy(road, kind, command):
     status, answer, _, err = road(command, kind)

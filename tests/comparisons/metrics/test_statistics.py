@@ -38,6 +38,7 @@ from comparisons.metrics.statistics import (
     right,
     threshold,
     wilson,
+    wilson_by_group,
 )
 from comparisons.studies.fragility.study import State, effects
 from engines.comparison import END
@@ -116,6 +117,32 @@ def test_a_comparison_is_of_paired_outcomes():
     assert (result["only_a"], result["only_b"], result["both_overturn"], result["both_stand"]) == (2, 0, 78, 120)
     assert result["difference"] == -0.01 and result["p_value"] == 0.5
     assert result["detectable_difference"] == detectable_difference(200, 0.01)
+
+
+@pytest.mark.parametrize("groups, size", [(6, 50), (20, 50), (100, 40)])
+@pytest.mark.parametrize("probability", [0.02, 0.1, 0.5])
+def test_an_interval_by_group_covers_whatever_the_groups_have_in_common(groups, size, probability):
+    """Beta-binomial groups, from almost independent runs to groups of one outcome. Chance takes 3 % of 400 at most."""
+    rng = np.random.default_rng(1)
+    for common in (0.01, 0.05, 0.2, 0.6, 0.95):
+        spread = (1 - common) / common
+        true = rng.beta(probability * spread, (1 - probability) * spread, (400, groups))
+        intervals = np.array([wilson_by_group(each, size) for each in rng.binomial(size, true) / size])
+        covered = ((intervals[:, 0] <= probability) & (probability <= intervals[:, 1])).mean()
+        assert covered >= 0.9 and (intervals >= 0).all() and (intervals <= 1).all()
+        if common == 0.01 and probability == 0.5:  # hardly anything in common: almost as narrow as of all runs
+            assert np.diff(intervals).mean() < 2 * np.diff(wilson(groups * size / 2, groups * size)) * (
+                2 if groups == 6 else 1
+            )
+
+
+def test_an_interval_by_group_of_equal_outcomes_counts_groups():
+    assert wilson_by_group([0.0] * 100, 40)[0] == 0 and 0.035 < wilson_by_group([0.0] * 100, 40)[1] < 0.04
+    assert wilson_by_group([1.0] * 100, 40)[1] == 1 and wilson_by_group([1.0], 40)[0] < 0.02
+    low, high = wilson_by_group([0.0, 1.0], 40)
+    assert low < 0.02 and high > 0.98
+    draws = np.arange(400) < 100
+    assert wilson_by_group(draws, 1) == pytest.approx(wilson(100, 400), abs=5e-4)  # of one group, its runs
 
 
 def test_wilson_takes_sizes_that_are_not_whole():
