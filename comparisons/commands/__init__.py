@@ -15,7 +15,7 @@ from typer.core import TyperCommand, TyperGroup
 GROUPS = {
     "To run and compare": {"run": "runs", "compare": "runs", "engines": "runs", "script": "runs"},
     "To read and learn": {"report": "report", "lessons": "lessons"},
-    "For advice on a scene": {"choose": "advice", "margin": "advice", "risk": "advice", "design": "advice"},
+    "For advice on a scene": {"choose": "advice", "margin": "advice", "risk": "risk", "design": "advice"},
     "For makers of engines and codes": {"verify": "study", "sheet": "lessons"},
     "For research": {"study": "study"},
     "Input": {"record": "new", "new": "new"},
