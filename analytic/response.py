@@ -1,7 +1,9 @@
 """The response of a simulation, the same for every solver.
 
 An outcome is “stands” (never lifted), “slides” (slid on its support, never lifted), “rocks” (lifted, stayed upright),
-“overturns” or “failed” (with the reason). A run continues until its outcome is *decided*: the remaining energy can no
+“falls off”, “overturns” or “failed” (with the reason). A block that slides falls off its pedestal when its centre of
+pressure leaves the width or, where it is tilted, its pivot corner does; the run ends there. A block past its balance
+overturns wherever its corner is. A run continues until its outcome is *decided*: the remaining energy can no
 longer overturn the block, or the block is certain to overturn (``analytic/kernel/decision.py`` says when), and the
 peaks are final. A run that a ``duration`` ends earlier is **undecided**: tables say “undecided (rocks so far)”, JSON
 has ``"decided": false``. A longer duration would not change a decided outcome. A base that oscillates below a block
@@ -15,6 +17,7 @@ the run and in the model, and the limit:
 
 - the outcome;
 - a peak tilt, peak base displacement or largest slip that is off by more than 2 %;
+- for a block that falls off: the time, off by more than 2 % of a rocking period;
 - for a block that overturns: the time of its last passage of the slenderness, off by more than 2 % of a rocking period,
   the time of overturning, and the number of impacts before;
 - the restitution of an impact, off by more than 0.01, or its loss 1 - e^2, by more than 10 %;
@@ -42,8 +45,9 @@ import numpy as np
 if TYPE_CHECKING:
     from .scene import Scene
 
-OUTCOMES = ("stands", "slides", "rocks", "overturns", "failed")
+OUTCOMES = ("stands", "slides", "rocks", "falls off", "overturns", "failed")  # the worse, the later
 LEVEL = OUTCOMES[:2]  # of a block that never lifted
+FALLS = OUTCOMES[3:5]
 # Quantities of a `Difference`, in words. Restitution: at the matched impact with the largest error. Missing and extra
 # impacts: numbers of impacts that count, with and without a match. Loss: 1 - e^2. Times: of a block that overturns; a
 # fall begins at the last passage of the slenderness.
@@ -53,6 +57,7 @@ DIFFERENCES = {
     "peak_base_displacement": "peak base displacement {here:.4g} m, in the analytic model {model:.4g}",
     "peak_slip": "the block slips by up to {here:.4g} m, in the analytic model {model:.4g}",
     "fall_time": "falls from {here:.6g} s on, in the analytic model from {model:.6g} s",
+    "edge_time": "falls off at {here:.6g} s, in the analytic model at {model:.6g} s",
     "overturning_time": "has overturned at {here:.6g} s, in the analytic model at {model:.6g} s",
     "impacts_before_fall": "falls after {here:.0f} impacts, in the analytic model after {model:.0f}",
     "restitution": "restitution {here:.4g} at an impact, in the analytic model {model:.4g}",
@@ -156,6 +161,7 @@ class Sliding:
     modes: tuple[tuple[float, str], ...]
 
 
+AS_FAR = 1e-6  # relative: rounding is no overhang
 KINDS = ("record", "model", "limit", "motion", "engine")
 
 
@@ -369,9 +375,10 @@ def scene_warnings(scene: "Scene") -> tuple[Caution, ...]:
 
 
 def limit_warnings(scene: "Scene", peak_base_displacement: float, peak_slip: float = 0.0) -> tuple[Caution, ...]:
-    """Warn if the peak base displacement [m] exceeds the bearings' x_max, or the peak slip [m] the half width.
+    """Warn if the peak base displacement [m] exceeds the bearings' x_max, or the block overhangs by its peak slip [m].
 
-    peak_slip : 0 for a block that overturns, whose slip goes on in its fall.
+    It overhangs where a corner is beyond the pedestal's edge; without a pedestal a slip beyond the half width is too far.
+    peak_slip : 0 for a block that falls, whose slip goes on in its fall.
     """
     warnings = []
     limit = None if scene.bearings is None else scene.bearings.x_max
@@ -381,10 +388,11 @@ def limit_warnings(scene: "Scene", peak_base_displacement: float, peak_slip: flo
             "may tear or hit a stop, and the outcome is outside the model"
         )
         warnings.append(Caution("limit", words, "peak_base_displacement", peak_base_displacement, limit))
-    if peak_slip > scene.block.half_width:
-        words = (
-            f"the block slips by {peak_slip:.3g} m, beyond its half width of {scene.block.half_width:.3g} m: the "
-            "model's support has no edge, and from one as wide as the block it would fall"
-        )
-        warnings.append(Caution("limit", words, "peak_slip", peak_slip, scene.block.half_width))
+    b, end = scene.block.half_width, "the model's support has no edge, and from one as wide as the block it would fall"
+    room = b if scene.pedestal is None else scene.edge - b
+    words = f"the block slips by {peak_slip:.3g} m, beyond its half width of {b:.3g} m: {end}"
+    if scene.pedestal is not None:
+        words = f"the block slips by {peak_slip:.3g} m and overhangs its pedestal: tipping about the edge is not modelled"
+    if peak_slip > room * (1 + AS_FAR):
+        warnings.append(Caution("limit", words, "peak_slip", peak_slip, room))
     return tuple(warnings)

@@ -130,7 +130,7 @@ def _values(scene: Scene, response: Response) -> dict[str, float]:
     inertia = block.inertia / (block.mass * block.radius**2)
     values = {"slenderness": block.slenderness, "inertia": inertia, "radius": block.radius}
     if base is not None:
-        values["base_mass"] = base.mass / block.mass
+        values["base_mass"] = scene.base_mass / block.mass
     if scene.bearings is not None:
         law = BearingLaw.of(scene.bearings)
         omega = math.sqrt(law.count * law.kb / scene.total_mass)

@@ -29,7 +29,8 @@ from pytest import approx
 from roads import BASE, BEARINGS, KINDS, LINEAR, G, pulse, scene, start
 from scipy.optimize import brentq
 
-from analytic import Caution, load_scene, margins, read_record, simulate
+from analytic import Caution, load_scene, read_record, simulate
+from analytic.advice import margins
 from analytic.advice.bearing_scan import scan_bearings
 from analytic.rocking import design_bearings
 from comparisons import cli

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from own_scenes import BUST
 
-from analytic import PulseMotion, bearing_scan, load_scene, simulate
+from analytic import PulseMotion, load_scene, simulate
+from analytic.advice import bearing_scan
 from analytic.advice.bearing_scan import BearingScan
 from analytic.rocking import design_bearings, properties
 from comparisons.plotting.margins import nothing_holds

@@ -17,7 +17,8 @@ from jsonschema.validators import validator_for
 from lying_engine import FAULTS, LIES, SHARE, liars
 from roads import KINDS, REFUSED, write_records
 
-from analytic import Base, Bearings, bearing_scan, load_scene, margins, simulate
+from analytic import Base, Bearings, load_scene, simulate
+from analytic.advice import bearing_scan, margins
 from analytic.response import DIFFERENCES, JUDGED, Difference, Failure
 from analytic.rocking import properties, restitution
 from comparisons.commands import advice as margin
