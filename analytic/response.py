@@ -161,7 +161,7 @@ class Sliding:
     modes: tuple[tuple[float, str], ...]
 
 
-AS_FAR = 1e-6  # relative: rounding is no overhang
+ROUNDING = 1e-6  # relative: it is no overhang
 KINDS = ("record", "model", "limit", "motion", "engine")
 
 
@@ -371,13 +371,16 @@ def scene_warnings(scene: "Scene") -> tuple[Caution, ...]:
             "something brings it back."
         )
         warnings.append(Caution("limit", words, "start.tilt", tilt, gamma))
+    if scene.pedestal is not None and scene.pedestal.mass is None and scene.friction is None:
+        text = "Without a friction the block does not slide: the edge of its pedestal plays no part. Give a friction."
+        warnings.append(Caution("model", text))
     return tuple(warnings)
 
 
 def limit_warnings(scene: "Scene", peak_base_displacement: float, peak_slip: float = 0.0) -> tuple[Caution, ...]:
     """Warn if the peak base displacement [m] exceeds the bearings' x_max, or the block overhangs by its peak slip [m].
 
-    It overhangs where a corner is beyond the pedestal's edge; without a pedestal a slip beyond the half width is too far.
+    It overhangs where a corner is beyond the pedestal's edge. Without a pedestal the slip may be up to the half width.
     peak_slip : 0 for a block that falls, whose slip goes on in its fall.
     """
     warnings = []
@@ -388,11 +391,17 @@ def limit_warnings(scene: "Scene", peak_base_displacement: float, peak_slip: flo
             "may tear or hit a stop, and the outcome is outside the model"
         )
         warnings.append(Caution("limit", words, "peak_base_displacement", peak_base_displacement, limit))
-    b, end = scene.block.half_width, "the model's support has no edge, and from one as wide as the block it would fall"
-    room = b if scene.pedestal is None else scene.edge - b
-    words = f"the block slips by {peak_slip:.3g} m, beyond its half width of {b:.3g} m: {end}"
-    if scene.pedestal is not None:
-        words = f"the block slips by {peak_slip:.3g} m and overhangs its pedestal: tipping about the edge is not modelled"
-    if peak_slip > room * (1 + AS_FAR):
-        warnings.append(Caution("limit", words, "peak_slip", peak_slip, room))
+    b, edge = scene.block.half_width, scene.edge
+    if scene.pedestal is None and peak_slip > b:
+        words = (
+            f"the block slips by {peak_slip:.3g} m, beyond its half width of {b:.3g} m: the model's support has no edge, "
+            "and from one as wide as the block it would fall"
+        )
+        warnings.append(Caution("limit", words, "peak_slip", peak_slip, b))
+    if scene.pedestal is not None and peak_slip > 0 and b + peak_slip > edge * (1 + ROUNDING):
+        words = (
+            f"the block slips by {peak_slip:.3g} m and overhangs its pedestal by {b + peak_slip - edge:.3g} m: tipping "
+            "about the edge is not modelled"
+        )
+        warnings.append(Caution("limit", words, "overhang", b + peak_slip, edge))
     return tuple(warnings)

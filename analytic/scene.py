@@ -404,6 +404,12 @@ class Scene(Part):
         return math.inf if self.pedestal is None else max(0.5 * self.pedestal.width, self.block.half_width * (1 + 1e-9))
 
     @property
+    def without_edge(self) -> Self:
+        """Return the scene without its pedestal; a mass on a base stays there."""
+        base = self.base and Base(mass=self.base_mass)
+        return self if self.pedestal is None else self.with_(pedestal=None, base=base)
+
+    @property
     def total_mass(self) -> float:
         """Return m + m_b [kg]."""
         return self.block.mass + self.base_mass

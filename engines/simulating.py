@@ -136,7 +136,7 @@ def _values(scene: Scene, response: Response) -> dict[str, float]:
         omega = math.sqrt(law.count * law.kb / scene.total_mass)
         values["period"] = 2 * math.pi / omega if omega else math.inf
         values["damping"] = law.count * law.damping / (2 * omega * scene.total_mass) if omega else 0.0
-    if response.outcome not in (*LEVEL, "failed"):  # an engine that stands has a tilt of rounding
+    if response.outcome not in (*LEVEL, "falls off", "failed"):  # an engine that stands has a tilt of rounding
         values["tilt"] = response.peak_tilt_ratio
     return values
 

@@ -411,7 +411,7 @@ def _design_form(scene, stroke, tilt, motions, left, scan, chosen, warnings):
     """The content of the JSON file of `design` for a scene."""
     return forms.BearingSearch(
         scene=scene.name,
-        base_mass=scene.base.mass,
+        base_mass=scene.base_mass,
         stroke=stroke,
         tilt=tilt,
         motions=motions,

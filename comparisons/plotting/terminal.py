@@ -21,6 +21,7 @@ from rich.table import Table
 from rich.text import Text
 
 from analytic import Caution, Response, Scene
+from analytic.response import FALLS
 from engines import ENGINES, available_engines, get_engine
 from engines.contract import Engine, Variant
 from engines.simulating import in_words
@@ -197,7 +198,7 @@ def comparison(scene: Scene, responses: Sequence[Response], horizons: Mapping[st
     for response in responses:
         tilt, displacement = "", ""
         if response is not reference and not response.failure and not reference.failure:
-            if "overturns" not in (response.outcome, reference.outcome):
+            if not {*FALLS} & {response.outcome, reference.outcome}:
                 tilt = f"{response.peak_tilt_ratio - reference.peak_tilt_ratio:+.0e}"
             if reference.peak_base_displacement > 0:
                 displacement = f"{100 * (response.peak_base_displacement / reference.peak_base_displacement - 1):+.0e}"
@@ -224,7 +225,7 @@ def _slipped(response, reference):
         return "-", ""
     slip, reference_slip = (run.sliding.peak if run.sliding else 0.0 for run in (response, reference))
     apart = response is not reference and not reference.failure and reference_slip > 0
-    if not apart or "overturns" in (response.outcome, reference.outcome):
+    if not apart or {*FALLS} & {response.outcome, reference.outcome}:
         return digits(slip), ""
     return digits(slip), f"{100 * (slip / reference_slip - 1):+.0e}"
 
