@@ -36,8 +36,8 @@ CHUNKS_PER_WORKER = 8
 class Outcomes:
     """Outcomes of many runs, arrays of one common shape.
 
-    overturns, fell_off, lifted, slid : bool. failed : bool: the model failed, exceeded its budget, or does not determine how the
-    block slides. decided : bool: False where the duration ended before the outcome was certain.
+    overturns, fell_off, lifted, slid : bool. failed : bool: the model failed, exceeded its budget, or does not
+    determine how the block slides. decided : bool: False where the duration ended before the outcome was certain.
     peak_tilt [rad]; peak_slip [m], 0 without a friction; peak_base_displacement [m], up to the last passage of
     |tilt| = slenderness where the block overturns. impacts : int, until the outcome was certain.
     friction_demand [-], min_normal_ratio [-]: as in `Response`, if they were asked for, else NaN.

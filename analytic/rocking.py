@@ -304,9 +304,9 @@ def uplift_of_both(scene: Scene) -> float:
 
     The scene has a pedestal with mass and height, on which the block is centred.
     """
-    (b, m, height), block = (getattr(scene.pedestal, name) for name in ("width", "mass", "height")), scene.block
-    moment = 0.5 * m * height + block.mass * (height + block.half_height)
-    return scene.gravity * 0.5 * b * (m + block.mass) / moment
+    width, mass, height = (float(getattr(scene.pedestal, name)) for name in ("width", "mass", "height"))
+    moment = 0.5 * mass * height + scene.block.mass * (height + scene.block.half_height)
+    return scene.gravity * 0.5 * width * (mass + scene.block.mass) / moment
 
 
 # The usual equivalent damping is W_D/(4 pi E_s). The paper's 30 % is W_D/(2 pi E_s), twice the usual value.

@@ -251,9 +251,9 @@ class Pedestal(Part):
 
     @model_validator(mode="after")
     def _is_whole(self) -> Self:
-        for name, other in (("mass", "height"), ("height", "mass")):
-            if getattr(self, name) is None and (value := getattr(self, other)) is not None:
-                raise SceneError(f"pedestal.{name}", None, f"missing beside {other}", f"add it, or remove {other}")
+        if (self.mass is None) != (self.height is None):
+            name = "mass" if self.mass is None else "height"
+            raise SceneError(f"pedestal.{name}", None, "missing", "give mass and height, or neither")
         return self
 
 
@@ -400,14 +400,9 @@ class Scene(Part):
 
     @property
     def edge(self) -> float:
-        """Return the half width of the pedestal [m]; inf without one. On one as wide as the block, rounding is no fall."""
-        return math.inf if self.pedestal is None else max(0.5 * self.pedestal.width, self.block.half_width * (1 + 1e-9))
-
-    @property
-    def without_edge(self) -> Self:
-        """Return the scene without its pedestal; a mass on a base stays there."""
-        base = self.base and Base(mass=self.base_mass)
-        return self if self.pedestal is None else self.with_(pedestal=None, base=base)
+        """Return the half width of the pedestal [m]; inf without one."""
+        # on one as wide as the block, rounding is no fall
+        return max(0.5 * self.pedestal.width, self.block.half_width * (1 + 1e-9)) if self.pedestal else math.inf
 
     @property
     def total_mass(self) -> float:

@@ -92,8 +92,8 @@ LEAST_DISPLACEMENT = 1e-5
 LEAST_LOSS = 0.02  # smallest of the statue range by eq. (7): slenderness .1, J_O = 2 m R^2, rigid ground
 OUT_OF_PHASE = 0.1  # share of a swing by which an impact is early or late; no later impact counts as missing
 LAST = 0.01  # share of a rocking period before the end in which an impact may occur in one run only
-FALLS, OFF = "overturns", "falls off"
-END = {"outcome", "fall_time", "edge_time", "overturning_time", "impacts_before_fall"}  # quantities of the block's end
+FALLS = "overturns"
+END = {"outcome", "fall_time", "overturning_time", "impacts_before_fall"}  # quantities of the block's end
 FALL_POINTS, MOST_POINTS = 200, 100_000  # samples of the last fall, and at most of the run up to its end
 
 
@@ -169,14 +169,13 @@ def _number_differences(scene: Scene, models: Sequence[Response], run: Response)
     differs = run.outcome != model.outcome and not _possible_outcomes(scene, run) & outcomes
     if run.decided and model.decided and differs:  # two outcomes of one word are compared by the peak tilt
         beyond.append(Difference("outcome", run.outcome, model.outcome, None))
-    alike = [response for response in models if _way(response) == _way(run)]
+    alike = [response for response in models if (response.outcome == FALLS) == (run.outcome == FALLS)]
     if not alike:
         return beyond
     falls = run.outcome == FALLS
     slips = ["peak_slip"] if run.sliding and scene.friction is not None else []  # where it was read
     upright = ("peak_tilt", "peak_base_displacement", *slips)
-    ends = {FALLS: ("peak_base_displacement", "fall_time"), OFF: ("peak_base_displacement", "edge_time")}
-    for name in ends.get(run.outcome, upright):
+    for name in ("peak_base_displacement", "fall_time") if falls else upright:
         values = [_value(response, name) for response in alike]
         low, high, value = min(values), max(values), _value(run, name)
         if not low - _limit(scene, name, low) <= value <= high + _limit(scene, name, high):  # not: NaN
@@ -188,15 +187,8 @@ def _number_differences(scene: Scene, models: Sequence[Response], run: Response)
     return beyond
 
 
-def _way(response: Response) -> str:
-    """The way in which a block falls; "" for one that does not."""
-    return response.outcome if response.outcome in (FALLS, OFF) else ""
-
-
 def _value(response: Response, name: str) -> float:
     """A number of a response by its name, one of `response.DIFFERENCES`."""
-    if name == "edge_time":
-        return response.end.time
     if name == "peak_slip":
         return response.sliding.peak if response.sliding else 0.0
     return getattr(response, name)

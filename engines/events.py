@@ -350,19 +350,18 @@ def upto_overturning(scene: Scene, trace: Trace, ended: str | None) -> tuple[Tra
 def upto_edge(scene: Scene, trace: Trace) -> tuple[Trace, bool]:
     """Cut a trace after the first step at which the block is off its pedestal: (trace, whether it is cut).
 
-    It is off as in the model (`analytic.sliding.equations.edge_event`): level, its centre of pressure is beyond the edge;
-    tilted, its lower corner, unless it is in the air or past its balance.
+    It is off as in the model (`analytic.sliding.equations.edge_event`): level, its centre of pressure is beyond the
+    edge; tilted, its lower corner, unless it is in the air or past its balance.
     """
-    slip, model, b = slips(scene, trace), ArrayModel.of(scene), scene.block.half_width
-    if slip is None or scene.pedestal is None:
+    slip, model, b, mu = slips(scene, trace), ArrayModel.of(scene), scene.block.half_width, scene.friction
+    if slip is None or mu is None or scene.pedestal is None:
         return trace, False
     apart = trace.centre - pivoting_centre(scene, trace)
-    weight = model.g + vertical_acceleration(scene.motion, trace.time)
     slides = np.abs(apart[:, 2]) > LEAST_SLIDING * math.sqrt(model.g * model.R)
-    held = _contact_acceleration(model, scene, trace) / weight  # H/N of a level block that sticks
-    across = np.where(slides, -np.sign(apart[:, 2]), np.clip(held / scene.friction, -1.0, 1.0)) * scene.friction
-    level = np.abs(trace.tilt) <= trace.contact_tilt
-    pressure = np.where(level, np.clip(-scene.block.half_height * across, -b, b), np.sign(trace.tilt) * b)
+    held = _contact_acceleration(model, scene, trace) / (model.g + vertical_acceleration(scene.motion, trace.time))
+    across = np.where(slides, -mu * np.sign(apart[:, 2]), np.clip(held, -mu, mu))  # H/N of a level block
+    level, pressure = np.abs(trace.tilt) <= trace.contact_tilt, np.clip(-scene.block.half_height * across, -b, b)
+    pressure = np.where(level, pressure, np.sign(trace.tilt) * b)
     touches = (apart[:, 1] <= HEIGHT_TOLERANCE * model.R) & (np.abs(trace.tilt) <= model.gamma)
     off = np.flatnonzero((np.abs(slip + pressure) > scene.edge) & touches)
     return (trace.upto(max(int(off[0]) + 1, 2)), True) if len(off) else (trace, False)

@@ -6,40 +6,34 @@ block's centre of pressure, or its lower corner), the pedestal's mass m_1, heigh
 
     (P1)  xi_1 = (p N - H_1 H - m_1 a H_1/2)/(m_1 (g + a_v) + N)
 
-must not exceed the half width b_1. Of a block at rest on it that is |a| <= g b_1/h_c, where both would lift together. At
-a landing the same holds of impulses. With those of the pedestal on the block, P and Q, horizontal and upward, and the
-jump -P/m_b of the base's velocity,
+must not exceed the half width b_1. Of a block at rest on it that is |a| <= g b_1/h_c, where both would lift together.
+At a landing the same holds of impulses. With those of the pedestal on the block, P and Q, horizontal and upward, and
+the jump -P/m_b of the base's velocity,
 
     (P2)  xi_1 = p - (H_1 - m_1 H_1/(2 m_b)) P/Q
 
-On rigid ground and for e of eq. (7), that is b_1 >= b + H_1 h (1 - e)/(b (1 + e)). A landing at rest has the same ratios
+On rigid ground and for e of eq. (7), that is b_1 >= b + H_1 h (1 - e)/(b (1 + e)). A soft landing has the same ratios
 as a hard one. The pedestal is taken not to slide, and its mass as that of a homogeneous rectangle.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..kernel.compiled import compiling, entry
-from ..kernel.decision import longest_duration
-from ..kernel.layout import MODES, ROCK, STICK, Block, Start
+from ..errors import SceneError
+from ..kernel import layout as L
+from ..kernel.compiled import entry
 from ..motion import SampledMotion, vertical_acceleration
 from ..response import Caution
 from ..rocking import uplift_of_both
+from ..scene import Scene
+from ..sliding import run as sliding
 from ..sliding.equations import accelerations
-from ..sliding.run import contact_of, slipping_friction
 from ..solver import parameters, simulate
 
-if TYPE_CHECKING:
-    from ..response import Response
-    from ..scene import Scene
-
-POINTS, ROWS = 400, 300_000  # samples of a period of the block, the base or a pulse; at most in a run
-WIDTHS, WIDTH_STEP = 6, 0.01  # widths tried, as a wider pedestal may let the block slide on; m, two decimals
+POINTS, ROWS = 400, 300_000  # samples of the shortest period of block, base and pulse; at most in a run
+FARTHEST = 1e6  # m, of a centre of pressure; where the support would have to pull, too
 NO_SLIP = 1.0  # a friction of a block that does not slide; its value plays no part
 
 
@@ -48,138 +42,101 @@ class PedestalCheck:
     """What is asked of the support of a pedestal, by the model's run of a scene.
 
     share: largest distance of the centre of pressure under the pedestal from its middle, over its half width, up to a
-    fall; inf where nothing holds it down. landing: that of the impulses of landings; None without any. uplift: the
-    acceleration above which block and pedestal would lift together [m/s2]. width: that it needs [m] at the same mass,
-    rounded up; None where none was found.
+    fall. landing: that of the impulses of landings; 0 without any. uplift: the
+    acceleration above which block and pedestal would lift together [m/s2]. width: on which it stays [m], of the same
+    mass; None where none was found.
     """
 
     share: float
-    landing: float | None
+    landing: float
     uplift: float
     width: float | None
 
     @property
-    def stays(self) -> bool:
-        """Return whether the pedestal stays on what carries it."""
-        return max(self.share, self.landing or 0.0) <= 1
+    def most(self) -> float:
+        """Return the larger of both shares; the pedestal stays on what carries it up to 1."""
+        return max(self.share, self.landing)
 
     @property
     def text(self) -> str:
         """Return the verdict in words."""
-        most = max(self.share, self.landing or 0.0)
-        if self.stays:
-            return f"the pedestal stays: this answer holds (its support is used to {most:.3g} of the half width)"
+        used = f"centre of pressure under it up to {self.most:.3g} half widths from its middle"
+        if self.most <= 1:
+            return f"The pedestal stays: this answer holds ({used})."
         cure = "fix it" if self.width is None else f"fix it, or widen it to {self.width:.4g} m"
-        return f"the pedestal may lift: outside this model; {cure} (its support would need {most:.3g} half widths)"
+        return f"The pedestal may lift: outside this model; {cure} ({used})."
 
     @property
     def cautions(self) -> tuple[Caution, ...]:
         """Return a warning where the pedestal may lift."""
-        if self.stays:
-            return ()
-        return (Caution("limit", self.text, "pedestal", max(self.share, self.landing or 0.0), 1.0),)
+        return (Caution("limit", self.text, "pedestal", self.most, 1.0),) if self.most > 1 else ()
 
 
 def check_pedestal(scene: Scene) -> PedestalCheck | None:
-    """Return the check of the scene's pedestal; None without its mass and height, or where the model's run fails.
-
-    Raises
-    ------
-    SceneError
-        The model refuses the scene.
-    """
+    """Return the check of the scene's pedestal; None without its mass and height, or where the model has no run."""
     if scene.pedestal is None or scene.pedestal.mass is None or (reached := _reached(scene)) is None:
         return None
-    share, landing = (each and each / (0.5 * scene.pedestal.width) for each in reached)
-    width, wider = _needed(reached), scene
-    for _ in range(WIDTHS):
-        if width is None or width <= scene.pedestal.width:
-            break
-        wider = scene.with_(pedestal={"width": width})
-        again = _needed(_reached(wider) or reached)
-        if again is not None and again <= width:
-            break
-        width = again
-    else:
-        width = None
-    return PedestalCheck(share, landing, uplift_of_both(scene), width)
-
-
-def _needed(reached):
-    """Return the width [m] that these distances need, rounded up; None where they are not finite."""
-    most = 2 * max(reached[0], reached[1] or 0.0)
-    return round(WIDTH_STEP * math.ceil(most / WIDTH_STEP), 2) if math.isfinite(most) else None
+    half, width = 0.5 * scene.pedestal.width, max(scene.pedestal.width, math.ceil(200 * max(reached)) / 100)
+    again = reached if width == scene.pedestal.width else _reached(scene.with_(pedestal={"width": width}))
+    holds = again is not None and 2 * max(again) <= width
+    return PedestalCheck(reached[0] / half, reached[1] / half, uplift_of_both(scene), width if holds else None)
 
 
 def _reached(scene):
-    """Return the largest |xi_1| [m] of (P1), and of (P2) or None without a landing; None where the run fails."""
-    response = simulate(scene, output_step=_step(scene))
-    if response.failure:
+    """Return the largest |xi_1| [m] of (P1) and of (P2); None where the model has no run."""
+    try:
+        response = simulate(scene, output_step=_step(scene))
+    except SceneError:
         return None
-    slip = response.history.slip
-    landing = _landing(scene, 0.0 if slip is None else float(np.abs(slip).max()), response.sliding is not None)
-    return _pressure(scene, response), landing if response.impacts else None
+    return None if response.failure else (_pressure(scene, response), _landing(scene, response))
 
 
 def _step(scene):
     """Return the interval of the history [s]."""
-    model, law = parameters(scene), scene.bearings
-    rates = [scene.rocking_frequency, getattr(scene.motion, "frequency", 0.0)]
-    if law is not None:
-        free = model.M - (model.m * model.R * math.cos(model.gamma)) ** 2 / model.J
-        rates.append(math.sqrt(model.count * (model.kb + model.constants.dk) / free))
-    step = 2 * math.pi / POINTS / max(rates)
-    sampling = scene.motion.dt if isinstance(scene.motion, SampledMotion) else math.inf
-    longest = longest_duration(scene) if scene.duration is None else scene.duration
-    return max(min(step, sampling), longest / ROWS)
+    par = parameters(scene)
+    free = par.M - (par.m * par.R * math.cos(par.gamma)) ** 2 / par.J  # effective mass of the base
+    ringing = math.sqrt(par.count * (par.kb + par.constants.dk) / free)
+    step = 2 * math.pi / POINTS / max(scene.rocking_frequency, ringing, getattr(scene.motion, "frequency", 0.0))
+    return max(min(step, scene.motion.dt) if isinstance(scene.motion, SampledMotion) else step, par.duration / ROWS)
 
 
-def _landing(scene: Scene, slip: float, slides: bool) -> float:
-    """Return |xi_1| [m] of a landing by (P2), after a slip of up to `slip` [m].
+def _landing(scene, response):
+    """Return |xi_1| [m] of a landing by (P2); 0 where there is none.
 
-    P/Q is that of a corner that does not slip; where the block `slides`, it may be up to the friction, and both corners
+    P/Q is that of a corner that does not slip; where the block slides, it may be up to the friction, and both corners
     may land.
     """
-    par, block, height = parameters(scene), scene.block, scene.pedestal.height
-    lost = (1 - par.e) / ((1 + par.e) * block.half_width)
-    ratio = slipping_friction(par)
+    if not response.impacts:
+        return 0.0
+    par, block, pedestal, slip = parameters(scene), scene.block, scene.pedestal, 0.0
+    ratio, b = sliding.slipping_friction(par), block.half_width
     # of the moment about the centre, J_G [phi'] = -h P - p Q: the corner, unless a restitution is given
-    place = lost * (block.centre_inertia / block.mass + block.half_height * (block.half_height - par.arm))
-    if slides:
-        ratio, place = max(ratio, scene.friction), max(place, block.half_width)
-    arm = height * (1 - (0.5 * scene.pedestal.mass / scene.base_mass if scene.base else 0.0))
+    moment = block.centre_inertia / block.mass + block.half_height * (block.half_height - par.arm)
+    place = (1 - par.e) / ((1 + par.e) * b) * moment
+    if response.sliding is not None:
+        ratio, place, slip = max(ratio, scene.friction), max(place, b), response.sliding.peak
+    arm = pedestal.height * (1 - (0.5 * pedestal.mass / scene.base_mass if scene.base else 0.0))
     return slip + place + arm * ratio
 
 
-def _pressure(scene: Scene, response: Response) -> float:
+def _pressure(scene, response):
     """Return the largest |xi_1| [m] of (P1) up to a fall; between two samples as far as the slope beside them leads."""
-    history, motion, par = response.history, scene.motion, parameters(scene)
-    rows = np.zeros((len(history.time), 9))
-    rows[:, 3], rows[:, 4], rows[:, 8] = history.tilt, history.tilt_rate, history.bearing_force
-    rows[:, 6] = scene.gravity + vertical_acceleration(motion, history.time)
-    rows[:, 7] = history.ground_acceleration
+    history, slip, moved = response.history, 0.0, 0.0
     side = np.sign(np.where(history.tilt != 0, history.tilt, history.tilt_rate))
-    rows[:, 0] = np.where(side == 0, STICK, ROCK)
+    mode = np.where(side == 0, L.STICK, L.ROCK)
     if response.sliding is not None:
         times, modes = zip(*response.sliding.modes, strict=True)
-        which = np.searchsorted(times, history.time, side="right") - 1
-        rows[:, 0] = np.array([MODES.index(mode) for mode in modes])[which]
-        rows[:, 5], moved = history.slip, np.sign(np.diff(history.slip, append=history.slip[-1]))
-        rows[:, 2] = np.where(np.isin(rows[:, 0], (STICK, ROCK)), 0.0, moved)
-        side = np.where(rows[:, 0] < ROCK, 0.0, side)
-    rows[:, 1] = side
-    if response.fall_time is not None:
-        rows = rows[history.time <= response.fall_time]
-    places, sizes = np.empty(len(rows)), (scene.pedestal.mass, scene.pedestal.height)
-    contact = contact_of(scene.with_(friction=scene.friction or NO_SLIP))
-    with compiling():
-        _places(par, contact, sizes, rows, places)
-    if not np.isfinite(places).all():
-        return math.inf
-    rises = np.abs(np.diff(places))
-    beyond = np.zeros(len(places))
-    beyond[1:], beyond[:-1] = rises, np.maximum(beyond[:-1], rises)
-    return float(np.max(places + beyond))
+        mode = np.array([L.MODES.index(name) for name in modes])[np.searchsorted(times, history.time, "right") - 1]
+        slip, side = history.slip, np.where(mode < L.ROCK, 0.0, side)
+        moved = np.isin(mode, (L.SLIDE, L.SLIDE_ROCK)) * np.sign(np.diff(slip, append=slip[-1]))
+    gravity = scene.gravity + vertical_acceleration(scene.motion, history.time)
+    state = mode, side, moved, history.tilt, history.tilt_rate, slip
+    rows = np.column_stack(np.broadcast_arrays(*state, gravity, history.ground_acceleration, history.bearing_force))
+    rows = rows[history.time <= (math.inf if response.fall_time is None else response.fall_time)]
+    places, contact = np.empty(len(rows)), sliding.contact_of(scene.with_(friction=scene.friction or NO_SLIP))
+    _places(parameters(scene), contact, (scene.pedestal.mass, scene.pedestal.height), rows, places)
+    beyond = np.abs(np.diff(places, prepend=places[0], append=places[-1]))
+    return float(np.max(places + np.maximum(beyond[1:], beyond[:-1])))
 
 
 @entry
@@ -189,10 +146,10 @@ def _places(par, contact, pedestal, rows, places):
     b, h = par.R * math.sin(par.gamma), par.R * math.cos(par.gamma)
     for i in range(len(rows)):
         mode, s, sigma, tilt, rate, slip, gravity, ground, force = rows[i]
-        block = Block(int(mode), s, sigma, tilt, rate, slip, 0.0, 0.0, 0.0)
-        _, _, _, across, normal = accelerations(par, contact, block, Start(gravity, ground, force))
+        block = L.Block(int(mode), s, sigma, tilt, rate, slip, 0.0, 0.0, 0.0)
+        _, _, _, across, normal = accelerations(par, contact, block, L.Start(gravity, ground, force))
         absolute = -(force + across) / contact.mb if par.on_base else ground
         moment = (slip + s * b) * normal - (0.0 if s != 0 else h * across)
         moment -= height * (across + 0.5 * mass * absolute)
         weight = mass * gravity + normal
-        places[i] = abs(moment) / weight if weight > 0 else math.inf
+        places[i] = min(abs(moment) / weight, FARTHEST) if weight > 0 else FARTHEST

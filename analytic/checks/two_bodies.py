@@ -1,32 +1,26 @@
 """Two rigid blocks on each other, on the ground or on a base with bearings, by Moreau's time stepping.
 
-The lower block is the scene's pedestal, which here may lift and rock. Nothing slides. There are four corners: two of the
-lower block on its support, two of the upper block on the top of the lower one, which has no edge. In a step of length h
-the coordinates move to the midpoint q + h/2 v; corners that do not gape there are closed. The velocities after the step
-are those nearest to the free ones, in the metric of the kinetic energy, at which no closed corner penetrates and no
-corner that carries slips. All sets of carrying corners are tried. Impacts are steps like any other, plastic and of
+The lower block is the scene's pedestal, which here may lift and rock. Nothing slides. There are four corners: two of
+the lower block on its support, two of the upper block on the top of the lower one, which has no edge. In a step of
+length h the coordinates move to the midpoint q + h/2 v; corners that do not gape there are closed. The velocities after
+the step are those nearest to the free ones, in the metric of the kinetic energy, at which no closed corner penetrates
+and no corner that carries slips. All sets of carrying corners are tried. Impacts are steps like any other, of
 Moreau's law; for a single block that is eqs (7), (8). The method is of first order in h.
 
 J. J. Moreau (1999), Numerical aspects of the sweeping process, Comput. Methods Appl. Mech. Eng. 177, 329-349.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numba import njit
 
 from ..errors import SceneError, require
-from ..kernel.compiled import inner
 from ..rocking import hysteretic_force
+from ..scene import Scene
 from ..solver import parameters
 from .time_stepping import _means
-
-if TYPE_CHECKING:
-    from ..scene import Scene
 
 LOWER, UPPER, BASE = 2, 5, 6  # tilts, and the base, of the coordinates X_1 Y_1 phi_1 X_2 Y_2 phi_2 x
 ROUNDING = 1e-12  # of impulses and velocities, relative to those without contact
@@ -68,23 +62,24 @@ def simulate_two_bodies(scene: Scene, *, step: float, lower_tilt: float = 0.0) -
     Raises
     ------
     SceneError
-        The pedestal has no mass, the run has no duration, or a velocity or a restitution is given.
+        The pedestal has no mass, the run no duration, or a velocity or restitution is given.
     SettingError
         The step is not positive.
     """
     require(step > 0 and math.isfinite(step), f"step = {step!r} is not positive: give a finite value above 0 [s]")
     pedestal, block, start = scene.pedestal, scene.block, scene.start
-    if pedestal is None or pedestal.mass is None or pedestal.height is None or scene.duration is None:
-        key = "run.duration" if pedestal and pedestal.mass else "pedestal.mass"
-        raise SceneError(key, None, "missing", "two blocks need it")
-    for key, value in {"start.tilt_rate": start.tilt_rate, "start.base_velocity": start.base_velocity}.items():
+    for key, value in (
+        ("start.tilt_rate", start.tilt_rate),
+        ("start.base_velocity", start.base_velocity),
+        ("block.restitution", block.restitution),
+    ):
         if value:
             raise SceneError(key, value, "not used by two blocks", "remove it")
-    if block.restitution is not None:
-        raise SceneError("block.restitution", block.restitution, "not used by two blocks", "remove it")
+    if pedestal is None or pedestal.mass is None or pedestal.height is None or scene.duration is None:
+        raise SceneError("pedestal", None, "incomplete", "give its mass and height, and the run a duration")
     m, b, h = pedestal.mass, 0.5 * pedestal.width, 0.5 * pedestal.height
-    inverse = np.array([1 / m, 1 / m, 3 / (m * (b * b + h * h)), 1 / block.mass, 1 / block.mass, 0.0, 0.0])
-    inverse[UPPER], inverse[BASE] = 1 / block.centre_inertia, 1 / scene.base.mass if scene.base else 0.0
+    masses = (m, m, m * (b * b + h * h) / 3, block.mass, block.mass, block.centre_inertia)
+    inverse = 1 / np.array([*masses, scene.base.mass if scene.base else math.inf])
     sizes = np.array([b, h, block.half_width, block.half_height])
     count = math.ceil(scene.duration / step * (1 - 1e-12))
     length = scene.duration / count
@@ -97,13 +92,10 @@ def simulate_two_bodies(scene: Scene, *, step: float, lower_tilt: float = 0.0) -
 def _placed(sizes, lower, tilt, x):
     """Return the coordinates at the start: a corner of each block on what carries it."""
     b, h, half, height = sizes
-    q = np.array([x, 0.0, lower, x, 0.0, lower + tilt, x])
-    turned = _turned(math.copysign(b, lower), -h, lower)
-    q[0], q[1] = x + math.copysign(b, lower) - turned[0], -turned[1]
-    on = _turned(math.copysign(half, tilt), h, lower)
-    turned = _turned(math.copysign(half, tilt), -height, lower + tilt)
-    q[3], q[4] = q[0] + on[0] - turned[0], q[1] + on[1] - turned[1]
-    return q
+    (foot, sunk), (over, up) = _turned(math.copysign(b, lower), -h, lower), _turned(math.copysign(half, tilt), h, lower)
+    across, down = _turned(math.copysign(half, tilt), -height, lower + tilt)
+    first = x + math.copysign(b, lower) - foot
+    return np.array([first, -sunk, lower, first + over - across, up - sunk - down, lower + tilt, x])
 
 
 @njit(cache=True)
@@ -112,7 +104,7 @@ def _turned(across, up, tilt):
     return across * math.cos(tilt) + up * math.sin(tilt), up * math.cos(tilt) - across * math.sin(tilt)
 
 
-@inner
+@njit(cache=True)
 def _contacts(q, sizes, gaps, rows):
     """Fill the gaps of the corners [m], and the rows that give their velocities along and off what carries them."""
     b, h, half, height = sizes
@@ -133,35 +125,32 @@ def _contacts(q, sizes, gaps, rows):
 
 
 @njit(cache=True)
+def _penetrating(v, gaps, rows):
+    """Return the largest velocity at which a closed corner penetrates [m/s], at least 0."""
+    return np.max(np.where(gaps <= 0, -(rows[:, 1] * v).sum(axis=1), 0.0))
+
+
+@njit(cache=True)
 def _carried(v, gaps, rows, inverse, scale):
     """Return the velocities after a step, of the set of carrying corners that violates the laws of contact least."""
-    best, after = math.inf, v
-    for chosen in range(15, -1, -1):
-        A, normals, good = np.zeros((6, 7)), np.zeros(6), True
-        count = 0
-        for k in range(4):
-            if chosen >> k & 1:
-                good = good and gaps[k] <= 0
-                if k % 2 == 0 or not chosen >> (k - 1) & 1:  # two corners stick as one does
-                    A[count] = rows[k, 0]
-                    count += 1
-                A[count], normals[count] = rows[k, 1], 1.0
-                count += 1
-        if not good:
-            continue
-        used = A[:count]
-        impulses = np.linalg.solve((used * inverse) @ used.T, -(used @ v)) if count > 0 else np.zeros(0)
-        velocities = v + inverse * (used.T @ impulses)
-        wrong = 0.0
-        for i in range(count):
-            wrong = max(wrong, -normals[i] * impulses[i] * inverse[3])
-        for k in range(4):
-            if gaps[k] <= 0:
-                wrong = max(wrong, -(rows[k, 1] @ velocities))
-        if wrong < best:
-            best, after = wrong, velocities
+    best, after, closed = _penetrating(v, gaps, rows), v, np.sum((gaps <= 0) * 2.0 ** np.arange(4))
+    for chosen in range(15, 0, -1):
         if best <= ROUNDING * scale:
             break
+        if chosen & ~int(closed):
+            continue
+        A, normal, count = np.zeros((6, 7)), np.zeros(6), 0
+        for k in range(4):
+            if chosen >> k & 1:
+                if k % 2 == 0 or not chosen >> (k - 1) & 1:  # two corners stick as one does
+                    A[count], count = rows[k, 0], count + 1
+                A[count], normal[count], count = rows[k, 1], inverse[3], count + 1
+        used = A[:count]
+        impulses = np.linalg.solve((used * inverse) @ used.T, -(used @ v))
+        velocities = v + inverse * (used.T @ impulses)
+        wrong = max(_penetrating(velocities, gaps, rows), -np.min(normal[:count] * impulses))
+        if wrong < best:
+            best, after = wrong, velocities
     return after
 
 
@@ -169,17 +158,16 @@ def _carried(v, gaps, rows, inverse, scale):
 def _march(par, sizes, inverse, h, ground, gravity, q, rows):
     """Take all steps under the mean a_g and g + a_v [m/s2] in each; return how many were taken before a fall."""
     v, z, gaps, contacts = np.zeros(7), par.z, np.zeros(4), np.zeros((4, 2, 7))
-    masses = 1 / inverse[:UPPER + 1]
     for k in range(len(ground) + 1):
-        moving = 0.5 * np.sum(masses * v[: UPPER + 1] ** 2) + (0.5 * v[BASE] ** 2 / inverse[BASE] if inverse[BASE] else 0.0)
-        rows[k] = k * h, q[LOWER], q[UPPER], q[BASE], moving + par.g * (masses[0] * q[1] + masses[3] * q[4])
+        energy = par.g * (q[1] / inverse[0] + q[4] / inverse[3]) + 0.5 * np.sum(
+            v[inverse > 0] ** 2 / inverse[inverse > 0]
+        )
+        rows[k] = k * h, q[LOWER], q[UPPER], q[BASE], energy
         if k == len(ground) or max(abs(q[LOWER]), abs(q[UPPER] - q[LOWER])) >= 0.5 * math.pi:
             break
         middle = q + 0.5 * h * v
         free = v.copy()
-        for at in (0, 3):
-            free[at] -= h * ground[k]
-            free[at + 1] -= h * gravity[k]
+        free[:UPPER] -= h * np.array([ground[k], gravity[k], 0.0, ground[k], gravity[k]])
         if inverse[BASE] > 0:
             hysteretic = hysteretic_force(z, middle[BASE] - q[BASE], par.law, par.constants)
             force = par.count * (par.kb * middle[BASE] + hysteretic + par.damping * v[BASE])

@@ -270,10 +270,7 @@ def edge_event(par, contact, block, sooner, order, P, work):
     (first, time), event, height = sooner, P[L.EVENT], par.R * math.cos(par.gamma)
     if not contact.edge < math.inf or block.mode == FLIGHT or abs(block.tilt) > par.gamma:
         return first, time
-    if block.s == 0 and block.mode == SLIDE:
-        at = contact.mu * height * block.sigma
-    else:
-        at = block.s * par.R * math.sin(par.gamma)
+    at = contact.mu * height * block.sigma if block.mode == SLIDE else block.s * par.R * math.sin(par.gamma)
     for side in (1.0, -1.0):
         for k in range(order + 1):
             event[k] = -side * P[L.SLIP, k]

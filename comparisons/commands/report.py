@@ -171,6 +171,7 @@ def form(page: Path) -> Report:
         motions={name: [MotionRun(**row) for row in statue["motions"]] for name, statue in statues.items()},
         left_out={name: statue["left_out"] for name, statue in statues.items()},
         headlines={name: headline(statue["motions"], statue["left_out"]) for name, statue in statues.items()},
+        pedestals={name: statue["pedestal"] for name, statue in statues.items()},
     )
 
 

@@ -44,8 +44,9 @@ def print_margins(
     span: float,
     tilt: float,
     warnings: Sequence[Caution] = (),
+    notes: Sequence[str] = (),
 ) -> None:
-    """Print `warnings`, a row for each `Margin` with a change, in order, and the reserves of the contact.
+    """Print `warnings`, a row for each `Margin` with a change, in order, reserves of the contact, and `notes`.
 
     span : largest change tried [%]. tilt : limit of the peak tilt, over slenderness.
     """
@@ -93,7 +94,7 @@ def print_margins(
     parts.append(" ".join(filter(None, [_normal_words(contact), _friction_words(contact)])))
     if scene.bearings is not None:
         parts.append("Assumed: the bearings are stiff vertically (real bearings vibrate vertically at 10 to 20 Hz).")
-    echo(*parts, wrap=True)
+    echo(*parts, *notes, wrap=True)
 
 
 def _names(tilt):

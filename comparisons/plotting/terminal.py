@@ -141,6 +141,7 @@ def summary(scene: Scene, response: Response) -> Grid:
     rows = {
         "outcome": response.outcome_text,
         "overturning time [s]": digits(response.overturning_time, ".6g"),
+        **({"falls off at [s]": digits(response.end.time, ".6g")} if response.outcome == FALLS[0] else {}),
         "peak tilt [rad]": digits(response.peak_tilt),
         "peak tilt / slenderness": digits(response.peak_tilt_ratio),
         "peak base displacement [m]": digits(response.peak_base_displacement),
@@ -245,18 +246,19 @@ def _limit(horizons):
     return "\n".join(lines)
 
 
-def show(table: Grid, responses: Sequence[Response], about: Sequence[Caution] = ()) -> None:
+def show(table: Grid, responses: Sequence[Response], about: Sequence[Caution] = (), notes: Sequence[str] = ()) -> None:
     """Print a table of responses; below it their differences from the analytic model, and their warnings.
 
-    Warnings `about` the scene itself stand first, in bold. A sentence on the outcomes of several responses follows.
-    Warnings of a result that is sensitive to small changes of the motion stand last, in bold.
+    Warnings `about` the scene itself stand first, in bold; `notes` on it stand below the table. A sentence on the
+    outcomes of several responses follows the former. Warnings of a result that is sensitive to small changes of the
+    motion stand last, in bold.
     """
     echo(*(Text(f"Warning: {readable(str(warning))}", "bold") for warning in about))
     if len(responses) > 1:
         sentence = outcomes([{**response.to_json(), "outcome_text": response.outcome_text} for response in responses])
         echo(f"{sentence[0].upper()}{sentence[1:]}.", wrap=True)
     motion = [warning for response in responses for warning in response.warnings if warning.kind == MOTION]
-    echo(table, *(readable(words) for words in remarks(responses)))
+    echo(table, *(readable(words) for words in (*remarks(responses), *notes)))
     echo(*(Text(readable(str(warning)), "bold") for warning in motion))
 
 
