@@ -128,7 +128,7 @@ def _pressure(scene, response):
         times, modes = zip(*response.sliding.modes, strict=True)
         mode = np.array([L.MODES.index(name) for name in modes])[np.searchsorted(times, history.time, "right") - 1]
         slip, side = history.slip, np.where(mode < L.ROCK, 0.0, side)
-        moved = np.isin(mode, (L.SLIDE, L.SLIDE_ROCK)) * np.sign(np.diff(slip, append=slip[-1]))
+        moved = np.isin(mode, (L.SLIDE, L.SLIDE_ROCK)) * np.sign(np.diff(slip, append=2 * slip[-1] - slip[-2]))
     gravity = scene.gravity + vertical_acceleration(scene.motion, history.time)
     state = mode, side, moved, history.tilt, history.tilt_rate, slip
     rows = np.column_stack(np.broadcast_arrays(*state, gravity, history.ground_acceleration, history.bearing_force))

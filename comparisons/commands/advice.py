@@ -416,7 +416,7 @@ def _design_form(scene, stroke, tilt, motions, left, scan, chosen, warnings):
     """The content of the JSON file of `design` for a scene."""
     return forms.BearingSearch(
         scene=scene.name,
-        base_mass=scene.base_mass,
+        base_mass=scene.base.mass,
         stroke=stroke,
         tilt=tilt,
         motions=motions,

@@ -41,7 +41,7 @@ from ..execution.command_runs import (
 )
 from ..execution.progress import compile_kernels, say, spinner, stdout_to_stderr
 from ..execution.writing import check_writable, readable, write_text
-from ..schemas.runs import Comparison, MotionRun, Run, Sensitivity
+from ..schemas.runs import Comparison, Run, Sensitivity
 from .output import write_output
 
 

@@ -381,7 +381,7 @@ def print_bearings(
     name, aim = readable(scene.name, TITLE_CHARACTERS), _aim(scene, stroke, tilt)
     echo(
         *(f"Warning: {readable(str(warning))}" for warning in warnings),
-        f"{name}: {aim}; base: {scene.base_mass:g} kg; motions: {len(motions)}",
+        f"{name}: {aim}; base: {scene.base.mass:g} kg; motions: {len(motions)}",
         wrap=True,
     )
     if not chosen:

@@ -246,7 +246,7 @@ def runs(ask):
         "Run",
         documents["stands"],
         {
-            "schema": "rocking run 4",
+            "schema": "rocking run 5",
             "engine": "analytic",
             "variant": "kernel",
             "scene": "stands",
@@ -309,7 +309,7 @@ def compared(ask):
         "Comparison",
         ask("compare", "rocks.toml", *engines),
         {
-            "schema": "rocking compare 4",
+            "schema": "rocking compare 5",
             "scene": "rocks",
             "sensitivity_horizon": min(ends),
             "sensitivity": {
@@ -386,7 +386,7 @@ def changed(ask):
         "Margins",
         documents["creeps"],
         {
-            "schema": "rocking margin 4",
+            "schema": "rocking margin 5",
             "scene": "creeps",
             "outcome": "slides",
             "tilt": 0.4,
@@ -444,7 +444,7 @@ def searched(ask):
         "BearingSearch",
         ask("design", "quiet.toml", "--stroke", 0.3, "--tilt", 0.4, *MANY),
         {
-            "schema": "rocking bearings 2",
+            "schema": "rocking bearings 3",
             "scene": "quiet",
             "base_mass": 200.0,
             "stroke": 0.3,
@@ -566,7 +566,7 @@ def reported(ask):
         "Report",
         ask("report", "bears.toml", "falls.toml", *MANY, "--engine", "off", "--engine", "fails", "--output", "page"),
         {
-            "schema": "rocking report 5",
+            "schema": "rocking report 6",
             "page": str(Path("page", "report.html")),
             "results": [str(Path("page", f"{name}.json")) for name in ("scenes", "restitution")],
             "missing": MISSING,
