@@ -110,7 +110,7 @@ BAD = {
     ),
     "pedestal narrower than its block": (
         replaced("[bearings]", "[pedestal]\nwidth = 0.6\n[bearings]"),
-        "pedestal.width = 0.6: narrower than the block; give at least 0.601572 m",
+        "pedestal.width = 0.6: narrower than the block; give at least 0.601571 m",
     ),
     "no kb": (replaced("kb = 6.22e3\n", ""), "bearings.kb: missing; add it: the algebraic law needs it"),
     "no amplitude": (
