@@ -112,8 +112,12 @@ def new(
         block = block_from(height, width, depth=depth, density=_density(density, material), mass=mass)
         targets = {"period": period, "damping": damping, "stiffness_ratio": ratio, "definition": definition}
         constants = {"ka": ka, "kb": kb, "alpha": alpha}
-        sizes: dict[str, Any] = {"width": pedestal_width, "mass": pedestal_mass, "height": pedestal_height}
-        pedestal = None if {*sizes.values()} == {None} else Pedestal(**sizes)
+        sizes: Any = {
+            name: size
+            for name, size in (("width", pedestal_width), ("mass", pedestal_mass), ("height", pedestal_height))
+            if size is not None
+        }
+        pedestal = Pedestal(**sizes) if sizes else None
         support = _support(
             ctx, block.mass + (pedestal_mass or 0.0), base_mass, slides_freely, count, xmax, targets, constants
         )

@@ -249,7 +249,7 @@ def engines(
     echo(engines_table(shown), *missing_words(missing), *broken)
 
 
-SUFFIX = ".py"
+SUFFIX, NO_EDGE = ".py", "The script's support has no edge: the block does not fall off its pedestal there."
 
 
 def script(
@@ -287,4 +287,7 @@ def script(
     check_writable(texts, inputs=[scene])
     for path, text in texts.items():
         write_text(path, text)
-    echo(*(f"{path} written" for path in texts), *filter(None, [unkept_friction(loaded)]))
+    echo(
+        *(f"{path} written" for path in texts),
+        *filter(None, [unkept_friction(loaded), NO_EDGE if loaded.pedestal and loaded.friction else ""]),
+    )
