@@ -32,7 +32,7 @@ from ..sliding import run as sliding
 from ..sliding.equations import accelerations
 from ..solver import parameters, simulate
 
-POINTS, ROWS = 400, 300_000  # samples of the shortest period of block, base and pulse; at most in a run
+POINTS, ROWS = 1000, 300_000  # samples of the shortest period of block, base and pulse; at most in a run
 FARTHEST = 1e6  # m, of a centre of pressure; where the support would have to pull, too
 NO_SLIP = 1.0  # a friction of a block that does not slide; its value plays no part
 
@@ -97,7 +97,7 @@ def _step(scene):
     free = par.M - (par.m * par.R * math.cos(par.gamma)) ** 2 / par.J  # effective mass of the base
     ringing = math.sqrt(par.count * (par.kb + par.constants.dk) / free)
     step = 2 * math.pi / POINTS / max(scene.rocking_frequency, ringing, getattr(scene.motion, "frequency", 0.0))
-    return max(min(step, scene.motion.dt) if isinstance(scene.motion, SampledMotion) else step, par.duration / ROWS)
+    return max(min(step, scene.motion.dt / 4) if isinstance(scene.motion, SampledMotion) else step, par.duration / ROWS)
 
 
 def _landing(scene, response):
@@ -135,8 +135,9 @@ def _pressure(scene, response):
     rows = rows[history.time <= (math.inf if response.fall_time is None else response.fall_time)]
     places, contact = np.empty(len(rows)), sliding.contact_of(scene.with_(friction=scene.friction or NO_SLIP))
     _places(parameters(scene), contact, (scene.pedestal.mass, scene.pedestal.height), rows, places)
-    beyond = np.abs(np.diff(places, prepend=places[0], append=places[-1]))
-    return float(np.max(places + np.maximum(beyond[1:], beyond[:-1])))
+    # slopes within a mode; of two on each side the lesser one, as the other may be a jump of the ground's acceleration
+    rises = np.pad(np.abs(np.diff(places)) * (np.diff(rows[:, :3], axis=0) == 0).all(axis=1), 2)
+    return float(np.max(places + np.maximum(np.minimum(rises[:-3], rises[1:-2]), np.minimum(rises[2:-1], rises[3:]))))
 
 
 @entry
