@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from analytic import Base, Bearings, Block, Pedestal, PulseMotion, Scene, simulate
+from analytic.advice import pedestal
 from analytic.advice.pedestal import check_pedestal
 from analytic.checks.two_bodies import simulate_two_bodies
 from analytic.rocking import momentum_restitution, uplift_of_both
@@ -145,3 +146,15 @@ def test_it_is_never_said_to_stay_where_of_two_blocks_the_lower_one_lifts(on_bas
     stays, lifts, changes = rows.T
     assert stays.sum() >= 0.3 * count and (~stays & lifts).any()
     assert not (stays & lifts).any() and not (stays & changes).any()
+
+
+@pytest.mark.parametrize("on_base", [False, True])
+def test_the_bound_is_just_above_a_finer_run(monkeypatch, on_base):
+    rng = np.random.default_rng(5 + on_base)
+    for _ in range(6):
+        scene = museum(rng, on_base)
+        monkeypatch.setattr(pedestal, "POINTS", 1000)
+        share = check_pedestal(scene).share
+        monkeypatch.setattr(pedestal, "POINTS", 7000)
+        finer = check_pedestal(scene).share
+        assert finer * (1 - 1e-4) < share < 1.01 * finer
