@@ -50,7 +50,7 @@ from .response import Caution, Difference, Energy, Failure, History, Impact, Res
 with kernel_cache():
     from .batch import Outcomes, overturning_map, rocking_spectrum, simulate_many
     from .checks import time_stepping  # noqa: F401 compiled, too
-    from .scene import Base, Bearings, Block, Scene, Start
+    from .scene import Base, Bearings, Block, Pedestal, Scene, Start
     from .scene_file import load_scene, shipped_scenes
     from .solver import simulate
 
@@ -66,6 +66,7 @@ __all__ = [
     "History",
     "Impact",
     "Outcomes",
+    "Pedestal",
     "PulseMotion",
     "Response",
     "SampledMotion",

@@ -36,8 +36,8 @@ CHUNKS_PER_WORKER = 8
 class Outcomes:
     """Outcomes of many runs, arrays of one common shape.
 
-    overturns, lifted, slid : bool. failed : bool: the model failed, exceeded its budget, or does not determine how the
-    block slides. decided : bool: False where the duration ended before the outcome was certain.
+    overturns, fell_off, lifted, slid : bool. failed : bool: the model failed, exceeded its budget, or does not
+    determine how the block slides. decided : bool: False where the duration ended before the outcome was certain.
     peak_tilt [rad]; peak_slip [m], 0 without a friction; peak_base_displacement [m], up to the last passage of
     |tilt| = slenderness where the block overturns. impacts : int, until the outcome was certain.
     friction_demand [-], min_normal_ratio [-]: as in `Response`, if they were asked for, else NaN.
@@ -54,12 +54,14 @@ class Outcomes:
     min_normal_ratio: np.ndarray
     slid: np.ndarray
     peak_slip: np.ndarray
+    fell_off: np.ndarray
 
     @property
     def names(self) -> np.ndarray:
         """Return the outcomes as `Response.outcome` names them, array of str."""
         rest = np.where(self.lifted, "rocks", np.where(self.slid, "slides", "stands"))
-        return np.where(self.failed, "failed", np.where(self.overturns, "overturns", rest))
+        upright = np.where(self.fell_off, "falls off", rest)
+        return np.where(self.failed, "failed", np.where(self.overturns, "overturns", upright))
 
     @classmethod
     def of(cls, totals: np.ndarray, shape: tuple[int, ...], contact: bool = False) -> Self:
@@ -81,6 +83,7 @@ class Outcomes:
             column(layout.NORMAL) if contact else np.full(shape, np.nan),
             column(layout.PATH) > 0,
             column(layout.PEAK_SLIP),
+            column(layout.MODE) == layout.OFF,
         )
 
 

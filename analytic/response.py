@@ -1,7 +1,9 @@
 """The response of a simulation, the same for every solver.
 
 An outcome is “stands” (never lifted), “slides” (slid on its support, never lifted), “rocks” (lifted, stayed upright),
-“overturns” or “failed” (with the reason). A run continues until its outcome is *decided*: the remaining energy can no
+“falls off”, “overturns” or “failed” (with the reason). A block that slides falls off its pedestal when its centre of
+pressure leaves the width or, where it is tilted, its pivot corner does; the run ends there. A block past its balance
+overturns wherever its corner is. A run continues until its outcome is *decided*: the remaining energy can no
 longer overturn the block, or the block is certain to overturn (``analytic/kernel/decision.py`` says when), and the
 peaks are final. A run that a ``duration`` ends earlier is **undecided**: tables say “undecided (rocks so far)”, JSON
 has ``"decided": false``. A longer duration would not change a decided outcome. A base that oscillates below a block
@@ -42,8 +44,9 @@ import numpy as np
 if TYPE_CHECKING:
     from .scene import Scene
 
-OUTCOMES = ("stands", "slides", "rocks", "overturns", "failed")
+OUTCOMES = ("stands", "slides", "rocks", "falls off", "overturns", "failed")  # the worse, the later
 LEVEL = OUTCOMES[:2]  # of a block that never lifted
+FALLS = OUTCOMES[3:5]
 # Quantities of a `Difference`, in words. Restitution: at the matched impact with the largest error. Missing and extra
 # impacts: numbers of impacts that count, with and without a match. Loss: 1 - e^2. Times: of a block that overturns; a
 # fall begins at the last passage of the slenderness.
@@ -156,6 +159,7 @@ class Sliding:
     modes: tuple[tuple[float, str], ...]
 
 
+ROUNDING, NO_EDGE = 1e-6, "Without a friction the block does not slide: the edge of its pedestal plays no part."
 KINDS = ("record", "model", "limit", "motion", "engine")
 
 
@@ -365,13 +369,16 @@ def scene_warnings(scene: "Scene") -> tuple[Caution, ...]:
             "something brings it back."
         )
         warnings.append(Caution("limit", words, "start.tilt", tilt, gamma))
+    if scene.pedestal is not None and scene.pedestal.mass is None and scene.friction is None:
+        warnings.append(Caution("model", NO_EDGE))
     return tuple(warnings)
 
 
 def limit_warnings(scene: "Scene", peak_base_displacement: float, peak_slip: float = 0.0) -> tuple[Caution, ...]:
-    """Warn if the peak base displacement [m] exceeds the bearings' x_max, or the peak slip [m] the half width.
+    """Warn if the peak base displacement [m] exceeds the bearings' x_max, or the block overhangs by its peak slip [m].
 
-    peak_slip : 0 for a block that overturns, whose slip goes on in its fall.
+    It overhangs where a corner is beyond the pedestal's edge. Without a pedestal the slip may be up to the half width.
+    peak_slip : 0 for a block that falls, whose slip goes on in its fall.
     """
     warnings = []
     limit = None if scene.bearings is None else scene.bearings.x_max
@@ -381,10 +388,17 @@ def limit_warnings(scene: "Scene", peak_base_displacement: float, peak_slip: flo
             "may tear or hit a stop, and the outcome is outside the model"
         )
         warnings.append(Caution("limit", words, "peak_base_displacement", peak_base_displacement, limit))
-    if peak_slip > scene.block.half_width:
-        words = (
-            f"the block slips by {peak_slip:.3g} m, beyond its half width of {scene.block.half_width:.3g} m: the "
-            "model's support has no edge, and from one as wide as the block it would fall"
+    b, name, end = (
+        scene.block.half_width,
+        "overhang",
+        "and overhangs its pedestal: tipping about the edge is not modelled",
+    )
+    room = (scene.edge - b) * (1 + ROUNDING) + ROUNDING * b  # rounding is no overhang
+    if scene.pedestal is None:
+        end = (
+            f"beyond its half width of {b:.3g} m: the model's support has no edge, and from one as wide as the block it"
         )
-        warnings.append(Caution("limit", words, "peak_slip", peak_slip, scene.block.half_width))
+        room, name, end = b, "peak_slip", f"{end} would fall"
+    if peak_slip > room:
+        warnings.append(Caution("limit", f"the block slips by {peak_slip:.3g} m, {end}", name, peak_slip, room))
     return tuple(warnings)

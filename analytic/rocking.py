@@ -299,6 +299,16 @@ def base_jump_length_as_printed(scene: Scene) -> float:
     )
 
 
+def uplift_of_both(scene: Scene) -> float:
+    """Return the |acceleration| [m/s2] above which block and pedestal lift together: g b_1/h_c, of both's centre h_c.
+
+    The scene has a pedestal with mass and height, on which the block is centred.
+    """
+    width, mass, height = (float(getattr(scene.pedestal, name)) for name in ("width", "mass", "height"))
+    moment = 0.5 * mass * height + scene.block.mass * (height + scene.block.half_height)
+    return scene.gravity * 0.5 * width * (mass + scene.block.mass) / moment
+
+
 # The usual equivalent damping is W_D/(4 pi E_s). The paper's 30 % is W_D/(2 pi E_s), twice the usual value.
 DEFINITIONS = {"equivalent": 4 * math.pi, "paper": 2 * math.pi}
 # Exponents searched; Table 1(b) has 44.69.

@@ -31,6 +31,9 @@ SCENE_UNITS = {
     "block.slenderness": "rad",
     "block.corner_inertia": "kg m2",
     "base.mass": "kg",
+    "pedestal.width": "m",
+    "pedestal.mass": "kg",
+    "pedestal.height": "m",
     "bearings.ka": "N/m",
     "bearings.kb": "N/m",
     "bearings.delta_k": "N/m",
@@ -229,6 +232,31 @@ class Base(Part):
     mass: Positive
 
 
+# A pedestal is as wide as its block if it is narrower by less than this share: scene files have six digits.
+AS_WIDE = 1e-4
+
+
+class Pedestal(Part):
+    """The pedestal that the block stands on, centred at the start.
+
+    width [m], along the motion: a block that slides beyond it falls off. mass [kg] and height [m], of a homogeneous
+    rectangle: with both, `analytic.advice.pedestal` says whether the pedestal stays on what carries it.
+    """
+
+    table: ClassVar[str] = "pedestal"
+
+    width: Positive
+    mass: Positive | None = None
+    height: Positive | None = None
+
+    @model_validator(mode="after")
+    def _is_whole(self) -> Self:
+        if (self.mass is None) != (self.height is None):
+            name = "mass" if self.mass is None else "height"
+            raise SceneError(f"pedestal.{name}", None, "missing", "give mass and height, or neither")
+        return self
+
+
 class Bearings(Part):
     """The bearings under the base; all stiffnesses and forces per bearing.
 
@@ -300,12 +328,14 @@ class Scene(Part):
     """All that is simulated; a part that is None is not modelled.
 
     Without a base the block stands on rigid ground; without bearings the base slides without friction; without a motion
-    the block moves freely. Without a duration [s] a run continues until its outcome is decided. friction: Coulomb's
+    the block moves freely. A pedestal is fixed to the ground or the base, and moves with it; without one the block's
+    support has no edge. Without a duration [s] a run continues until its outcome is decided. friction: Coulomb's
     coefficient between the block and its support; without one the block does not slide.
     """
 
     block: Block
     base: Base | None = None
+    pedestal: Pedestal | None = None
     bearings: Bearings | None = None
     motion: SampledMotion | PulseMotion | None = None
     start: Start = Start()
@@ -333,6 +363,11 @@ class Scene(Part):
                         "needs a base",
                         "add a table [base] with its mass, or remove it",
                     )
+        wide = 2 * self.block.half_width
+        if self.pedestal and self.pedestal.width < wide * (1 - AS_WIDE):
+            raise SceneError(
+                "pedestal.width", self.pedestal.width, "narrower than the block", f"give at least {wide:.6g} m"
+            )
         return self
 
     @model_validator(mode="after")
@@ -359,9 +394,20 @@ class Scene(Part):
         return math.sqrt(block.mass * self.gravity * block.radius / block.inertia)
 
     @property
+    def base_mass(self) -> float:
+        """Return m_b [kg], the mass of the base and of a pedestal on it; 0 on rigid ground."""
+        return 0.0 if self.base is None else self.base.mass + ((self.pedestal and self.pedestal.mass) or 0.0)
+
+    @property
+    def edge(self) -> float:
+        """Return the half width of the pedestal [m]; inf without one."""
+        # on one as wide as the block, rounding is no fall
+        return max(0.5 * self.pedestal.width, self.block.half_width * (1 + 1e-9)) if self.pedestal else math.inf
+
+    @property
     def total_mass(self) -> float:
         """Return m + m_b [kg]."""
-        return self.block.mass + (self.base.mass if self.base else 0.0)
+        return self.block.mass + self.base_mass
 
     @property
     def mass_share(self) -> float:
@@ -382,6 +428,8 @@ class Scene(Part):
         """Return a hash of the scene without its name: equal for scenes with the same simulation."""
         content = self.model_dump(mode="python", exclude={"name", "motion"})
         content["motion"] = self.motion.digest() if self.motion else None
+        if self.pedestal is None:  # keeps the digests in stored results
+            del content["pedestal"]
         if self.bearings:  # keeps the digests in stored results
             content["bearings"] = {
                 name: value

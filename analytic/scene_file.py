@@ -14,6 +14,11 @@ SI units. Only ``[block]`` is needed; a part that is left out is not modelled::
     [base]                    # without it the block stands on rigid ground
     mass = 212.0              # kg
 
+    [pedestal]                # under the block, fixed to ground or base; without it the block's support has no edge
+    width = 0.8               # m: a block that slides beyond it falls off
+    # mass = 430.0            # kg, and height = 1.0 [m]: whether the pedestal stays where it is; on a base the mass
+                              # moves with it
+
     [bearings]                # without them the base slides without friction; values per bearing
     law = "algebraic"         # or "bouc-wen", "bilinear", "linear"
     count = 4
@@ -74,7 +79,7 @@ from .motion import PULSES, PulseMotion, SampledMotion, paired
 from .records import UNITS, read_record
 from .records import content as fema
 from .records.synthetic import DEFAULT_SEED, STYLES, synthetic_motion
-from .rocking import BearingLaw, RockingModel, properties
+from .rocking import BearingLaw, RockingModel, properties, uplift_of_both
 from .scene import (
     SCENE_UNITS,
     Base,
@@ -83,6 +88,7 @@ from .scene import (
     NotNegative,
     Number,
     Part,
+    Pedestal,
     Positive,
     Scene,
     Start,
@@ -221,6 +227,7 @@ class _SceneFile(Part):
     friction: Positive | None = None
     block: Block
     base: Base | None = None
+    pedestal: Pedestal | None = None
     bearings: Bearings | None = None
     motion: _Motion | None = None
     start: Start = Start()
@@ -292,6 +299,7 @@ def _scene(table: Mapping[str, Any], path: Path) -> Scene:
             scene = Scene(
                 block=file.block,
                 base=file.base,
+                pedestal=file.pedestal,
                 bearings=file.bearings,
                 motion=motion,
                 start=file.start,
@@ -329,6 +337,7 @@ MATERIALS = {
 
 # Rows of `derived` that are compared with the targets and with each other.
 PERIOD, DAMPING = "secant period at x_max", "equivalent damping at x_max"
+TOGETHER = "uplift acceleration of block and pedestal together"
 UPLIFT, YIELD = "uplift acceleration g tan(slenderness)", "acceleration at which the bearings yield"
 
 
@@ -380,6 +389,8 @@ def derived(scene: Scene) -> list[tuple[str, float, str]]:
         (f"restitution e_phi, {'eq. (7)' if block.restitution is None else 'given'}", model.restitution, "-"),
         (UPLIFT, uplift, "m/s2"),
     ]
+    if scene.pedestal is not None and scene.pedestal.mass is not None:
+        rows.append((TOGETHER, uplift_of_both(scene), "m/s2"))
     if scene.bearings is not None:
         law, x_max = BearingLaw.of(scene.bearings), scene.bearings.x_max
         if x_max is not None and law.dk * x_max >= law.f0:
@@ -399,6 +410,7 @@ def scene_text(
     block: Block,
     *,
     base: Base | None = None,
+    pedestal: Pedestal | None = None,
     bearings: Bearings | None = None,
     motion: Mapping[str, Any] | None = None,
     tilt: float | None = None,
@@ -411,7 +423,7 @@ def scene_text(
     Parameters
     ----------
     name : str
-    block, base, bearings : parts of the scene
+    block, base, pedestal, bearings : parts of the scene
     motion : dict or None
         Keys of the table [motion].
     tilt : float or None
@@ -442,6 +454,9 @@ def scene_text(
     ]
     if base is not None:
         lines += ["", *_base(base)]
+    if pedestal is not None:
+        sizes = pedestal.model_dump(exclude_none=True)
+        lines += ["", "[pedestal]", *_rows({name: (sizes[name], SCENE_UNITS[f"pedestal.{name}"]) for name in sizes})]
     if bearings is not None:
         lines += ["", *_bearings(bearings, note)]
     if motion:

@@ -34,7 +34,7 @@ from .kernel.events import NEARLY_ELASTIC
 from .kernel.layout import Base, Body, Ground, Options, Parameters, Shaking
 from .kernel.steps import LINEAR_GROUND, PULSE, QUIET, SHORT_ORDER
 from .motion import SERIES, SampledMotion, slowest_key
-from .response import Energy, Failure, History, Impact, Response, State
+from .response import FALLS, Energy, Failure, History, Impact, Response, State
 from .rocking import BearingLaw, RockingModel
 from .sliding.run import contact_of, is_needed
 from .sliding.run import slid as march
@@ -332,15 +332,16 @@ def _response(scene, totals, result, energies, sliding, settings, cpu, history):
     if status not in (layout.COMPLETE, layout.DECIDED):
         failure = Failure(_REASONS[status], last_state=end)
     fallen = over > 0 or totals[layout.MODE] == layout.FALLEN
+    falls = "falls off" if totals[layout.MODE] == layout.OFF else "overturns" if fallen else None
     upright = "rocks" if totals[layout.LIFTED] else "slides" if totals[layout.PATH] > 0 else "stands"
     unstable, peak_x = float(totals[layout.UNSTABLE_TIME]), float(totals[layout.PEAK_X])
     demand, normal = float(totals[layout.FRICTION]), float(totals[layout.NORMAL])
-    slip = 0.0 if fallen else float(totals[layout.PEAK_SLIP])
+    slip = 0.0 if falls else float(totals[layout.PEAK_SLIP])
     return Response(
         engine="analytic",
         variant="kernel",
         scene=scene.name,
-        outcome="failed" if failure else "overturns" if fallen else upright,
+        outcome="failed" if failure else falls or upright,
         overturning_time=(over or end.time) if fallen else None,
         unstable_time=unstable if unstable >= 0 else None,
         fall_time=float(totals[layout.FALL_TIME]) if fallen else None,
@@ -417,8 +418,8 @@ def is_finished(scene: Scene, response: Response, *, contact_tilt: float = 0.0) 
 
 def _at_end(scene: Scene, response: Response, contact_tilt: float) -> tuple[bool, tuple[Parameters, Body, Base] | None]:
     """Return (decided, the kernel's parameters and state; None if the block has overturned or the run failed)."""
-    if response.outcome in ("overturns", "failed"):
-        return response.outcome == "overturns", None
+    if response.outcome in (*FALLS, "failed"):
+        return response.outcome in FALLS, None
     par, end = parameters(scene), response.end
     if scene.friction is not None:  # at rest the block slides where it does not lift
         par = par._replace(slope=min(par.slope, scene.friction))

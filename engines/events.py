@@ -26,7 +26,7 @@ from analytic.response import Failure, Impact, State
 from analytic.rocking import RockingModel
 
 from .swings import LEAST_SLIDING, ArrayModel, Trace, cubic_through, to_contact
-from .trace_checks import HEIGHT_TOLERANCE, pivoting_centre, settled
+from .trace_checks import HEIGHT_TOLERANCE, pivoting_centre, settled, slips
 
 if TYPE_CHECKING:
     from analytic import Response, Scene
@@ -307,7 +307,7 @@ def _where_it_moves(scene: Scene, trace: Trace, demand: np.ndarray, normal: np.n
     clean = settled(trace)[moves]
     demand[moves], normal[moves] = np.abs(friction) * clean, np.where(clean, N / model.m, weight) / model.g
     if scene.base is not None:
-        absolute[moves] = -(trace.bearing_force[moves] + friction * N) / scene.base.mass * clean
+        absolute[moves] = -(trace.bearing_force[moves] + friction * N) / scene.base_mass * clean
 
 
 def finite_part(trace: Trace, failure: Failure | None) -> tuple[Trace | None, Failure | None]:
@@ -345,6 +345,26 @@ def upto_overturning(scene: Scene, trace: Trace, ended: str | None) -> tuple[Tra
         q, p = side * trace.tilt_rate[-1], abs(trace.tilt[-1]) - limit
         return trace, float(trace.time[-1] - 2 * p / (q + math.sqrt(max(q * q - 2 * pull * p, 0.0))))
     return trace, None
+
+
+def upto_edge(scene: Scene, trace: Trace) -> tuple[Trace, bool]:
+    """Cut a trace after the first step at which the block is off its pedestal: (trace, whether it is cut).
+
+    It is off as in the model (`analytic.sliding.equations.edge_event`): level, its centre of pressure is beyond the
+    edge; tilted, its lower corner, unless it is in the air or past its balance.
+    """
+    slip, model, b, mu = slips(scene, trace), ArrayModel.of(scene), scene.block.half_width, scene.friction
+    if slip is None or mu is None or scene.pedestal is None:
+        return trace, False
+    apart = trace.centre - pivoting_centre(scene, trace)
+    slides = np.abs(apart[:, 2]) > LEAST_SLIDING * math.sqrt(model.g * model.R)
+    held = _contact_acceleration(model, scene, trace) / (model.g + vertical_acceleration(scene.motion, trace.time))
+    across = np.where(slides, -mu * np.sign(apart[:, 2]), np.clip(held, -mu, mu))  # H/N of a level block
+    level, pressure = np.abs(trace.tilt) <= trace.contact_tilt, np.clip(-scene.block.half_height * across, -b, b)
+    pressure = np.where(level, pressure, np.sign(trace.tilt) * b)
+    touches = (apart[:, 1] <= HEIGHT_TOLERANCE * model.R) & (np.abs(trace.tilt) <= model.gamma)
+    off = np.flatnonzero((np.abs(slip + pressure) > scene.edge) & touches)
+    return (trace.upto(max(int(off[0]) + 1, 2)), True) if len(off) else (trace, False)
 
 
 def upright_part(scene: Scene, trace: Trace, falls: bool) -> Trace:

@@ -34,6 +34,7 @@ from .events import (
     last_state,
     unstable_time,
     upright_part,
+    upto_edge,
     upto_overturning,
 )
 from .swings import Trace, cubic_through, find_swings
@@ -85,17 +86,20 @@ def observe(
     if finite is None:
         return failed_response(scene, failure, warnings=warnings, **run)
     trace, overturning_time = upto_overturning(scene, finite, ended)
+    trace, off = upto_edge(scene, trace)
+    overturning_time = None if off else overturning_time
     end = last_state(trace)
     measured, missed, lifted = _measured(scene, trace, beyond or trace, overturning_time)
     sliding = slip_of(scene, trace)
-    slip = sliding.peak if sliding and overturning_time is None else 0.0
-    failure, warnings = _judged(scene, trace, {**measured, "peak_slip": slip}, missed, failure, warnings)
+    falls = "falls off" if off else None if overturning_time is None else "overturns"
+    slip = sliding.peak if sliding and not falls else 0.0
+    failure, warnings = _judged(scene, trace, {**measured, "peak_slip": slip}, missed, failure, warnings, bool(falls))
     lifted = lifted and measured["peak_tilt"] >= STILL * scene.block.slenderness
     upright = "rocks" if lifted else "slides" if sliding and sliding.peak else "stands"
     if sliding and sliding.peak and scene.friction:  # what no-slip formulas ask for is no demand
         measured["friction_demand"] = min(measured["friction_demand"], scene.friction)
     response = Response(
-        outcome="failed" if failure else upright if overturning_time is None else "overturns",
+        outcome="failed" if failure else falls or upright,
         end=end,
         failure=failure and replace(failure, last_state=failure.last_state or end),
         warnings=_warnings(scene, warnings),
@@ -143,14 +147,16 @@ def _judged(
     missed: Any,
     failure: Failure | None,
     warnings: Iterable[Caution | str],
+    falls: bool,
 ) -> tuple[Failure | None, Iterable[Caution | str]]:
     """Judge a run: (the engine's own failure, or the first check that is not met, or None; warnings).
+
+    falls: it ended in a fall, over or off the pedestal.
 
     The checks are: the scene's duration is reached; the block is where it should be (`check_place`); no energy is
     gained (`check_energy`); impacts gain no energy, are resolved and are not skipped by the steps (`check_impacts`);
     all measures are finite; the motion matches the bearing force (`check_impulse`; for a first script a warning).
     """
-    falls = measured["overturning_time"] is not None
     failure = (
         failure
         or (None if falls else ended_early(scene, trace))

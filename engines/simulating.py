@@ -130,13 +130,13 @@ def _values(scene: Scene, response: Response) -> dict[str, float]:
     inertia = block.inertia / (block.mass * block.radius**2)
     values = {"slenderness": block.slenderness, "inertia": inertia, "radius": block.radius}
     if base is not None:
-        values["base_mass"] = base.mass / block.mass
+        values["base_mass"] = scene.base_mass / block.mass
     if scene.bearings is not None:
         law = BearingLaw.of(scene.bearings)
         omega = math.sqrt(law.count * law.kb / scene.total_mass)
         values["period"] = 2 * math.pi / omega if omega else math.inf
         values["damping"] = law.count * law.damping / (2 * omega * scene.total_mass) if omega else 0.0
-    if response.outcome not in (*LEVEL, "failed"):  # an engine that stands has a tilt of rounding
+    if response.outcome not in (*LEVEL, "falls off", "failed"):  # an engine that stands has a tilt of rounding
         values["tilt"] = response.peak_tilt_ratio
     return values
 

@@ -304,7 +304,7 @@ def _sliding_accelerations(scene, model, side, slips, block, acting):
     c, n = model.lever(side, tilt)
     lever = n - slips * scene.friction * c
     normal = (model.g + up - c * rate**2) / (1 / model.m + lever * n / centre)
-    absolute = (slips * scene.friction * normal - force) / scene.base.mass if scene.base else ground
+    absolute = (slips * scene.friction * normal - force) / scene.base_mass if scene.base else ground
     return -lever * normal / centre, absolute - ground
 
 

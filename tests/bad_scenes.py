@@ -100,6 +100,18 @@ BAD = {
     ),
     "no base mass": (replaced("mass = 212.0\n", ""), "base.mass: missing; add mass = ... [kg]"),
     "no alpha": (replaced("alpha = 44.69\n", ""), "bearings.alpha: missing; add it: the algebraic law needs it"),
+    "no width": (
+        replaced("[bearings]", "[pedestal]\nmass = 430.0\nheight = 1.0\n[bearings]"),
+        "pedestal.width: missing; add width = ... [m]",
+    ),
+    "no height": (
+        replaced("[bearings]", "[pedestal]\nwidth = 1.0\nmass = 430.0\n[bearings]"),
+        "pedestal.height: missing; give mass and height, or neither",
+    ),
+    "pedestal narrower than its block": (
+        replaced("[bearings]", "[pedestal]\nwidth = 0.6\n[bearings]"),
+        "pedestal.width = 0.6: narrower than the block; give at least 0.601571 m",
+    ),
     "no kb": (replaced("kb = 6.22e3\n", ""), "bearings.kb: missing; add it: the algebraic law needs it"),
     "no amplitude": (
         motion('pulse = "one-sine"\nfrequency = 2'),

@@ -35,6 +35,9 @@ def start(tilt):
     return f"[start]\ntilt = {tilt}\n"
 
 
+PEDESTAL = "[pedestal]\nwidth = 0.6\n"
+STURDY = "[pedestal]\nwidth = 1.2\nmass = 300.0\nheight = 0.2\n"
+TALL = "[pedestal]\nwidth = 0.5\nmass = 300.0\nheight = 1.0\n"
 RECORD = '[motion]\nrecord = "records/plain.csv"\n'
 # {kind: (scene file, outcome)}
 KINDS = {
@@ -54,6 +57,9 @@ KINDS = {
     "flies": (scene(motion=pulse(4.0, 12.0, vertical=4.0), friction=0.6), "rocks"),
     "falls and slides": (scene(motion=pulse(9.0, 4.0), friction=0.5), "overturns"),
     "slips off": (scene(motion=pulse(5.0, 2.5), friction=0.1), "slides"),
+    "falls off": (scene(PEDESTAL, pulse(5.0, 2.5), friction=0.1), "falls off"),
+    "pedestal that stays": (scene(LINEAR + STURDY, pulse(3.0, 9.0)), "stands"),
+    "pedestal that may lift": (scene(TALL, pulse(3.2, 8.0)), "rocks"),
     "flies without a friction": (scene(motion=pulse(4.0, 12.0, vertical=4.0)), "overturns"),
     "vertical motion": (scene(motion=pulse(3.2, 8.0, vertical=0.6)), "rocks"),
     "vertical motion of 1 g on bearings": (scene(LINEAR, pulse(3.0, 9.0, vertical=G / 3.0)), "overturns"),

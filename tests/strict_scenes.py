@@ -22,6 +22,7 @@ KEYS = {
         "restitution": (float, 0, 1),
     },
     "base": {"mass": POSITIVE},
+    "pedestal": dict.fromkeys(("width", "mass", "height"), POSITIVE),
     "bearings": {
         "law": ("algebraic", "linear", "bouc-wen", "bilinear"),
         "count": (int, 1, 10**6),
@@ -52,6 +53,7 @@ KEYS = {
 FITTING = {
     "block": ({"mass", "radius", "slenderness"}, set()),
     "base": ({"mass"}, set()),
+    "pedestal": ({"width"}, set()),
     "algebraic": ({"ka", "kb", "alpha"}, {"yield_force"}),
     "bouc-wen": ({"ka", "kb", "alpha"}, {"yield_force"}),
     "bilinear": ({"ka", "kb", "yield_force"}, {"alpha"}),
@@ -93,11 +95,15 @@ def _stands(tables):
     stiff = bearings.get("law") == "linear" or not bearings
     room = 0 if stiff else bearings["ka"] - bearings["kb"]
     moved = bearings or start.get("base_displacement") or start.get("base_velocity")
+    pedestal = tables.get("pedestal", {})
+    wide = 2 * block["radius"] * math.sin(block["slenderness"])
     phased = motion.get("vertical_ratio") and motion.get("vertical_phase")
     return (
         block.get("corner_inertia", math.inf) > block["mass"] * block["radius"] ** 2
         and (stiff or room > (0 if bearings.get("law") == "bilinear" else bearings.get("delta_k", 1e-20)))
         and ("base" in tables or not moved)
+        and ("mass" in pedestal) == ("height" in pedestal)
+        and pedestal.get("width", math.inf) >= wide * (1 - 1e-4)
         and ("vertical_ratio" in motion or not {"vertical_phase", "vertical_seed"} & set(motion))
         and not (phased and motion["pulse"] in PULSES[3:])
     )

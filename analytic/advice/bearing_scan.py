@@ -322,7 +322,7 @@ def _worst(scene, scenes, motions, stroke, tilt, workers, progress):
 def _demands(outcomes: Outcomes, scene: Scene, stroke: float, tilt: float) -> dict[str, np.ndarray]:
     """Return {name of LIMITS: demand of each run}; above 1 for "uplift" or "slip" where the block lifts or slides."""
     beyond = np.nextafter(1.0, 2.0)
-    lost = outcomes.failed | outcomes.overturns if tilt else outcomes.failed
+    lost = outcomes.failed | outcomes.overturns | outcomes.fell_off if tilt else outcomes.failed
     demands = {"model": np.where(lost, math.inf, 0.0), "stroke": outcomes.peak_base_displacement / stroke}
     if scene.friction is not None:
         rubs = outcomes.friction_demand / scene.friction

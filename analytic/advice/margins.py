@@ -1,7 +1,8 @@
 """Margins: the change of a quantity at which the outcome of a scene, or a limit state, changes.
 
 A limit state is reached if the block slides (where the scene gives a friction), if it lifts, if its peak tilt exceeds a
-share of the slenderness, if the base exceeds the x_max of its bearings, or if the block overturns.
+share of the slenderness, if the base exceeds the x_max of its bearings, or if the block falls off its pedestal or
+overturns.
 
 The outcome may change more than once. Resonances cause narrow bands of another outcome far from the first boundary, and
 safe gaps beyond it. Each quantity is therefore scanned, one at a time, at equidistant relative changes, and every
@@ -26,7 +27,7 @@ from ..batch import Outcomes, simulate_many
 from ..errors import SceneError, require
 from ..laws import LAWS, NUMBERS
 from ..motion import SampledMotion
-from ..response import Caution
+from ..response import FALLS, Caution
 from ..rocking import restitution
 from ..scene import KEYS, SCENE_UNITS, Scene
 from ..solver import STEPS_PER_SAMPLE, simulate, too_long
@@ -34,7 +35,7 @@ from ..solver import STEPS_PER_SAMPLE, simulate, too_long
 if TYPE_CHECKING:
     from ..response import Response
 
-LIMIT_STATES = ("slides", "lifts", "tilt", "stroke", "overturns")
+LIMIT_STATES = ("slides", "lifts", "tilt", "stroke", "falls off", "overturns")
 TILT = 0.5  # share of the slenderness
 SPAN, STEP = 0.2, 5e-4
 LARGEST_SPAN = 9.0  # ten times the motion: a record of 0.1 g then has 1 g
@@ -64,8 +65,8 @@ class Band:
     @property
     def outcome(self) -> str:
         """Return the outcome, as `Response.outcome`."""
-        if "overturns" in self.reached:
-            return "overturns"
+        if falls := [state for state in FALLS if state in self.reached]:
+            return falls[-1]
         if "lifts" in self.reached:
             return "rocks"
         return "slides" if "slides" in self.reached else "stands"
@@ -180,17 +181,22 @@ def _bearing(name):
 
 def _slenderness(scene, factor):
     """Return the scene with another slenderness at the same R, mass and J_O: half width and half height change."""
-    return scene.with_(block={"slenderness": factor * scene.block.slenderness})
+    return _reshaped(scene, slenderness=factor * scene.block.slenderness)
 
 
 def _size(scene, factor):
     """Return the scene with another R at the same mass and shape."""
     inertia = scene.block.corner_inertia
+    return _reshaped(
+        scene, radius=factor * scene.block.radius, corner_inertia=None if inertia is None else factor**2 * inertia
+    )
+
+
+def _reshaped(scene, **changes):
+    """Return the scene with a changed block; its pedestal is as wide as the block at least."""
+    shape = scene.block.model_copy(update=changes)
     return scene.with_(
-        block={
-            "radius": factor * scene.block.radius,
-            "corner_inertia": None if inertia is None else factor**2 * inertia,
-        }
+        block=changes, pedestal=scene.pedestal and {"width": max(scene.pedestal.width, 2 * shape.half_width)}
     )
 
 
@@ -230,16 +236,25 @@ QUANTITIES = {
         lambda scene: scene.base and scene.base.mass,  # type: ignore[arg-type, return-value]  # a base or None, likewise
         lambda scene, factor: scene.with_(base={"mass": factor * scene.base.mass}),  # type: ignore[union-attr]  # only called where there is one
     ),
+    "pedestal width": Quantity(
+        "m",
+        lambda scene: scene.pedestal.width if scene.pedestal and scene.friction else None,
+        lambda scene, factor: scene.with_(pedestal={"width": factor * scene.pedestal.width}),  # type: ignore[union-attr]  # likewise
+    ),
     # not delta_k, which defines the limit force and is negligible beside the stiffnesses
     **{name.replace("_", " "): _bearing(name) for name in ("ka", *KEYS) if name != "delta_k"},
 }
 
 
 def limit_states(scene: Scene) -> tuple[str, ...]:
-    """Return the LIMIT_STATES that a scene can reach: "stroke" needs bearings with an x_max, "slides" a friction."""
+    """Return the LIMIT_STATES that a scene can reach: "stroke" needs bearings with an x_max, "slides" a friction.
+
+    "falls off" needs a friction and a pedestal.
+    """
     needs = {
         "stroke": scene.bearings is not None and scene.bearings.x_max is not None,
         "slides": scene.friction is not None,
+        "falls off": scene.pedestal is not None and scene.friction is not None,
     }
     return tuple(state for state in LIMIT_STATES if needs.get(state, True))
 
@@ -426,6 +441,7 @@ def _states(scene, name, changes, scenes, tilt, workers):
             outcomes.lifted | outcomes.overturns,
             (outcomes.peak_tilt > tilt * slenderness) | outcomes.overturns,  # the peak tilt of a fall is not final
             outcomes.peak_base_displacement > farthest,
+            outcomes.fell_off,
             outcomes.overturns,
             (outcomes.min_normal_ratio > 0) | (scene.friction is not None),
         ]
@@ -463,7 +479,7 @@ def cliffs(scene: Scene, changes: np.ndarray, outcomes: Outcomes) -> tuple[Cauti
             f"{changes[changed]:+.2%} {instead}."
         )
         cautions.append(Caution("motion", text, "outcome", float(changes[changed]), SHARE))
-    upright = (names != "overturns") & (names != "failed")
+    upright = ~np.isin(names, (*FALLS, "failed"))
     low, high = np.minimum(ratios, ratios[centre]), np.maximum(ratios, ratios[centre])
     apart = _nearest(changes, upright & upright[centre] & (high >= np.maximum(FOLD * low, SEEN)))
     if apart is not None:

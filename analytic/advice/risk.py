@@ -60,6 +60,7 @@ SPREADS = {
 # {one of LIMIT_STATES: whether the runs of a scene reach it}, the gravest first
 REACHED: dict[str, Callable[[Outcomes, Scene], np.ndarray]] = {
     "overturns": lambda outcomes, scene: outcomes.overturns,
+    "falls off": lambda outcomes, scene: outcomes.fell_off,
     "stroke": lambda outcomes, scene: outcomes.peak_base_displacement > scene.bearings.x_max,  # type: ignore[union-attr]  # only called where there is one
     "lifts": lambda outcomes, scene: outcomes.lifted | outcomes.overturns,
     "slides": lambda outcomes, scene: outcomes.slid,

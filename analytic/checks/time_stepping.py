@@ -72,7 +72,7 @@ def simulate_time_stepping(scene: Scene, *, step: float, history: bool = True) -
     Raises
     ------
     SceneError
-        The scene has both a friction and a given restitution.
+        The scene has a friction, and a given restitution or a pedestal.
     SettingError
         The step is not positive, or too short for the run.
     """
@@ -90,7 +90,9 @@ def simulate_time_stepping(scene: Scene, *, step: float, history: bool = True) -
         if scene.block.restitution is not None:
             words = "not used where the block slides"
             raise SceneError("block.restitution", scene.block.restitution, words, "remove it")
-        mass = scene.base.mass if scene.base else math.inf
+        if scene.pedestal is not None:
+            raise SceneError("pedestal.width", scene.pedestal.width, "not known to this solver", "remove the pedestal")
+        mass = scene.base_mass if scene.base else math.inf
         body = Slider(par.m, scene.block.centre_inertia, 1 / mass, scene.friction)
         h, columns, shaking, march = scene.duration / count, 7, _means, functools.partial(_slide, body)
     nothing = np.zeros(1)

@@ -3,8 +3,8 @@
 from collections import namedtuple
 
 # Modes of the block: both corners in contact, at rest or sliding on the support; pivoting about a corner that is at
-# rest, or slides; no contact; fallen. Without a friction it sticks, rocks or has fallen.
-STICK, SLIDE, ROCK, SLIDE_ROCK, FLIGHT, FALLEN = range(6)
+# rest, or slides; no contact; fallen; off its pedestal. Without a friction it sticks, rocks or has fallen.
+STICK, SLIDE, ROCK, SLIDE_ROCK, FLIGHT, FALLEN, OFF = range(7)
 MODES = ("stick", "slide", "rock", "slide-rock", "flight")
 # How a run ended; of a block that may slide also: an impact of a given restitution leaves the cone; no mode is
 # admissible, or more than one; an impact of a given restitution comes while the block slides, or after a jump.
@@ -25,8 +25,8 @@ TOTALS = 36
 DRIFT, SLIP, SPEED, GAP, RISE, CLIMB, H, N = range(14, 22)
 ROWS = 22
 # Kinds of event inside a step; of a block that may slide also: the friction is exhausted, the slip stops, the normal
-# force vanishes, a corner lands, the other corner becomes the lower one.
-NONE, UPLIFT, IMPACT, REVERSAL, CORNER, PASSAGE, OVERTURNING, CONE, STOP, LOSS, LANDING, LEVEL = range(12)
+# force vanishes, a corner lands, the other corner becomes the lower one, the block passes its pedestal's edge.
+NONE, UPLIFT, IMPACT, REVERSAL, CORNER, PASSAGE, OVERTURNING, CONE, STOP, LOSS, LANDING, LEVEL, EDGE = range(13)
 # Impacts: of the landing corner alone, which sticks or slips; of both, which stick or slip.
 NEW_STICKS, NEW_SLIPS, BOTH_STICK, BOTH_SLIP, LANDS = range(5)
 
@@ -66,8 +66,8 @@ Stretch = namedtuple("Stretch", "kind a0 slope lift rise end order")
 Step = namedtuple("Step", "t h order highest gravity factors corner")
 
 # What only a scene with a friction needs: friction, mass of the base, moment of inertia about the centre of mass,
-# whether the restitution is given.
-Contact = namedtuple("Contact", "mu mb centre given")
+# whether the restitution is given, half width of the pedestal (inf without one).
+Contact = namedtuple("Contact", "mu mb centre given edge")
 # State of a block that may slide: mode, side of the pivot (1 or -1; 0 in full contact), direction of slip (1 or -1; 0
 # without), tilt and its rate, slip of the corner and its rate, gap of the corner and its rate.
 Block = namedtuple("Block", "mode s sigma tilt rate slip speed gap rise")

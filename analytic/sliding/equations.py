@@ -261,12 +261,38 @@ def contact_event(par, contact, block, refused, sooner, order, P, work):
 
 
 @inner
+def edge_event(par, contact, block, sooner, order, P, work):
+    """Return (EDGE, time) where the block passes the edge of its pedestal, or else `sooner`, (kind, time).
+
+    Level, its centre of pressure does, at -h H/N from the middle of the block; tilted, its lower corner does, unless it
+    is past its balance, or in the air.
+    """
+    (first, time), event, height = sooner, P[L.EVENT], par.R * math.cos(par.gamma)
+    if not contact.edge < math.inf or block.mode == FLIGHT or abs(block.tilt) > par.gamma:
+        return first, time
+    at = contact.mu * height * block.sigma if block.mode == SLIDE else block.s * par.R * math.sin(par.gamma)
+    for side in (1.0, -1.0):
+        for k in range(order + 1):
+            event[k] = -side * P[L.SLIP, k]
+        event[0] += contact.edge - side * at
+        if block.mode == STICK:  # N times the room of the centre of pressure
+            room = event[0]
+            for k in range(order + 1):
+                event[k] = room * P[L.N, k] + side * height * P[L.H, k]
+        root = first_root(event, order, time, work)
+        if root >= 0:
+            first, time = L.EDGE, root
+    return first, time
+
+
+@inner
 def next_event(par, contact, block, refused, direction, step, P, work):
     """Return (kind of the first event in the step, its time since the start, side)."""
     kind, h, order = L.NONE, step.h, step.order
     if block.s != 0:
         kind, h = tilt_event(par, block, step, P, work)
     kind, h, side = contact_event(par, contact, block, refused, (kind, h), order, P, work)
+    kind, h = edge_event(par, contact, block, (kind, h), order, P, work)
     kind, h = find_turn(direction, step.corner, (kind, h), order, P, work)
     return kind, h, side
 

@@ -41,6 +41,7 @@ from ..kernel.layout import (
     CLIMB,
     CONE,
     DRIFT,
+    EDGE,
     FALLEN,
     FLIGHT,
     LANDING,
@@ -48,6 +49,7 @@ from ..kernel.layout import (
     LOSS,
     NEW_SLIPS,
     NEW_STICKS,
+    OFF,
     ROCK,
     SLIDE,
     SPEED,
@@ -75,8 +77,8 @@ from ..kernel.steps import (
 )
 from .equations import accelerations, after_event, choose, fresh_series, impossible, mode_series, next_event
 
-# Of the impulse: a contact that is right on the edge of the cone sticks.
-EDGE = 1e-12
+# Of the impulse: a contact that is right on the limit of the cone sticks.
+LIMIT = 1e-12
 
 
 @inner
@@ -111,7 +113,7 @@ def both_corners(par, contact, c, sigma, drift, climb):
 @inner
 def within(across, up, mu):
     """Return whether the impulses lie inside Coulomb's cone."""
-    return up >= 0 and abs(across) <= mu * up * (1 + EDGE)
+    return up >= 0 and abs(across) <= mu * up * (1 + LIMIT)
 
 
 @inner
@@ -131,7 +133,7 @@ def level_impact(par, contact, s, before):
             good = good and within(push, normal, mu)
         else:
             slip = sigma * (after.drift - h * after.rate)
-            good = good and not contact.given and slip > EDGE * (abs(drift) + h * abs(rate))
+            good = good and not contact.given and slip > LIMIT * (abs(drift) + h * abs(rate))
         if good:
             count += 1
             if count == 1:
@@ -141,8 +143,8 @@ def level_impact(par, contact, s, before):
     for sigma in (0.0, 1.0, -1.0):
         across, push, normal = both_corners(par, contact, h, sigma, drift, climb)
         tilting = abs(contact.centre * rate - h * push) / b  # (I1): difference of the impulses of the corners
-        good = normal >= 0 and tilting < normal * (1 - EDGE)
-        good = good and (within(push, normal, mu) if sigma == 0 else sigma * across > EDGE * abs(drift))
+        good = normal >= 0 and tilting < normal * (1 - LIMIT)
+        good = good and (within(push, normal, mu) if sigma == 0 else sigma * across > LIMIT * abs(drift))
         if good:
             count += 1
             if count == 1:
@@ -325,10 +327,16 @@ def end_of_step(par, block, event, step, P, totals, work):
 
 
 @inner
-def fallen(block, none):
-    """Return the block at |tilt| = pi/2; none : 0."""
-    tilt = block.s * 0.5 * math.pi
-    return Block(none + FALLEN, block.s, 0.0, tilt, block.rate, block.slip, block.speed, block.gap, block.rise)
+def fallen(block, event, none):
+    """Return the block at |tilt| = pi/2, or off its pedestal; none : 0."""
+    mode, tilt = (OFF, block.tilt) if event == EDGE else (FALLEN, block.s * 0.5 * math.pi)
+    return Block(none + mode, block.s, 0.0, tilt, block.rate, block.slip, block.speed, block.gap, block.rise)
+
+
+@inner
+def misses(par, contact, block):
+    """Return whether a corner that lands is beyond the edge of the pedestal."""
+    return abs(block.slip + block.s * par.R * math.sin(par.gamma)) > contact.edge
 
 
 @inner
@@ -425,7 +433,7 @@ def conclude(par, resting, contact, end_of_motion, block, base, held, totals):
     held : peaks before a last fall, and its time.
     """
     mode, status = block.mode, totals[L.STATUS]
-    certain = mode == FALLEN or status == L.DECIDED
+    certain = mode >= FALLEN or status == L.DECIDED
     if not certain and status == L.COMPLETE and totals[L.TIME] >= end_of_motion:
         energy = remaining(par, contact, block, base)
         upright = mode != FLIGHT and abs(block.tilt) < par.gamma
@@ -464,7 +472,7 @@ def march(par, resting, contact, ground, upright, options, into):
     totals[L.PEAK_TILT], totals[L.PEAK_X] = abs(par.tilt), abs(par.x)
     held = 0.0, 1.0, 0.0, abs(par.x), 0.0  # friction demand, N/(m g), peaks of the base, time: up to |tilt| = gamma
     rest_rate = options.rest_rate * math.sqrt(par.p2)
-    while begin < par.duration and block.mode != FALLEN and status == L.COMPLETE:
+    while begin < par.duration and block.mode < FALLEN and status == L.COMPLETE:
         stretch = stretch_of_ground(ground, upright, segment, begin, options.order, par.duration)
         finish, order = stretch.end, stretch.order
         after = options.decide and stretch.kind == QUIET and begin >= shaking.end
@@ -523,8 +531,8 @@ def march(par, resting, contact, ground, upright, options, into):
                 fresh, refused = none + L.NONE, none + L.NONE
             tau = length if event == L.NONE and h == length - tau else tau + h
             t, previous, count = begin + tau, block, 1
-            if event == L.OVERTURNING:
-                block = fallen(block, none)
+            if event == L.OVERTURNING or event == EDGE or event == LANDING and misses(par, contact, block):
+                block = fallen(block, event if event == L.OVERTURNING else none + EDGE, none)
                 break
             start = acting(par, base, upright, highest, h, P)
             if event == L.IMPACT or event == LANDING:
@@ -540,7 +548,7 @@ def march(par, resting, contact, ground, upright, options, into):
                 status = L.NOT_FINITE
             if status != L.COMPLETE:
                 break
-        if block.mode != FALLEN and status == L.COMPLETE:
+        if block.mode < FALLEN and status == L.COMPLETE:
             begin, t = finish, finish
     totals[L.STATUS], totals[L.TIME], totals[L.STEPS], totals[L.WRITTEN] = status, t, steps, written
     conclude(par, resting, contact, shaking.end, block, base, held, totals)

@@ -33,8 +33,9 @@ def contact_of(scene: Scene) -> L.Contact | None:
     """Return the numbers of the contact; None without a friction."""
     if scene.friction is None:
         return None
-    mass = scene.base.mass if scene.base else math.inf
-    return L.Contact(float(scene.friction), mass, scene.block.centre_inertia, scene.block.restitution is not None)
+    mass = scene.base_mass if scene.base else math.inf
+    given, edge = scene.block.restitution is not None, scene.edge
+    return L.Contact(float(scene.friction), mass, scene.block.centre_inertia, given, edge)
 
 
 def slipping_friction(par: Parameters) -> float:
@@ -92,12 +93,12 @@ def marched(
 
 
 def stays(totals: np.ndarray) -> bool:
-    """Return whether a march is sound and the block neither slid nor fell.
+    """Return whether a march is sound and the block neither slid nor fell, off its pedestal or over.
 
     Unless the block jumps, the kernel's run is then the answer.
     """
     sound = totals[L.STATUS] in (L.COMPLETE, L.DECIDED)
-    return bool(sound and totals[L.PATH] == 0 and totals[L.MODE] != L.FALLEN)
+    return bool(sound and totals[L.PATH] == 0 and totals[L.MODE] < L.FALLEN)
 
 
 def outcome(par: Parameters, contact: L.Contact, ground: Ground, options: Options, totals: np.ndarray) -> None:
@@ -107,7 +108,7 @@ def outcome(par: Parameters, contact: L.Contact, ground: Ground, options: Option
         return
     fallen, undetermined = result[L.MODE] == L.FALLEN, problem(par, contact, result) is not None
     totals[L.STATUS] = L.STUCK if undetermined or result[L.STATUS] not in (L.COMPLETE, L.DECIDED) else L.COMPLETE
-    slots = [L.LIFTED, L.CERTAIN, L.PEAK_TILT, L.PEAK_X, L.IMPACTS, L.PATH, L.PEAK_SLIP]
+    slots = [L.MODE, L.LIFTED, L.CERTAIN, L.PEAK_TILT, L.PEAK_X, L.IMPACTS, L.PATH, L.PEAK_SLIP]
     totals[slots], totals[L.WILL_OVERTURN] = result[slots], fallen
 
 
@@ -181,7 +182,7 @@ def slid(
         value = scene.friction if key == "friction" else scene.block.restitution
         remedy = remedies(key, scene, par, contact, ground, options)
         raise SceneError(key, value, words, remedy, scene.name or None)
-    if totals[L.MODE] != L.FALLEN and abs(totals[L.END_TILT]) > par.gamma and totals[L.TIME] >= ground.shaking.end:
+    if totals[L.MODE] < L.FALLEN and abs(totals[L.END_TILT]) > par.gamma and totals[L.TIME] >= ground.shaking.end:
         later = par._replace(duration=par.duration + longest_duration(scene))
         further, *_ = marched(later, contact, ground, options._replace(record=False, output_step=0.0))
         if further[L.MODE] == L.FALLEN:
@@ -209,7 +210,7 @@ def stored(scene: Scene, par: Parameters, state: Iterable[float]) -> np.ndarray:
     (tilt, rate, x, v, speed, rise, gap), R, gamma = state, par.R, par.gamma
     angle = math.copysign(gamma, tilt if tilt != 0 else rate) - tilt
     drift, climb = speed + R * math.cos(angle) * rate, rise + R * math.sin(angle) * rate
-    base = (scene.base.mass if scene.base else 0.0) * v * v
+    base = scene.base_mass * v * v
     moving = par.m * ((v + drift) ** 2 + climb**2) + scene.block.centre_inertia * rate**2 + base
     height = R * (2 * math.sin(gamma - 0.5 * abs(tilt)) * math.sin(0.5 * abs(tilt))) + gap
     return np.array([0.5 * moving, par.m * par.g * height + 0.5 * par.count * par.kb * x * x])

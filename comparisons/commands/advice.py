@@ -30,6 +30,7 @@ from ..execution.command_runs import (
     SceneFile,
     Units,
     check_time_limit,
+    checked,
     end_with,
     in_file,
     motions_of,
@@ -164,24 +165,27 @@ def margin(
     with spinner(f"{loaded.name}: margins") as tell, in_file(scene):
         nearest = margins(loaded, **scan, progress=lambda name: tell(f"{loaded.name}: {name}"))
         response = decided(loaded)
+        support, _, stays = checked(loaded.with_(duration=None))
     contact, warnings = Contact.of(loaded, response), (*scene_warnings(loaded), *response.warnings)
     rows = rows_of(loaded, groups, decided, lambda scene: _changes(scene, scan))
 
     def show():
-        print_margins(loaded, nearest, contact, span, tilt, warnings)
+        print_margins(loaded, nearest, contact, span, tilt, warnings, stays)
         print_motions(loaded, [{**row, "changes": named(row, tilt)} for row in rows], left)
 
-    form = _margin_form(loaded, nearest, contact, warnings, rows, left, span, tilt)
+    form = _margin_form(loaded, nearest, contact, warnings, rows, left, span, tilt, support)
     write_output({json_file: form}, show, plot, lambda: draw_margins(loaded, nearest, tilt))
     end_with(rows, response)
 
 
 def decided(scene: Scene) -> Response:
-    """The response of the analytic model, run until the outcome is decided."""
-    return simulate(scene.with_(duration=None), history=False)
+    """The response of the analytic model, run until the outcome is decided, with the warnings of `checked`."""
+    scene = scene.with_(duration=None)
+    response = simulate(scene, history=False)
+    return dataclasses.replace(response, warnings=(*response.warnings, *checked(scene)[1]))
 
 
-def _margin_form(scene, nearest, contact, warnings, rows, left, span, tilt):
+def _margin_form(scene, nearest, contact, warnings, rows, left, span, tilt, support):
     """The content of the JSON file of `margin`."""
     from ..plotting.margins import headline
 
@@ -197,6 +201,7 @@ def _margin_form(scene, nearest, contact, warnings, rows, left, span, tilt):
         motions=[forms.MotionMargin(**row) for row in rows],
         left_out=left,
         headline=headline(rows, left),
+        pedestal=support,
     )
 
 

@@ -13,7 +13,7 @@ from analytic.errors import SettingError
 from analytic.records import G, read_channels, two_columns
 from analytic.records import content as fema
 from analytic.rocking import DEFINITIONS, design_bearings
-from analytic.scene import Base, Bearings
+from analytic.scene import Base, Bearings, Pedestal
 from analytic.scene_file import DAMPING, MATERIALS, PERIOD, block_from, derived, scene_text
 
 from ..execution.command_runs import (
@@ -59,6 +59,13 @@ def new(
         float | None,
         typer.Option(help="Mass of a base under the block [kg]; without it the block stands directly on rigid ground."),
     ] = None,
+    pedestal_width: Annotated[
+        float | None, typer.Option(help="Width of a pedestal under the block [m]: a block that slides falls off it.")
+    ] = None,
+    pedestal_mass: Annotated[
+        float | None, typer.Option(help="Mass of the pedestal [kg]; with its height, whether it stays is checked.")
+    ] = None,
+    pedestal_height: Annotated[float | None, typer.Option(help="Height of the pedestal [m].")] = None,
     slides_freely: Annotated[
         bool, typer.Option("--slides-freely", help="The base has no bearings and no friction.")
     ] = False,
@@ -116,11 +123,25 @@ def new(
         targets = {"period": period, "damping": damping, "stiffness_ratio": ratio, "definition": definition}
         constants = {"ka": ka, "kb": kb, "alpha": alpha}
         pendulum = {"radius": pendulum_radius, "friction": pendulum_friction}
-        support = _support(ctx, block.mass, base_mass, slides_freely, count, xmax, targets, constants, pendulum)
+        sizes: Any = {
+            name: size
+            for name, size in (("width", pedestal_width), ("mass", pedestal_mass), ("height", pedestal_height))
+            if size is not None
+        }
+        pedestal = Pedestal(**sizes) if sizes else None
+        mass_above = block.mass + (pedestal_mass or 0.0)
+        support = _support(ctx, mass_above, base_mass, slides_freely, count, xmax, targets, constants, pendulum)
         motion = _motion(file, record, tilt, {"units": units, "dt": dt, "column": column, "channel": channel})
         about = f"A block {height:g} m high and {width:g} m wide along the motion; rocking run {Path(file).name}"
         text = scene_text(
-            name or Path(file).stem, block, **support, motion=motion, tilt=tilt, friction=friction, about=(about,)
+            name or Path(file).stem,
+            block,
+            **support,
+            pedestal=pedestal,
+            motion=motion,
+            tilt=tilt,
+            friction=friction,
+            about=(about,),
         )
         scene = scene_of(text, file)
         if not anyway:
@@ -161,7 +182,7 @@ def _density(density: float | None, material: str | None) -> float | None:
 
 def _support(
     ctx: typer.Context,
-    block_mass: float,
+    mass: float,
     base_mass: float | None,
     slides_freely: bool,
     count: int,
@@ -170,14 +191,17 @@ def _support(
     constants: Mapping[str, Any],
     pendulum: Mapping[str, Any],
 ) -> dict[str, Any]:
-    """The `Base` under the block and its `Bearings`, each None where there is none, and a note on pendula."""
+    """The `Base` and its `Bearings`, each None where there is none, and a note on pendula.
+
+    mass: of block and pedestal [kg].
+    """
     base = None if base_mass is None else Base(mass=base_mass)
     for option in ("damping", "definition", "ratio"):
         if targets["period"] is None and str(ctx.get_parameter_source(option)).endswith("COMMANDLINE"):
             raise SettingError(f"--{option} belongs to bearings by design; give --period and --xmax, or remove it")
     borne = any(value is not None for value in (targets["period"], xmax, *constants.values(), *pendulum.values()))
     _check_base(base_mass, borne, slides_freely)
-    carried = block_mass + (base_mass or 0.0)
+    carried = mass + (base_mass or 0.0)
     bearings = _bearings(carried, count, xmax, targets, constants, pendulum) if borne else None
     return {"base": base, "bearings": bearings, "note": pendulum_note(bearings, carried)}
 

@@ -26,6 +26,7 @@ from ..execution.command_runs import (
     Units,
     check_solver,
     check_time_limit,
+    checked,
     end_with,
     in_file,
     named_engines,
@@ -40,7 +41,7 @@ from ..execution.command_runs import (
 )
 from ..execution.progress import compile_kernels, say, spinner, stdout_to_stderr
 from ..execution.writing import check_writable, readable, write_text
-from ..schemas.runs import Comparison, MotionRun, Run, Sensitivity
+from ..schemas.runs import Comparison, Run, Sensitivity
 from .output import write_output
 
 
@@ -76,7 +77,11 @@ def run(
     check_writable([json_file, csv], picture=plot, inputs=[scene])
     check_solver(engine)
     loaded, solver = load_scene(scene), (engine, variant, parse_settings(settings or []))
-    about, (groups, left) = scene_warnings(loaded), other_motions(loaded, records, both_signs, directions, units)
+    (support, warned, stays), (groups, left) = (
+        checked(loaded),
+        other_motions(loaded, records, both_signs, directions, units),
+    )
+    about = (*scene_warnings(loaded), *warned)
     with in_file(scene):
         words = f"{loaded.name}: {engine}"
         response = simulate(loaded, *solver, bool(csv or plot), time_limit, words, compare=True)
@@ -91,21 +96,21 @@ def run(
         csv = plot = None
 
     def tell():
-        show(summary(loaded, response), [response], about)
+        show(summary(loaded, response), [response], about, stays)
         print_motions(loaded, rows, left)
 
     print_failures([response])
-    results = {json_file: _run_form(response, about, rows, left), csv: _history_text(response) if csv else ""}
+    results = {json_file: _run_form(response, about, rows, left, support), csv: _history_text(response) if csv else ""}
     write_output(results, tell, plot, lambda: _drawn(loaded, [response]))
     end_with(rows, response)
 
 
-def _run_form(response, about, rows, left):
+def _run_form(response, about, rows, left, support):
     """The content of the JSON file of `run`."""
     from ..plotting.margins import headline
 
     values = replace(response, warnings=(*about, *response.warnings)).to_json()
-    return Run(**values, motions=[MotionRun(**row) for row in rows], left_out=left, headline=headline(rows, left))
+    return Run(**values, motions=rows, left_out=left, headline=headline(rows, left), pedestal=support)
 
 
 def _history_text(response):
@@ -155,11 +160,12 @@ def compare(
         say("there is no history to draw")
         plot = None
     print_failures(responses)
-    about = scene_warnings(loaded)
+    support, cautions, stays = checked(loaded)
+    about = (*scene_warnings(loaded), *cautions)
     warned = [replace(responses[0], warnings=(*about, *responses[0].warnings)), *responses[1:]]
     write_output(
-        {json_file: _comparison_form(loaded, warned, horizons, horizon)},
-        lambda: show(comparison(loaded, responses, horizons), responses, about),
+        {json_file: _comparison_form(loaded, warned, horizons, horizon, support)},
+        lambda: show(comparison(loaded, responses, horizons), responses, about, stays),
         plot,
         lambda: _drawn(loaded, with_history, horizon),
     )
@@ -195,7 +201,7 @@ def _sensitivity(scene, responses, time_limit):
     return {}
 
 
-def _comparison_form(scene, responses, horizons, horizon):
+def _comparison_form(scene, responses, horizons, horizon, support):
     """The content of the JSON file of `compare`."""
     return Comparison(
         scene=scene.name,
@@ -205,6 +211,7 @@ def _comparison_form(scene, responses, horizons, horizon):
             for name, each in horizons.items()
         },
         responses=[Run(**response.to_json()) for response in responses],
+        pedestal=support,
     )
 
 
@@ -242,7 +249,7 @@ def engines(
     echo(engines_table(shown), *missing_words(missing), *broken)
 
 
-SUFFIX = ".py"
+SUFFIX, NO_EDGE = ".py", "The script's support has no edge: the block does not fall off its pedestal there."
 
 
 def script(
@@ -280,4 +287,7 @@ def script(
     check_writable(texts, inputs=[scene])
     for path, text in texts.items():
         write_text(path, text)
-    echo(*(f"{path} written" for path in texts), *filter(None, [unkept_friction(loaded)]))
+    echo(
+        *(f"{path} written" for path in texts),
+        *filter(None, [unkept_friction(loaded), NO_EDGE if loaded.pedestal and loaded.friction else ""]),
+    )

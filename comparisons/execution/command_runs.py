@@ -26,6 +26,7 @@ import typer
 import analytic
 from analytic import Response, SampledMotion, synthetic_motion
 from analytic.advice.margins import SHARE, cliffs, nearby
+from analytic.advice.pedestal import check_pedestal
 from analytic.errors import SceneError, SettingError
 from analytic.motion import Motion
 from analytic.records import read_record
@@ -168,6 +169,13 @@ def simulate(
     return dataclasses.replace(response, warnings=tuple(odd))
 
 
+def checked(scene: Scene) -> tuple[dict[str, Any] | None, tuple[Caution, ...], list[str]]:
+    """Return ({field of `schemas.runs.Pedestal`: value} or None, its warnings, or the sentence that it stays)."""
+    if (check := check_pedestal(scene)) is None:
+        return None, (), []
+    return asdict(check) | {"text": check.text}, check.cautions, [] if check.cautions else [check.text]
+
+
 def near_motion(scene: Scene) -> tuple[Caution, ...]:
     """Return the warnings of `near` and show a line meanwhile; none without a motion."""
     if scene.motion is None:
@@ -186,8 +194,8 @@ def near(scene: Scene) -> tuple[Caution, ...]:
 
 
 def with_near(scene: Scene, response: Response) -> Response:
-    """Return the response of a scene with the warnings of `near` added."""
-    return dataclasses.replace(response, warnings=(*response.warnings, *near(scene)))
+    """Return the response of a scene with the warnings of `near` and of `checked` added."""
+    return dataclasses.replace(response, warnings=(*response.warnings, *near(scene), *checked(scene)[1]))
 
 
 def check_solver(name: str) -> None:
@@ -322,6 +330,7 @@ OPTIONS = {
     **RECORD_OPTIONS,
     **{"x_max": "--xmax", "bearings.x_max": "--xmax", "stiffness_ratio": "--ratio", "start.tilt": "--tilt"},
     **{"block.mass": "--mass", "base.mass": "--base-mass"},
+    **{f"pedestal.{name}": f"--pedestal-{name}" for name in ("width", "mass", "height")},
 }
 PENDULUM = {"radius": "--pendulum-radius", "friction": "--pendulum-friction"}
 

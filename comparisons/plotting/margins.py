@@ -13,7 +13,7 @@ from analytic import Caution, Scene
 from analytic.advice.bearing_scan import BearingScan, hardest
 from analytic.advice.margins import Contact, Margin, limit_states
 from analytic.motion import Motion
-from analytic.response import KINDS
+from analytic.response import FALLS, KINDS
 
 from ..execution.command_runs import OWN
 from ..execution.writing import readable
@@ -29,6 +29,7 @@ COLOURS = {
     "stands": ("#009E73", ""),
     "slides": ("#E69F00", "--"),
     "rocks": ("#F0E442", ".."),
+    "falls off": ("#882255", "xx"),
     "overturns": ("#D55E00", "//"),
     "failed": ("0.4", ""),
 }
@@ -44,8 +45,9 @@ def print_margins(
     span: float,
     tilt: float,
     warnings: Sequence[Caution] = (),
+    notes: Sequence[str] = (),
 ) -> None:
-    """Print `warnings`, a row for each `Margin` with a change, in order, and the reserves of the contact.
+    """Print `warnings`, a row for each `Margin` with a change, in order, reserves of the contact, and `notes`.
 
     span : largest change tried [%]. tilt : limit of the peak tilt, over slenderness.
     """
@@ -93,13 +95,13 @@ def print_margins(
     parts.append(" ".join(filter(None, [_normal_words(contact), _friction_words(contact)])))
     if scene.bearings is not None:
         parts.append("Assumed: the bearings are stiff vertically (real bearings vibrate vertically at 10 to 20 Hz).")
-    echo(*parts, wrap=True)
+    echo(*parts, *notes, wrap=True)
 
 
 def _names(tilt):
     """Return {limit state: its name in tables}."""
     beyond = {"tilt": f"tilt > {tilt:g} γ", "stroke": "base > x_max"}
-    return {"slides": "slides", "lifts": "lifts", **beyond, "overturns": "overturns"}
+    return {"slides": "slides", "lifts": "lifts", **beyond, **dict(zip(FALLS, FALLS, strict=True))}
 
 
 def _range_ends(margin):
@@ -214,12 +216,14 @@ def _friction_words(contact):
     return f"{demand}, the scene's coefficient {contact.friction:g}{slides}."
 
 
-LIFTED = ("rocks", "overturns")
+LIFTED = ("rocks", "overturns")  # one that falls off may never have lifted
 RECORD = "record"
 # {(kind, quantity or None) of a warning: (word in a table, clause in the headline)}, the most important one first.
 DOUBTS = {
     ("limit", "peak_base_displacement"): ("x_max", "the base exceeds x_max"),
     ("limit", "peak_slip"): ("slip", "the block slips by more than its half width"),
+    ("limit", "overhang"): ("overhang", "the block overhangs its pedestal"),
+    ("limit", "pedestal"): ("pedestal", "the pedestal may lift"),
     ("limit", None): ("limit", "a limit is exceeded"),
     ("model", None): ("model", "a run warns that it is outside the model"),
     ("record", None): ("record", "the record is unusual"),
@@ -246,11 +250,16 @@ def headline(rows: Sequence[Mapping[str, Any]], left: Sequence[str] = ()) -> str
     failed = _record_count(rows, [row for row in rows if row["outcome"] == "failed"])
     sentences = [f"No outcome under {failed}."] if failed else []
     sentences += [f"Warning: {clause} under {records}." for clause, records in doubts(rows).items()]
-    sentences.append(f"The block {odds(rows, LIFTED, 'lifts')}, and {odds(rows, LIFTED[1:], 'overturns')}.")
+    sentences.append(f"The block {odds(rows, LIFTED, 'lifts')}, and {odds(rows, FALLS, falls_word(rows))}.")
     if unit_of(rows) != RECORD and len({row["record"] for row in rows}) < len(rows):
         sentences.append("Components, directions and signs count as one motion.")
     noun = "file or channel" if len(left) == 1 else "files or channels"
     return " ".join([*sentences, *([f"Left out of the folder: {len(left)} {noun}."] if left else [])])
+
+
+def falls_word(rows: Iterable[Mapping[str, Any]]) -> str:
+    """Return what a fall is called: "overturns", or both words where a block falls off its pedestal."""
+    return "falls off or overturns" if any(row["outcome"] == FALLS[0] for row in rows) else FALLS[1]
 
 
 def doubts(rows: Sequence[Mapping[str, Any]], kinds: Sequence[str] = KINDS) -> dict[str, str]:
@@ -484,6 +493,7 @@ def _aim(scene, stroke, tilt):
 # {limit state: (its name in tables, its clause in sentences, its colour)}
 ODDS = {
     "overturns": ("overturns", "the block overturns", COLOURS["overturns"][0]),
+    "falls off": ("falls off", "the block falls off its pedestal", COLOURS["falls off"][0]),
     "stroke": ("base > x_max", "the base exceeds x_max", STROKE[0]),
     "lifts": ("lifts", "the block lifts", OUTSIDE[0]),
     "slides": ("slides", "the block slides", COLOURS["slides"][0]),

@@ -21,6 +21,7 @@ from rich.table import Table
 from rich.text import Text
 
 from analytic import Caution, Response, Scene
+from analytic.response import FALLS
 from engines import ENGINES, available_engines, get_engine
 from engines.contract import Engine, Variant
 from engines.simulating import in_words
@@ -140,6 +141,7 @@ def summary(scene: Scene, response: Response) -> Grid:
     rows = {
         "outcome": response.outcome_text,
         "overturning time [s]": digits(response.overturning_time, ".6g"),
+        **({"falls off at [s]": digits(response.end.time, ".6g")} if response.outcome == FALLS[0] else {}),
         "peak tilt [rad]": digits(response.peak_tilt),
         "peak tilt / slenderness": digits(response.peak_tilt_ratio),
         "peak base displacement [m]": digits(response.peak_base_displacement),
@@ -197,7 +199,7 @@ def comparison(scene: Scene, responses: Sequence[Response], horizons: Mapping[st
     for response in responses:
         tilt, displacement = "", ""
         if response is not reference and not response.failure and not reference.failure:
-            if "overturns" not in (response.outcome, reference.outcome):
+            if not {*FALLS} & {response.outcome, reference.outcome}:
                 tilt = f"{response.peak_tilt_ratio - reference.peak_tilt_ratio:+.0e}"
             if reference.peak_base_displacement > 0:
                 displacement = f"{100 * (response.peak_base_displacement / reference.peak_base_displacement - 1):+.0e}"
@@ -224,7 +226,7 @@ def _slipped(response, reference):
         return "-", ""
     slip, reference_slip = (run.sliding.peak if run.sliding else 0.0 for run in (response, reference))
     apart = response is not reference and not reference.failure and reference_slip > 0
-    if not apart or "overturns" in (response.outcome, reference.outcome):
+    if not apart or {*FALLS} & {response.outcome, reference.outcome}:
         return digits(slip), ""
     return digits(slip), f"{100 * (slip / reference_slip - 1):+.0e}"
 
@@ -244,18 +246,19 @@ def _limit(horizons):
     return "\n".join(lines)
 
 
-def show(table: Grid, responses: Sequence[Response], about: Sequence[Caution] = ()) -> None:
+def show(table: Grid, responses: Sequence[Response], about: Sequence[Caution] = (), notes: Sequence[str] = ()) -> None:
     """Print a table of responses; below it their differences from the analytic model, and their warnings.
 
-    Warnings `about` the scene itself stand first, in bold. A sentence on the outcomes of several responses follows.
-    Warnings of a result that is sensitive to small changes of the motion stand last, in bold.
+    Warnings `about` the scene itself stand first, in bold; `notes` on it stand below the table. A sentence on the
+    outcomes of several responses follows the former. Warnings of a result that is sensitive to small changes of the
+    motion stand last, in bold.
     """
     echo(*(Text(f"Warning: {readable(str(warning))}", "bold") for warning in about))
     if len(responses) > 1:
         sentence = outcomes([{**response.to_json(), "outcome_text": response.outcome_text} for response in responses])
         echo(f"{sentence[0].upper()}{sentence[1:]}.", wrap=True)
     motion = [warning for response in responses for warning in response.warnings if warning.kind == MOTION]
-    echo(table, *(readable(words) for words in remarks(responses)))
+    echo(table, *(readable(words) for words in (*remarks(responses), *notes)))
     echo(*(Text(readable(str(warning)), "bold") for warning in motion))
 
 

@@ -26,6 +26,7 @@ OUTCOMES = {
     "stands": "never lifts",
     "slides": "slides and never lifts",
     "rocks": "rocks and stays upright",
+    "falls off": "falls off its pedestal",
     "overturns": "overturns",
 }
 MOST_NAMED = 3  # more solvers with the commonest outcome are counted, not named

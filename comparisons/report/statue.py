@@ -16,11 +16,11 @@ from analytic.advice.bearing_scan import first_stroke
 from analytic.advice.margins import SHARE, SPAN, STEP, TILT, check_cost, cliffs, limit_states, margins, nearby
 from analytic.motion import Motion
 from analytic.records.folder import reversed_sign, same_reversed
-from analytic.response import JUDGED, about_record, scene_warnings
+from analytic.response import FALLS, JUDGED, about_record, scene_warnings
 
-from ..execution.command_runs import row_of, with_near, with_own
+from ..execution.command_runs import checked, row_of, with_near, with_own
 from ..execution.results import Result
-from ..plotting.margins import LIFTED, counted, doubts, headline, motion_warnings, unit_of
+from ..plotting.margins import LIFTED, counted, doubts, falls_word, headline, motion_warnings, unit_of
 from ..plotting.parts import across, grouped, table
 from ..plotting.wording import listed
 from ..schemas.columns import Column, number, signed
@@ -39,6 +39,8 @@ def needed_by(scene: Scene, motions: Sequence[Motion]) -> dict[str, float | None
     overturn, nor slip by more than the plate's half width; None if it overturns on none. slip : the largest slip [m] on
     these plates. friction : coefficient at which it does not slide on a plate, if the scene's is less.
     """
+    # plates may be wider than the pedestal
+    scene = scene.with_(pedestal=scene.pedestal and {"width": 4 * BROAD * scene.block.radius})
     if scene.start.tilt or scene.start.tilt_rate or not motions:  # it lifts however it stands
         return dict.fromkeys(("stroke", "stands", "upright", "slip", "friction"))
     stroke, height = first_stroke(scene, motions), 2 * scene.block.half_height
@@ -161,16 +163,22 @@ def _plate_words(scene, needed):
     return f"{words} {upright} m wide (now {now} m) it does not overturn, to one of {stands} m it does not lift{held}"
 
 
-WORST = ("stands", "slides", "rocks", "failed", "overturns")  # outcomes from the best to the worst
+WORST = ("stands", "slides", "rocks", "failed", *FALLS)  # outcomes from the best to the worst
 WORDS = {
     "stands": "does not lift",
     "slides": "slides and does not lift",
     "rocks": "rocks and stays upright",
+    "falls off": "slides off its pedestal",
     "overturns": "overturns",
     "failed": "leaves the model",
 }
 BEYOND = ("limit", "model")  # kinds of warnings that stand in the title
-STATES = {"slides": "Sliding", "tilt": f"Tilt above {TILT:g} γ", "stroke": "Base beyond x_max"}  # other limit states
+STATES = {
+    "slides": "Sliding",
+    "falls off": "Falling off",
+    "tilt": f"Tilt above {TILT:g} γ",
+    "stroke": "Base beyond x_max",
+}  # other limit states
 
 
 @dataclass(frozen=True)
@@ -201,6 +209,7 @@ def statue_of(
     """
     statue: dict[str, Any] = {"own": _numbers(scene), "cautions": [], "near": [], "margins": []}
     statue["cautions"] += map(str, scene_warnings(scene))
+    statue["pedestal"], _, statue["stays"] = checked(scene)
     if scene.base is not None and scene.bearings is not None:
         start = {"base_displacement": 0.0, "base_velocity": 0.0}
         statue["free"] = _numbers_of_copy(scene.with_(base=None, bearings=None, start=start))
@@ -264,7 +273,7 @@ def _numbers_of_copy(scene):
 
 def _numbers(scene):
     response = simulate(scene, history=False)
-    warnings = dict.fromkeys((*about_record(scene.motion), *response.warnings))
+    warnings = dict.fromkeys((*about_record(scene.motion), *response.warnings, *checked(scene)[1]))
     slid = response.sliding if response.sliding and response.sliding.peak else None
     return {
         "outcome": response.outcome,
@@ -348,7 +357,7 @@ def _by_record(rows):
             "pga": max(row["peak"] for row in group),
             "outcome": max((row["outcome"] for row in group), key=WORST.index),
             "lifts": sum(row["outcome"] in LIFTED for row in group),
-            "overturns": sum(row["outcome"] == "overturns" for row in group),
+            "falls": sum(row["outcome"] in FALLS for row in group),
             **{name: _largest(group, name) for name in ("tilt", "stroke", "slip")},
             "doubts": ", ".join(doubts(group)),
         }
@@ -390,7 +399,7 @@ def _worst_words(statue, scene):
 
 def _sentences(statue):
     """Return (heading, sentence) pairs on results of the model beyond the scene's own run."""
-    sentences = _slip_sentences(statue["own"])
+    sentences = [("Pedestal", words) for words in statue["stays"]] + _slip_sentences(statue["own"])
     if "free" in statue:
         sentences.append(("Without isolation", f"Free-standing, the block {_copy_words(statue['free'])}."))
     sentences += _nearest_changes(statue["margins"])
@@ -419,9 +428,9 @@ def _slip_sentences(run):
     if not run.get("slip"):
         return []
     far, end = number(run["slip"], 3), number(abs(run["slip_end"]), 3)
-    if run["outcome"] == "overturns":
-        return [("Slip", f"It slides by up to {far} m before it lies, the last of it as it falls.")]
-    return [("Slip", f"It slides by up to {far} m, and ends {end} m from where it stood.")]
+    falls = {"falls off": " until it falls off", "overturns": " before it lies, the last of it as it falls"}
+    rest = falls.get(run["outcome"], f", and ends {end} m from where it stood")
+    return [("Slip", f"It slides by up to {far} m{rest}.")]
 
 
 def _slip_column(rows, head):
@@ -516,7 +525,7 @@ def _motion_table(motions, unit, scene):
         Column("runs", "motions"),
         Column("largest peak [g]", lambda record: record["pga"] / scene["gravity"], 3),
         Column("lifts", "lifts"),
-        Column("overturns", "overturns"),
+        Column(falls_word(motions), "falls"),
         Column("largest tilt over slenderness [-]", lambda record: _tilt(record["outcome"], record["tilt"])),
         *([Column("largest base displacement [m]", "stroke", 3)] if scene["base"] else []),
         *_slip_column(motions, "largest slip [m]"),

@@ -10,7 +10,7 @@ from analytic.advice import margins
 from analytic.scene import SCENE_UNITS, Bearings
 
 from . import Form, Part
-from .runs import MotionRead, MotionRun, Sizes, Warned
+from .runs import MotionRead, MotionRun, Pedestal, Sizes, Warned
 
 LimitState = Literal[*margins.LIMIT_STATES]  # type: ignore[valid-type]  # the words of `analytic.advice.margins`
 
@@ -19,7 +19,8 @@ class Band(Part):
     """A band of relative changes from low to high.
 
     reached: the limit states there, of "slides", "lifts", "tilt" (the peak tilt exceeds its share of the slenderness),
-    "stroke" (the base goes beyond x_max) and "overturns". holds: the contact holds as the model assumes."""
+    "stroke" (the base goes beyond x_max), "falls off" (its pedestal) and "overturns". holds: the contact holds as the
+    model assumes."""
 
     low: float
     high: float
@@ -85,7 +86,7 @@ class Margins(Form):
     largest relative change scanned, up and (above -1) down. warnings: of the unchanged scene. headline: under how
     many records runs fail or warn, and the block lifts or overturns."""
 
-    schema_: str = Field(default="rocking margin 4", serialization_alias="schema")
+    schema_: str = Field(default="rocking margin 5", serialization_alias="schema")
     scene: str
     outcome: str
     tilt: float
@@ -97,6 +98,7 @@ class Margins(Form):
     motions: list[MotionMargin]
     left_out: list[str] = Field(description="files and channels of the folder, and why")
     headline: str | None
+    pedestal: Pedestal | None = Field(default=None, description="if the scene gives its mass and height")
 
 
 class Drawn(Part):

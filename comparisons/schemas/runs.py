@@ -59,6 +59,20 @@ class Sliding(Part):
     modes: list[tuple[float, str]]
 
 
+class Pedestal(Part):
+    """Whether the pedestal stays on what carries it (`analytic.advice.pedestal`), by the analytic model's run.
+
+    share, landing: largest distance of the centre of pressure under it from its middle, over its half width; landing:
+    of the impulses of landings, 0 without any. Up to 1 it stays. uplift: acceleration above which block and pedestal
+    lift together. width: on which it stays, null where none was found. text: the verdict."""
+
+    share: float
+    landing: float
+    uplift: float = Field(description="m/s2")
+    width: float | None = Field(description="m")
+    text: str
+
+
 class Failure(Part):
     """A failure of a run: the reason in plain words, the engine's own message, the last finite state."""
 
@@ -181,10 +195,11 @@ class _Values(Form):
 class Run(_Values):
     """A scene in one solver. headline: under how many records runs fail or warn, and the block lifts or overturns."""
 
-    schema_: str = Field(default="rocking run 4", serialization_alias="schema")
+    schema_: str = Field(default="rocking run 5", serialization_alias="schema")
     motions: list[MotionRun] = Field(default=[], description="if --records, --both-signs or --directions is given")
     left_out: list[str] = Field(default=[], description="files and channels of the folder, and why")
     headline: str | None = None
+    pedestal: Pedestal | None = Field(default=None, description="if the scene gives its mass and height")
 
 
 class Sensitivity(Part):
@@ -197,11 +212,12 @@ class Sensitivity(Part):
 class Comparison(Form):
     """A scene in all solvers. sensitivity_horizon: time [s] up to which motions are compared point by point."""
 
-    schema_: str = Field(default="rocking compare 4", serialization_alias="schema")
+    schema_: str = Field(default="rocking compare 5", serialization_alias="schema")
     scene: str
     sensitivity_horizon: float | None
     sensitivity: dict[str, Sensitivity]
     responses: list[Run]
+    pedestal: Pedestal | None = Field(default=None, description="if the scene gives its mass and height")
 
 
 class Tolerance(Part):
@@ -291,7 +307,7 @@ class Report(Form):
 
     results: the result files it is made from. motions: {scene: a row for each of many motions}. left_out: files and
     channels of the folder, and why. headlines: under how many records runs fail or warn, and the block lifts or
-    overturns. sizes: of the bearings of each scene."""
+    overturns. sizes: of the bearings of each scene. pedestals: {scene: whether its pedestal stays}."""
 
     schema_: str = Field(default="rocking report 6", serialization_alias="schema")
     page: str
@@ -302,6 +318,7 @@ class Report(Form):
     left_out: dict[str, list[str]] = {}
     headlines: dict[str, str | None] = {}
     sizes: dict[str, Sizes | None] = {}
+    pedestals: dict[str, Pedestal | None] = {}
 
 
 class Derived(Part):

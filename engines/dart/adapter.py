@@ -35,7 +35,7 @@ class DartBodies:
 
     def __init__(self, scene: Scene, plain: bool) -> None:
         dynamics, block, R, start = dartpy.dynamics, scene.block, scene.block.radius, scene.start
-        self.mass, self.loaded = scene.base.mass if scene.base else 0.0, scene.bearings is not None
+        self.mass, self.loaded = scene.base_mass, scene.bearings is not None
         if scene.friction is not None:
             friction = scene.friction
         else:
@@ -110,7 +110,7 @@ class DartBodies:
             ]
         if scene.base is not None:
             expected += [
-                ("base: mass", self.slab.getMass(), scene.base.mass),
+                ("base: mass", self.slab.getMass(), scene.base_mass),
                 ("base: position", self.ground.getPositions(), [scene.start.base_displacement]),
                 ("base: velocity", self.ground.getVelocities(), [scene.start.base_velocity]),
             ]

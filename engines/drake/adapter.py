@@ -44,7 +44,7 @@ class DrakeBodies:
         plant.RegisterCollisionGeometry(self.block, RigidTransform(), Box(2 * b, 2 * b, 2 * h), "box", touching)
         ground, self.slide = plant.world_body(), None
         if scene.base is not None:
-            ground = plant.AddRigidBody("base", _solid(scene.base.mass, scene.base.mass * R**2))
+            ground = plant.AddRigidBody("base", _solid(scene.base_mass, scene.base_mass * R**2))
             frames = plant.world_frame(), ground.body_frame()
             self.slide = plant.AddJoint(PrismaticJoint("slide", *frames, [1.0, 0.0, 0.0]))
         below = RigidTransform([0.0, 0.0, -0.5 * THICKNESS * R])

@@ -74,7 +74,7 @@ def build(scene: Scene, deflected: Sequence[float]) -> Model:
                 initialVelocities=[start.base_velocity],
             )
         )
-        base = mbs.AddObject(ObjectMass1D(mass=scene.base.mass, nodeNumber=node))
+        base = mbs.AddObject(ObjectMass1D(mass=scene.base_mass, nodeNumber=node))
     model = Model(scene, container, mbs, ground, block, base, deflected)
     if scene.bearings:
         _add_bearing(model)
@@ -111,7 +111,7 @@ def read_back(model: Model) -> dict[str, tuple[Any, Any]]:
         "block.centre_inertia": (block["inertia"], scene.block.centre_inertia),
     }
     if scene.base:
-        values["base.mass"] = (mbs.GetObject(model.base)["mass"], scene.base.mass)
+        values["base.mass"] = (mbs.GetObject(model.base)["mass"], scene.base_mass)
     q = np.asarray(mbs.systemData.GetODE2Coordinates())
     v = np.asarray(mbs.systemData.GetODE2Coordinates_t())
     values["start.tilt"] = (-q[2], scene.start.tilt - model.deflected[2])

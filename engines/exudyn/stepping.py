@@ -71,7 +71,7 @@ class Ground:
 
     def __init__(self, model: Model) -> None:
         scene, self.weight, self.push, self.part = model.scene, model.weight, model.push, END
-        self.mass, self.gravity = scene.base.mass if scene.base else 0.0, scene.gravity
+        self.mass, self.gravity = scene.base_mass, scene.gravity
         self.across, self.up = ground_gain(scene.motion), ground_gain(scene.motion and scene.motion.vertical)
 
     def prepare(self, mbs: exu.MainSystem, t: float) -> bool:

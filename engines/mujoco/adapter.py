@@ -61,8 +61,8 @@ def _ground(scene: Scene, geom: str = "") -> str:
         return f'<geom type="plane" size="0 0 1" {geom}/>'
     reach, depth = 100 * scene.block.radius, scene.block.radius  # a plane cannot move in MuJoCo
     return (
-        f'<body><joint name="base" type="slide" axis="1 0 0"/><inertial pos="0 0 0" mass="{scene.base.mass!r}" '
-        f'diaginertia="{scene.base.mass!r} {scene.base.mass!r} {scene.base.mass!r}"/>'
+        f'<body><joint name="base" type="slide" axis="1 0 0"/><inertial pos="0 0 0" mass="{scene.base_mass!r}" '
+        f'diaginertia="{scene.base_mass!r} {scene.base_mass!r} {scene.base_mass!r}"/>'
         f'<geom type="box" pos="0 0 {-depth!r}" size="{reach!r} {reach!r} {depth!r}" mass="0" {geom}/></body>'
     )
 
@@ -126,7 +126,7 @@ def check_readback(
     for this, and back. Contacts and solver are not checked where solref is None, as those are MuJoCo's defaults.
     """
     option, block, depth = model.opt, scene.block, -1e-3 * scene.block.radius
-    masses = [block.mass] if scene.base is None else [scene.base.mass, block.mass]
+    masses = [block.mass] if scene.base is None else [scene.base_mass, block.mass]
     expected = [
         ("time step", option.timestep, step),
         ("gravity", option.gravity, [0.0, 0.0, -scene.gravity]),
@@ -169,7 +169,7 @@ class MujocoBodies:
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, recovery: float | None) -> None:
         self.model, self.data, self.recovery, self.used = model, data, recovery, model.opt.timestep
-        self.base = scene.base
+        self.base = scene.base_mass
         self.loaded = scene.bearings is not None
         self.option, self.gravity, self.push = model.opt, model.opt.gravity, data.qfrc_applied
         self.position, self.velocity = data.qpos.tolist, data.qvel.tolist
@@ -184,7 +184,7 @@ class MujocoBodies:
         if self.loaded:
             self.push[0] = impulse / step
         mujoco.mj_step(self.model, self.data)
-        if self.base is None:
+        if not self.base:
             x, z, tilt = self.position()
             vx, vz, rate = self.velocity()
             return tilt, rate, x, z, vx, vz, 0.0, 0.0
@@ -198,7 +198,7 @@ class MujocoBodies:
 
     def weigh(self, added: float) -> None:
         """See `engines.loop.Bodies`."""
-        self.model.dof_M0[0] = self.model.body_mass[1] = self.base.mass + added
+        self.model.dof_M0[0] = self.model.body_mass[1] = self.base + added
 
 
 # tests/engines/test_physics.py shows it: friction and contact are one convex problem, in which a sliding contact opens.

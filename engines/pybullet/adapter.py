@@ -121,7 +121,7 @@ def iterations(scene: Scene, corners: int) -> int:
     peak tilts off by up to 4e-4 and let a slender block rock that stands.
     """
     block = scene.block
-    b, h, light = block.half_width, block.half_height, scene.base.mass if scene.base else math.inf
+    b, h, light = block.half_width, block.half_height, scene.base_mass if scene.base else math.inf
     mobility = np.diag([1 / block.mass, 1 / block.mass, 1 / block.centre_inertia, 1 / light])
     across = (b,) if corners == 1 else (-b, b)
     directions = np.array([[0, 1, -x, 0] for x in across] + [[1, 0, -h, -1] for _ in across])
@@ -164,7 +164,7 @@ class BulletBodies:
             (block.mass, corners, [0, 0, 0], turning, [0, 1, 0], 2),
         ]
         if base is not None:
-            links.append((base.mass, plane, [0, 0, 0], sliding, [1, 0, 0], 0))
+            links.append((scene.base_mass, plane, [0, 0, 0], sliding, [1, 0, 0], 0))
         flags = pybullet.URDF_USE_SELF_COLLISION
         body = chain(client, links, plane if base is None else -1, flags=flags)
         rough = math.sqrt(FRICTION if scene.friction is None else min(scene.friction, FRICTION))
@@ -179,7 +179,7 @@ class BulletBodies:
         self.client, self.body, self.joints = client, body, range(len(links))
         for joint in self.joints:
             pybullet.resetJointState(body, joint, *states[joint], physicsClientId=client)
-        self.mass, self.loaded = base.mass if base else 0.0, scene.bearings is not None
+        self.mass, self.loaded = scene.base_mass, scene.bearings is not None
         self.sweeps = iterations(scene, 1), iterations(scene, 2)
         self.fall = scene.gravity / (4 * b)
         self.tilt, self.rate, self.used = start.tilt, start.tilt_rate, (0.0, 0)
@@ -259,7 +259,7 @@ class FreeBox:
         if scene.base is None:
             slab = pybullet.createMultiBody(0, flat, -1, below, physicsClientId=client)
         else:
-            slab = chain(client, [(scene.base.mass, flat, below, pybullet.JOINT_PRISMATIC, [1, 0, 0], 0)])
+            slab = chain(client, [(scene.base_mass, flat, below, pybullet.JOINT_PRISMATIC, [1, 0, 0], 0)])
             pybullet.resetJointState(
                 slab, 0, scene.start.base_displacement, scene.start.base_velocity, physicsClientId=client
             )

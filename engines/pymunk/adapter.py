@@ -35,7 +35,7 @@ WIDTH = 1e3  # of the groove, over R
 
 def iterations(scene: Scene) -> int:
     """Iterations of Chipmunk's solver for a scene."""
-    light = LIGHT * scene.block.mass / scene.base.mass if scene.base else 0.0
+    light = LIGHT * scene.block.mass / scene.base_mass if scene.base else 0.0
     return min(ITERATIONS + math.ceil(light), MOST)
 
 
@@ -57,7 +57,7 @@ class ChipmunkBodies:
         """first: length of the first step [s]."""
         block, R, start = scene.block, scene.block.radius, scene.start
         b, h = block.half_width, block.half_height
-        self.ahead, self.half_height, self.mass = not plain, h, scene.base.mass if scene.base else 0.0
+        self.ahead, self.half_height, self.mass = not plain, h, scene.base_mass
         self.space = space = pymunk.Space()
         if not plain:
             space.iterations, space.collision_slop, space.collision_bias = iterations(scene), 0.0, 1.0

@@ -8,7 +8,18 @@ import numpy as np
 import pytest
 from random_scenes import random_scene
 
-from analytic import Block, PulseMotion, Scene, SceneError, SettingError, Start, load_scene, simulate, synthetic_motion
+from analytic import (
+    Block,
+    Pedestal,
+    PulseMotion,
+    Scene,
+    SceneError,
+    SettingError,
+    Start,
+    load_scene,
+    simulate,
+    synthetic_motion,
+)
 from analytic.advice.margins import (
     FINER,
     LIMIT_STATES,
@@ -107,9 +118,10 @@ def reached(scene, tilt):
     response = simulate(scene, history=False)
     states = {
         "slides": response.sliding is not None and response.sliding.path > 0,
-        "lifts": response.outcome in ("rocks", "overturns"),
+        "lifts": len(response.uplifts) > 0 or response.outcome in ("rocks", "overturns"),
         "tilt": response.peak_tilt > tilt * scene.block.slenderness or response.outcome == "overturns",
         "stroke": scene.bearings is not None and response.peak_base_displacement > (scene.bearings.x_max or math.inf),
+        "falls off": response.outcome == "falls off",
         "overturns": response.outcome == "overturns",
     }
     return tuple(state for state in LIMIT_STATES if states[state])
@@ -122,8 +134,15 @@ def changed(scene, name, change):
 
 
 CARYATID = load_scene("caryatid-isolated")
+FALLS_OFF = Scene(  # near where it just stays on
+    block=Block(mass=120.0, radius=0.7, slenderness=0.3),
+    pedestal=Pedestal(width=0.6),
+    motion=PulseMotion("one-sine", 2.5, 4.0),
+    friction=0.1,
+)
 SCANNED = {  # the first under 1.6 times its motion, where it rocks
     "bearings": (CARYATID.with_(motion=CARYATID.motion.scaled(1.6)), ("motion", "slenderness", "ka")),
+    "falls off": (FALLS_OFF, ("motion", "friction", "pedestal width")),
     **{f"random {index}": (random_scene(11, index), ()) for index in range(3)},
 }
 
@@ -143,8 +162,12 @@ def test_bands_are_what_runs_in_them_and_just_within_their_ends_reach(scene, onl
 
 def test_only_bearings_with_a_limit_have_a_stroke_and_only_a_friction_slides():
     scene = load_scene("caryatid-isolated")
-    assert limit_states(scene.with_(friction=0.3)) == LIMIT_STATES
-    assert limit_states(scene) == LIMIT_STATES[1:]
+    edged = scene.with_(friction=0.3, pedestal=Pedestal(width=1.0))
+    assert (
+        limit_states(edged) == LIMIT_STATES
+        and limit_states(edged.with_(friction=None)) == LIMIT_STATES[1:4] + LIMIT_STATES[5:]
+    )
+    assert limit_states(scene) == LIMIT_STATES[1:4] + LIMIT_STATES[5:]
     without = scene.with_(bearings={"x_max": None}, motion=scene.motion.scaled(3.0))
     assert limit_states(without) == limit_states(load_scene("caryatid-rigid")) == ("lifts", "tilt", "overturns")
     changes = by_name(without, span=0.01, step=5e-3)

@@ -10,7 +10,7 @@ from made_up_records import VALUES, cosmos
 
 from analytic import load_scene
 from analytic.records import read_record
-from analytic.rocking import BearingLaw
+from analytic.rocking import BearingLaw, properties
 from comparisons.sheet.pages import PROBLEMS
 
 BUST = ("--height", "1.9", "--width", "0.55", "--material", "marble")
@@ -167,6 +167,34 @@ def test_new_says_that_no_such_bearing_is_made(rocking, tmp_path):
 def test_half_a_pendulum_is_refused(rocking, tmp_path, more, message):
     status, _, err = rocking("new", tmp_path / "bust.toml", *more)
     assert status == 2 and message in err and not (tmp_path / "bust.toml").exists()
+
+
+def test_a_pedestal_is_written_and_its_mass_is_carried_by_the_bearings(rocking, tmp_path):
+    words = ("--pedestal-width", 0.8, "--pedestal-mass", 430, "--pedestal-height", 1.0)
+    scene, out = new(rocking, tmp_path, *DESIGN, *words)
+    assert (scene.pedestal.width, scene.pedestal.mass, scene.pedestal.height) == (0.8, 430.0, 1.0)
+    assert "uplift acceleration of block and pedestal together" in out
+    on_base = properties(scene.bearings, scene.block.mass + 400 + 430, 0.2)
+    assert on_base.period == pytest.approx(2.5, rel=1e-4) and scene.total_mass == scene.block.mass + 830
+
+
+@pytest.mark.parametrize(
+    "words, message",
+    [
+        (("--pedestal-mass", 430, "--pedestal-height", 1.0), "--pedestal-width: missing"),
+        (("--pedestal-width", 0.8, "--pedestal-mass", 430), "--pedestal-height: missing; give mass and height"),
+        (("--pedestal-width", 0.5), "--pedestal-width = 0.5: narrower than the block; give at least 0.55 m"),
+    ],
+)
+def test_what_no_pedestal_can_be_is_refused_by_its_option(rocking, tmp_path, words, message):
+    status, _, err = rocking("new", tmp_path / "bust.toml", *BUST, *words)
+    assert status == 2 and message in err and not (tmp_path / "bust.toml").exists()
+
+
+def test_the_script_says_that_its_support_has_no_edge(rocking, tmp_path):
+    new(rocking, tmp_path, *BUST, "--pedestal-width", 0.8, "--friction", 0.6)
+    status, out, _ = rocking("script", "pybullet", tmp_path / "bust.toml", "--output", tmp_path / "own.py")
+    assert status == 0 and "The script's support has no edge" in out
 
 
 def test_new_overwrites_nothing(rocking, tmp_path):

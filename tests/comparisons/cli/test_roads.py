@@ -135,6 +135,19 @@ def all_is_told(warnings, out):
     assert all(by_name.values()), by_name
 
 
+def pedestal_is_told(kind, answer, words):
+    """The verdict stands in JSON and is printed; one that may lift is also warned of, beside each motion."""
+    check = answer["pedestal"]
+    assert (check is not None) == ("mass = 300.0" in KINDS[kind][0])
+    if check is None:
+        return
+    lifts = kind == "pedestal that may lift"
+    assert shown(check["text"], words) and check["text"].startswith(f"The pedestal {'may lift' if lifts else 'stays'}")
+    assert (max(check["share"], check["landing"]) > 1) == lifts
+    warned = [[each["quantity"] for each in row["warnings"]] for row in (answer, *answer.get("motions", ()))]
+    assert not lifts or "pedestal" in warned[0] and any("pedestal" in names for names in warned[1:])
+
+
 def differences_are_told(response, out):
     assert all(shown(str(Difference(**difference)), out) for difference in response["differences"]), response[
         "differences"
@@ -180,6 +193,7 @@ def test_run(road, kind):
     assert status == some_failed(answer["motions"]) and answer["outcome"] == KINDS[kind][1]
     assert answer["decided"] == (kind != "undecided")
     assert [line.partition(":")[0] for line in answer["left_out"]] == LEFT_OUT
+    pedestal_is_told(kind, answer, out)
     all_is_told(answer["warnings"], out)
     motions_are_told(answer, out, counted(kind))
 
@@ -190,6 +204,7 @@ def test_compare(road, kind):
     status, answer, out, _ = road("compare", kind, *engine_options([*LIES, "close"]))
     assert status == 0
     assert [response["engine"] for response in answer["responses"]] == ["analytic", *LIES, "close"]
+    assert answer["pedestal"] is None or shown(answer["pedestal"]["text"], out)
     for response in answer["responses"]:
         all_is_told(response["warnings"], out)
         differences_are_told(response, out)
@@ -269,6 +284,7 @@ def test_margin(road, kind):
     status, answer, out, _ = road("margin", kind, "--records", "records", "--units", "m/s2")
     assert status == some_failed(answer["motions"])
     assert answer["outcome"] == KINDS[kind][1] or kind == "undecided"
+    pedestal_is_told(kind, answer, out)
     for each in answer["margins"]:
         for way in ("ends_down", "ends_up"):
             assert shown(each[way], out)
@@ -478,6 +494,9 @@ def test_report(road, rocking, tmp_path, first, step):
     page = " ".join(re.sub("<[^>]+>", " ", (tmp_path / "page" / "report.html").read_text()).split())
     for kind, file in zip(kinds, files, strict=True):
         assert len({row["record"] for row in answer["motions"][file.stem]}) == counted(kind)
+        check = answer["pedestals"][file.stem]
+        assert (check is not None) == ("mass = 300.0" in KINDS[kind][0])
+        assert check is None or plain(check["text"]) in plain(page)
         headline, left = answer["headlines"][file.stem], answer["left_out"][file.stem]
         assert plain(headline) in plain(page) and f"Left out of the folder: {LEFT} files or channels." in headline
         assert len(left) == LEFT and all(plain(line) in plain(page) for line in left)

@@ -124,7 +124,7 @@ def test_the_scenes_own_motion_counts_among_the_records_and_once(quick, tmp_path
     for motions, count in (({"other": [other]}, 2), ({"a pair": [other, same]}, 1), ({}, 0)):
         rows = _by_record(statue_of(scene, motions)["motions"])
         assert len(rows) == count
-        assert [row["overturns"] for row in rows if row["record"] != "other"] == [1] * bool(count)
+        assert [row["falls"] for row in rows if row["record"] != "other"] == [1] * bool(count)
 
 
 @pytest.mark.slow
