@@ -172,7 +172,7 @@ def form(page: Path) -> Report:
         left_out={name: statue["left_out"] for name, statue in statues.items()},
         headlines={name: headline(statue["motions"], statue["left_out"]) for name, statue in statues.items()},
         sizes={name: statue.get("sizes") for name, statue in statues.items()},
-        pedestals={name: statue["pedestal"] for name, statue in statues.items()},
+        pedestals={name: statue.get("pedestal") for name, statue in statues.items()},
     )
 
 

@@ -399,7 +399,7 @@ def _worst_words(statue, scene):
 
 def _sentences(statue):
     """Return (heading, sentence) pairs on results of the model beyond the scene's own run."""
-    sentences = [("Pedestal", words) for words in statue["stays"]] + _slip_sentences(statue["own"])
+    sentences = [("Pedestal", words) for words in statue.get("stays", ())] + _slip_sentences(statue["own"])
     if "free" in statue:
         sentences.append(("Without isolation", f"Free-standing, the block {_copy_words(statue['free'])}."))
     sentences += _nearest_changes(statue["margins"])

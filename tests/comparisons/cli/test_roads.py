@@ -24,6 +24,7 @@ from analytic.advice import bearing_scan, margins
 from analytic.response import DIFFERENCES, JUDGED, Difference, Failure
 from analytic.rocking import properties, restitution
 from comparisons.commands import advice as margin
+from comparisons.commands import risk
 from comparisons.execution import command_runs
 from comparisons.execution.command_runs import OWN
 from comparisons.execution.results import RESULTS
@@ -328,7 +329,7 @@ def test_risk_draws_a_thousand_times_under_one_motion(road):
 
 
 def test_risk_under_synthetic_motions_of_a_seed(road, monkeypatch):
-    monkeypatch.setattr(margin, "MOTIONS", 3)
+    monkeypatch.setattr(risk, "MOTIONS", 3)
     words = ("risk", "record", "--draws", 3, "--pgv", 0.3)
     (_, first, out, _), (_, again, _, _), (_, other, _, _) = (road(*words, "--seed", seed) for seed in (4, 4, 5))
     assert first == again and len(first["records"]) == 3 and not set(first["records"]) & set(other["records"])
