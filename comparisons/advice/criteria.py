@@ -133,7 +133,12 @@ def until(scene: Scene, criterion: str) -> float:
     assert history is not None
     column = getattr(history, COLUMNS[criterion])
     after = PERIODS * 2 * np.pi / scene.rocking_frequency
-    return min(sensitivity_horizon(cut).horizon, float(history.time[np.abs(column).argmax()]) + after)
+    end = min(sensitivity_horizon(cut).horizon, float(history.time[np.abs(column).argmax()]) + after)
+    upright = history.time[(np.abs(history.tilt) <= scene.block.slenderness) & (history.time > 0)]
+    if criterion == "tilt" or not len(upright):
+        return end
+    # As the model's peaks do, these leave out the last fall, in which an engine's block slides on its base.
+    return min(end, float(upright[-1]))
 
 
 @dataclass(frozen=True)

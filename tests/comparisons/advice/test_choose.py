@@ -74,6 +74,19 @@ def test_a_block_that_never_hits_is_judged_by_what_it_shows(scene, criterion):
     assert criteria.fitting(scene) == criterion
 
 
+@pytest.mark.parametrize("engine", ["exudyn", "pybullet"])
+def test_the_displacement_of_a_block_that_overturns_is_compared_up_to_its_last_fall(engine):
+    """In the fall an engine's block slides, which is no fault of the level. It overturns without an impact."""
+    pulse = PulseMotion("half-sine", 5.0, 2.0)
+    scene = load_scene("caryatid-isolated").with_(motion=pulse, duration=None)
+    model = simulate(scene)
+    assert (model.outcome, model.impacts, criteria.fitting(scene)) == ("overturns", (), "displacement")
+    cut = scene.with_(duration=criteria.until(scene, "displacement"))
+    assert cut.duration < model.end.time and abs(simulate(cut).end.tilt) <= scene.block.slenderness
+    run = get_engine(engine).simulate(cut)
+    assert run.failure is None and criteria.error("displacement", cut, run, simulate(cut)) < 1e-3
+
+
 def test_errors_are_those_of_the_criterion():
     scene = RIGID.with_(duration=4.0)
     model = simulate(scene)
