@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 DRAWS = 40  # for each record: more records narrow the interval more than more draws do
 LARGEST_SPREAD = 0.5
 MOST_RUNS = 1_000_000
+SHARES = (0.5, 0.95, 1.0)  # of runs, for the quantiles of slip and base displacement
 SURE = 3.0  # standard errors beyond which an effect is no noise
 
 
@@ -74,7 +75,8 @@ class Risk:
     spreads: {quantity drawn: its coefficient of variation}. scores: (records, draws, quantities), the standard normal
     number from which each value was drawn. runs: (records, draws), number of motions under which a draw has an outcome;
     runs that failed count neither way. reached: {limit state: under how many of these it is reached}, (records, draws).
-    why: the reason of the first failure, or "".
+    why: the reason of the first failure, or "". travel: {"slip" of the block, "base": quantiles `SHARES` of the largest
+    displacement [m] in runs that stay upright}; without what the scene cannot have.
     """
 
     spreads: dict[str, float]
@@ -82,6 +84,7 @@ class Risk:
     runs: np.ndarray
     reached: dict[str, np.ndarray]
     why: str
+    travel: dict[str, tuple[float, ...]]
 
     def by_record(self, state: str) -> np.ndarray:
         """Return the probability of a limit state under each record, shape (records,); NaN where all runs failed."""
@@ -165,6 +168,7 @@ def risk(
     states = [state for state in REACHED if state in limit_states(scene)]
     scores = np.stack([_scores(seed, record, draws, sizes) for record in range(len(records))])
     runs, hits, why = np.zeros(scores.shape[:2], dtype=int), np.zeros((len(states), *scores.shape[:2])), ""
+    moved: list[list[np.ndarray]] = [[] for _ in records]
 
     def run(record):
         motions = records[record]
@@ -178,6 +182,8 @@ def risk(
             places = np.array([*drawn], dtype=int)[sound]
             runs[record, places] += 1
             hits[:, record, places] += [REACHED[state](outcomes, scene)[sound] for state in states]
+            upright = sound & ~outcomes.overturns & ~outcomes.fell_off
+            moved[record].append(np.stack([outcomes.peak_slip, outcomes.peak_base_displacement])[:, upright])
             why = why or next(map(why_it_fails, compress(scenes, ~sound)), "")
         return why
 
@@ -190,7 +196,14 @@ def risk(
     if not runs.any():
         simulate(scene.with_(motion=longest), history=False)  # a refusal names the part
         raise SceneError("motion", None, f"every run failed: {why}", "change the scene")
-    return Risk(sizes, scores, runs, dict(zip(states, hits, strict=True)), why)
+    peaks = np.concatenate([each for parts in moved for each in parts], axis=1)
+    wanted = {"slip": scene.friction is not None, "base": scene.base is not None}
+    travel = {
+        name: tuple(np.quantile(values, SHARES).tolist())
+        for (name, has), values in zip(wanted.items(), peaks, strict=True)
+        if has and len(values)
+    }
+    return Risk(sizes, scores, runs, dict(zip(states, hits, strict=True)), why, travel)
 
 
 def _scores(seed, record, draws, names):

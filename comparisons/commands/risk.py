@@ -132,6 +132,7 @@ def risk(
         drawn=[_drawn(loaded, name, size, given) for name, size in sizes.items()],
         odds=_odds(odds[1.0]),
         records=_by_record(odds[1.0], groups),
+        travel=odds[1.0].travel,
         failed=sum(map(len, groups.values())) * draws - int(odds[1.0].runs.sum()),
         why=odds[1.0].why,
         intensities={scale: _odds(odds[scale]) for scale in sorted(odds)} if plot else {},

@@ -502,16 +502,23 @@ MOST_RECORDS = 5  # shown
 
 
 def risk_headline(odds: Sequence[Odds], under: str, draws: int, pga: float | None, pgv: float | None) -> str:
-    """Return the odds in sentences, the gravest first. under: which motions. pga [g], pgv [m/s]."""
+    """Return the odds in sentences, the gravest first; a base beyond x_max before them, as they do not hold then.
+
+    under: which motions. pga [g], pgv [m/s].
+    """
     scaled = f", scaled to {pga:g} g" if pga else f", scaled to {pgv:g} m/s" if pgv else ""
+    beyond = [each for each in odds if each.state == "stroke" and each.probability > 0]
     shares = [
         f"{ODDS[each.state][1]} in {percent(each.probability)} "
         f"({number(100 * each.low, 2)} to {percent(each.high)} at 95 %)"
-        for each in odds
+        for each in (*beyond, *(each for each in odds if each not in beyond))
     ]
     sentences = [f"{shares[0]} of {draws} draws of its values {under}{scaled}", *shares[1:]]
-    if any(each.state == "stroke" and each.probability > 0 for each in odds):
-        sentences.append("beyond x_max bearings may tear or hit a stop, and the other odds do not hold")
+    if beyond:
+        words = (
+            "beyond x_max bearings may tear or hit a stop: what happens then is not known, nor in the odds that follow"
+        )
+        sentences.insert(1, words)
     return " ".join(f"{words[0].upper()}{words[1:]}." for words in sentences)
 
 
@@ -542,6 +549,8 @@ def print_risk(scene: Scene, risk: Risk, rows: Sequence[Mapping[str, Any]]) -> N
         "The intervals are over draws alone: under other motions odds may be quite different (--motions, --records)."
         if len(risk.records) == 1
         else "The intervals take records, not runs, as independent.",
+        "These are odds under such a motion, not for a year.",
+        *map(_travel, risk.travel, risk.travel.values()),
         f"Runs that failed, and count neither way: {risk.failed}. The first: {readable(risk.why)}."
         if risk.failed
         else "",
@@ -557,6 +566,15 @@ def print_risk(scene: Scene, risk: Risk, rows: Sequence[Mapping[str, Any]]) -> N
         f"Further records, in --json: {len(risk.records) - len(records)}." if len(risk.records) > len(records) else "",
     ]
     echo(*(part for part in parts if part), wrap=True)
+
+
+def _travel(name, quantiles):
+    """Return a sentence on how far the block slips, or the base moves."""
+    half, most, largest = (f"{value:.2g}" for value in quantiles)
+    what = "the slip of the block" if name == "slip" else "the displacement of the base"
+    return (
+        f"In runs that stay upright, {what} is at most {half} m in half of them, {most} m in 95 %, {largest} m in all."
+    )
 
 
 def _most_important(odds):

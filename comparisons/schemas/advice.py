@@ -141,6 +141,9 @@ class Risk(Form):
     drawn: list[Drawn]
     odds: list[Odds]
     records: dict[str, dict[LimitState, float | None]]
+    travel: dict[str, tuple[float, ...]] = Field(
+        description="m; slip of the block and displacement of the base, in runs that stay upright: median, 95 % and most"
+    )
     failed: int
     why: str
     intensities: dict[float, list[Odds]]
