@@ -23,7 +23,7 @@ ENGINE, VARIANT = "pybullet", "fixed-step"
 
 
 def row(error, cpu=1.0, failure=None):
-    values = {"outcome": "rocks", "error": error, "simulated": 1.0}
+    values = {"outcome": "rocks", "error": error, "simulated": 1.0, "too_coarse": False}
     return Row(Case(RIGID, ENGINE, VARIANT), values, failure, {"cpu_seconds": cpu}, False)
 
 
