@@ -36,6 +36,7 @@ from ...plotting.glance import Glance, counted
 from ...plotting.parts import Figure, Judgement, Mark, Page, grouped, table, where
 from ...plotting.wording import TRUSTED, ends, left_out, listed, tally
 from ...schemas.columns import NAME, Column, number, percent, typeset
+from .advice import alarms, level_tables
 from .study import APART, COLUMNS, FREQUENCY
 
 LEAST_RIGHT = 0.95  # share of right runs, of those not left out, from which an engine is rated good
@@ -149,6 +150,8 @@ def _details(result, cells, settings, totals):
             COLUMNS["period"],
         ),
         missing(result),
+        *level_tables(result),
+        alarms(result),
         _shares(cells),
         _sliding([*summed(cells, "support"), *totals]),
         *(f"{NAME.of(row)}: {row['words']}" for row in settings["faults"]),
@@ -278,7 +281,7 @@ def glance(result: Result) -> Glance:
         for row in _runs(result)
         if row["friction"] is not None
     ]
-    return Glance(endings=counted("blocks that may slide", runs))
+    return Glance(endings=counted("blocks that may slide", runs), advice=level_tables(result))
 
 
 def summed(cells: Iterable[Mapping[str, Any]], key: Any) -> list[dict[str, Any]]:
