@@ -8,8 +8,7 @@ import numpy as np
 
 from ...execution.results import Result
 from ...metrics.statistics import wilson
-from ...plotting.figures import mains
-from ...plotting.parts import Table, setting_of, table, where
+from ...plotting.parts import Table, grouped, setting_of, table, where
 from ...schemas.columns import NAME, Column, number, percent
 from .levels import ACCURACIES, FALLS, FIRST, SECOND, advised, changed, holds, misses, tally
 
@@ -85,12 +84,10 @@ def _alarms_in_words(counts, bad):
 
 
 def _levels(result):
-    """Yield (settings of a variant that has rows of levels, its levels from coarse to fine)."""
-    main = mains(result.settings["variants"])
-    for engine, levels in result.settings["levels"].items():
-        (variant,) = where(result.settings["variants"], engine=engine, variant=main[engine])
-        if where(result.rows, part="level", engine=engine):
-            yield variant, levels
+    """Yield (settings of a variant that has rows of levels, its levels from coarse to fine, the order of its rows)."""
+    for (engine, name), rows in grouped(where(result.rows, part="level"), "engine", "variant").items():
+        (variant,) = where(result.settings["variants"], engine=engine, variant=name)
+        yield variant, list(dict.fromkeys(row["level"] for row in rows))
 
 
 def _row(result, variant, level, draw=2):
@@ -131,7 +128,7 @@ def _advised_rows(result, accuracy):
 def _verdict(counts: Mapping[str, Any], held: bool) -> str:
     """Return whether a level passes, in words."""
     words = "yes" if holds(counts, SECOND) else "no"
-    return words if held else f"not promised (none held on the first draw; this is the finest): {words}"
+    return words if held else f"no level held on the first draw; this, the finest: {words}"
 
 
 def _missed_at(accuracy, row):

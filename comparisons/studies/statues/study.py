@@ -43,7 +43,7 @@ from ...metrics.boundaries import DISTANCES, TOLERANCE, Edge, Runs, edges
 from ...metrics.statistics import class_of
 from ...schemas.columns import declared, flag_of, list_of, number_of, whole_of, word_of
 from ..rows import BOUNDARY, BOUNDARY_ROW, EDGE, SHARED, SOUGHT
-from .levels import LEVELS, draw, level_cases, level_row, level_settings, of_level
+from .levels import draw, level_cases, level_row, level_settings, of_level
 
 # The columns of its rows, and by part which of them a row has; see `comparisons.studies.rows`.
 COLUMNS = (
@@ -205,7 +205,6 @@ def plan(
         "ratio": USUAL_RATIO,
         "peak": PEAKS,
         "fewer": FEWER,
-        "levels": {engine: list(values) for engine, values in LEVELS.items() if engine in request.engines},
         "tolerance": TOLERANCE,
         "variants": list(itertools.starmap(variant_settings, variants)),
         "faults": [
