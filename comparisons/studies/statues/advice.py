@@ -73,7 +73,7 @@ def alarms(result: Result) -> Table:
         Column("draw", "draw"),
         Column("runs that did not fail", "runs"),
         Column("false alarms, of the runs that keep it", lambda row: _alarms_in_words(row["counts"], False)),
-        Column("missed without a word, of the runs that miss it", lambda row: _alarms_in_words(row["counts"], True)),
+        Column("no warning, of the runs that miss it", lambda row: _alarms_in_words(row["counts"], True)),
     )
 
 
