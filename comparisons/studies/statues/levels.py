@@ -141,8 +141,8 @@ def tally(rows: Sequence[Mapping[str, Any]], accuracy: float) -> dict[str, Any]:
 
 
 def holds(counts: Mapping[str, Any], share: float) -> bool:
-    """Return whether a level misses on at most a share of the statues, and changes no outcome away from a boundary."""
-    return counts["missed"] <= share * counts["upright"] and not counts["away"]
+    """Return whether a level misses on at most a share of statues, and changes no outcome away from a boundary."""
+    return counts["statues"] > 0 and counts["missed"] <= share * counts["upright"] and not counts["away"]
 
 
 def advised(rows: Sequence[Mapping[str, Any]], levels: Sequence[float], accuracy: float) -> tuple[float, bool]:

@@ -177,21 +177,21 @@ def plan(
     engine_runs = yield Batch(cases, of_engine, "engines")
     rows += [_run_row(row, model_runs) for row in engine_runs]
     log("analytic boundaries of drawn statues")
-    statues = drawn_edges(count if boundaries is None else boundaries)
+    drawn_count = levels or (DRAWN_QUICK if request.quick else DRAWN)
+    counts = (count, min(LEVEL_EDGES, drawn_count)) if boundaries is None else (boundaries, boundaries)
+    all_statues = drawn_edges(max(counts))
+    statues, level_statues = (all_statues[:number] for number in counts)
     rows += [{"part": "drawn edge", **vars(edge), **drawn_columns(scene)} for scene, edge in statues]
     runs = Runs({edge.ground: scene for scene, edge in statues})
     rows += yield from runs.search_usual("drawn shift", request.engines, [edge for _, edge in statues])
-    drawn_count = levels or (DRAWN_QUICK if request.quick else DRAWN)
     log("statues drawn for levels")
     at_levels = [case for number in (1, 2) for case in draw(motions, number, drawn_count)]
     level_runs = yield Batch(list(level_cases(request.engines, at_levels)), of_level, "levels")
     rows += map(level_row, level_runs)
-    edge_count = min(LEVEL_EDGES, drawn_count) if boundaries is None else boundaries
-    statues = drawn_edges(edge_count)
-    level_search = Runs({edge.ground: scene for scene, edge in statues})
+    level_search = Runs({edge.ground: scene for scene, edge in level_statues})
     settings_of_levels = level_settings(request.engines)
     rows += yield from level_search.search(
-        "level shift", settings_of_levels, [edge for _, edge in statues], DISTANCES, TOLERANCE
+        "level shift", settings_of_levels, [edge for _, edge in level_statues], DISTANCES, TOLERANCE
     )
     variants = [(engine, variant) for engine in request.engines for variant in get_engine(engine).variants]
     settings = {
