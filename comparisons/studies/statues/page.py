@@ -380,9 +380,9 @@ def _how(result: Result) -> tuple[str, ...]:
         "provides, or which are near an outcome boundary (a change by 10⁻⁴, of the friction too, makes such a "
         "difference in the model). “Beyond it” counts runs of such scenes that fail, or differ by more than such "
         "changes do in the model.",
-        f"Levels: statues of two draws (seeds {SEEDS[0]} and {SEEDS[1]}), from the same range. They lift by at least the "
-        "least tilt of the range, and the model holds. Half of them stand under recorded motions (synthetic ones where "
-        "none are at hand), half under pulses; half have a friction.",
+        f"Levels: statues of two draws (seeds {SEEDS[0]} and {SEEDS[1]}), from the same range. They lift by at least "
+        "the least tilt of the range, and the model holds. Half of them stand under recorded motions (synthetic ones "
+        "where none are at hand), half under pulses; half have a friction.",
         f"Boundaries: those of {len(where(result.rows, part='drawn edge'))} of the statues, at rest. Shapes of "
         f"pulses take turns; frequencies are drawn from {FREQUENCY[0]:g} to {FREQUENCY[1]:g} times the rocking "
         f"frequency. The lowest boundary is taken if no other one is nearer than {percent(APART, 1)} and the block "
