@@ -22,7 +22,7 @@ from analytic.response import LEVEL, Caution, Failure
 from analytic.rocking import BearingLaw
 from analytic.solver import compile_kernels
 
-from .comparison import Reference
+from .comparison import Reference, too_coarse
 from .comparison import compare as compared
 from .contract import Engine, Run
 from .loads import ALONE, holding, reached
@@ -201,10 +201,10 @@ class Simulator(Engine):
         """
         model = self._model(scene)
         response, _ = self._traced(scene, variant, history, settings, model)
-        response = replace(
-            response,
-            warnings=(*response.warnings, *outside(scene, response), *self._restitution_warning(scene, response)),
-        )
+        more = (*outside(scene, response), *self._restitution_warning(scene, response))
+        if not response.failure:
+            more += too_coarse(scene, response, self.variants[response.variant])
+        response = replace(response, warnings=(*response.warnings, *more))
         if response.failure or not compare:
             return response
         if (held := self._as_run(scene, response.variant).friction) != scene.friction and scene.friction is not None:

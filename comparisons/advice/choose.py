@@ -41,6 +41,8 @@ def problem(rows: Mapping[float, Row], limit: float, criterion: str) -> tuple[fl
             return None, f"failed at {factor:g} of the scene: {row.failure['reason']}"  # type: ignore[index]  # a failed run has one
         if row.values["error"] is None or not math.isfinite(row.values["error"]):
             return None, f"shows no {criterion} at {factor:g} of the scene"
+        if row.values["too_coarse"]:
+            return row.values["error"], f"warns that it is too coarse at {factor:g} of the scene"
     errors = [row.values["error"] for row in rows.values()]
     worst = float(np.mean(errors) if criterion == "outcome" else np.max(errors))
     if worst * safety(criterion) > limit:

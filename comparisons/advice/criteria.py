@@ -14,6 +14,7 @@ from analytic import Response, Scene, SceneError, SettingError, simulate
 from analytic.response import LEVEL
 from analytic.rocking import restitution
 from engines import get_engine
+from engines.comparison import is_too_coarse
 
 from ..execution.cases import Case
 from ..metrics.errors import (
@@ -153,6 +154,7 @@ class Measure:
             "outcome": response.outcome,
             "error": error(self.criterion, case.scene, response, reference),
             "simulated": response.end.time,
+            "too_coarse": is_too_coarse(response),
         }
 
 

@@ -14,7 +14,7 @@ from markupsafe import Markup
 from ..metrics.statistics import equality
 from ..schemas.columns import percent, short
 from .charts import LETTER, WIDTH, Axis, Chart, broad
-from .parts import Figure, grouped, setting_of
+from .parts import Figure, Table, grouped
 
 
 @dataclass(frozen=True)
@@ -73,65 +73,18 @@ class Curve:
 
 
 @dataclass(frozen=True)
-class Advised:
-    """The level recommended for an accuracy [-]; engine "": no level reaches it.
-
-    parameter, level: the accuracy parameter and its value. cost: CPU time [s/s]. command: one that uses the level.
-    elsewhere: {measure in another scene: error [-] of the level, None where the run has none}.
-    """
-
-    accuracy: float
-    engine: str = ""
-    variant: str = ""
-    parameter: str = ""
-    level: float = math.nan
-    cost: float = math.nan
-    command: str = ""
-    elsewhere: Mapping[str, float | None] = field(default_factory=dict)
-
-    @property
-    def setting(self) -> str:
-        return setting_of(vars(self))
-
-
-@dataclass(frozen=True)
-class Peaks:
-    """Errors of peak tilt over slenderness [-] of a variant's runs at one level; only runs with a peak count."""
-
-    motions: str
-    engine: str
-    variant: str
-    parameter: str
-    level: float
-    errors: tuple[float, ...]
-
-    @property
-    def setting(self) -> str:
-        return setting_of(vars(self))
-
-    def within(self, error: float) -> str:
-        """Return in words how many runs are within an error."""
-        inside = [value <= error for value in self.errors]
-        return f"{sum(inside)} of {len(inside)} ({percent(sum(inside) / len(inside))})" if inside else "none has a peak"
-
-
-@dataclass(frozen=True)
 class Glance:
     """A study's part of the report's first screen.
 
     says: {line of the answer: its sentences}. endings: by motion and variant. curves: of solvers, in the scene named
-    `scene`. advice: the recommendation by accuracy among the engines `engines`, judged in that scene. alike: the factor
-    within which costs count as equal. peaks: errors in other runs, to test the recommendation by.
+    `scene`. advice: tables of which level to use.
     """
 
     says: Mapping[str, str] = field(default_factory=dict)
     endings: tuple[Endings, ...] = ()
     curves: tuple[Curve, ...] = ()
     scene: str = ""
-    advice: tuple[Advised, ...] = ()
-    engines: tuple[str, ...] = ()
-    alike: float = 1.0
-    peaks: tuple[Peaks, ...] = ()
+    advice: tuple[Table, ...] = ()
 
 
 WIDE = 590

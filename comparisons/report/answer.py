@@ -16,8 +16,8 @@ from engines import ENGINES, missing_words
 from ..execution.by_solver import age, by_engine, date_of, last_check, origins_of, results_in
 from ..execution.results import RESULTS, Result, ResultError
 from ..execution.writing import readable
-from ..plotting.glance import Advised, Endings, Glance, Peaks, costs, endings, swatches
-from ..plotting.parts import COST, RESTITUTION, Judgement, Mark, Section, Table, grouped
+from ..plotting.glance import Endings, Glance, costs, endings, swatches
+from ..plotting.parts import COST, RESTITUTION, Judgement, Mark, Section, grouped
 from ..plotting.wording import listed, outcomes, rating, with_counts
 from ..schemas.columns import number, percent
 from ..studies import StudyBroken, get_study, study_names
@@ -284,7 +284,6 @@ def screen(setups: Sequence[Setup], judgements: Sequence[Judgement], glances: It
     curves = next((glance for glance in given if glance.curves), None)
     shares = shown([ending for glance in given for ending in glance.endings], setups)
     says = {key: words for glance in given for key, words in glance.says.items()}
-    advised = next((glance for glance in given if glance.advice), None)
     return {
         "title": title(shares),
         "lines": lines(setups, judgements, shares, says),
@@ -292,7 +291,7 @@ def screen(setups: Sequence[Setup], judgements: Sequence[Judgement], glances: It
         "costs": curves and costs(curves.curves),
         "endings": endings(shares) if shares else None,
         "swatches": swatches(shares),
-        "advice": advice(advised, [peaks for glance in given for peaks in glance.peaks]) if advised else [],
+        "advice": next((glance.advice for glance in given if glance.advice), ()),
     }
 
 
@@ -336,68 +335,6 @@ def lines(
         ("Real blocks", says.get("real", "")),
     ]
     return [pair for pair in pairs if pair[1]]
-
-
-def advice(glance: Glance, peaks: Sequence[Peaks]) -> list[Table]:
-    """Return a table of the recommendation by accuracy, and a table of the errors of its levels elsewhere.
-
-    Elsewhere: in other scenes, and in the runs of `peaks`, most of which were made at another level.
-    """
-    reached = [level for level in glance.advice if level.engine]
-    names, scenes = listed(glance.engines), list(dict.fromkeys(scene for level in reached for scene in level.elsewhere))
-    first = Table(
-        f"Which engine and level to use, of {names}, tuned. Each entry is the cheapest level that reaches the "
-        f"accuracy, and still reaches it at every finer level, in one scene ({glance.scene}). Accuracy is the error of "
-        "peak tilt over slenderness, and of the overturning boundary of pulses. Costs within a factor of "
-        f"{number(glance.alike, 2)} count as equal; then each engine is named",
-        ("accuracy", "engine", "level", "CPU time per simulated second", "command"),
-        [
-            [
-                percent(level.accuracy, 1),
-                level.engine,
-                level.setting,
-                f"{number(1e3 * level.cost, 2)} ms",
-                level.command,
-            ]
-            if level.engine
-            else [percent(level.accuracy, 1), "not reached", "–", "–", "–"]
-            for level in glance.advice
-        ],
-    )
-    motions = list(dict.fromkeys(peak.motions for peak in peaks))
-    second = Table(
-        "The same levels in other scenes: error of peak tilt over slenderness, and number of runs within the accuracy. "
-        "Under recorded motions each engine was run at one level only",
-        ("accuracy", "engine, level", *scenes, *motions),
-        [
-            [
-                percent(level.accuracy, 1),
-                f"{level.engine}, {level.setting}",
-                *(_error_elsewhere(level, level.elsewhere.get(scene)) for scene in scenes),
-                *(_runs_within(level, [peak for peak in peaks if peak.motions == name]) for name in motions),
-            ]
-            for level in reached
-        ],
-    )
-    return [first, *([second] if reached and (scenes or motions) else [])]
-
-
-def _error_elsewhere(level: Advised, error: float | None) -> str:
-    words = percent(error)
-    return f"{words}: missed" if error is None or error > level.accuracy else words
-
-
-def _runs_within(level, peaks):
-    """Return in words how many runs of a level are within its accuracy, or those of the level that was run instead."""
-    levels_run = [peak for peak in peaks if (peak.engine, peak.variant) == (level.engine, level.variant)]
-    if not levels_run:
-        return "not run"
-    same_level = next((peak for peak in levels_run if peak.level == level.level), None)
-    return (
-        same_level.within(level.accuracy)
-        if same_level
-        else f"not run; at {levels_run[0].setting}: {levels_run[0].within(level.accuracy)}"
-    )
 
 
 def _of_kind(shares, tier):

@@ -8,9 +8,10 @@ import pytest
 
 from analytic import Base, Bearings, Block, Failure, Impact, PulseMotion, Response, Scene, Start, load_scene, simulate
 from analytic.errors import SceneError
-from analytic.response import COMPARED, EDGE
+from analytic.response import COMPARED, EDGE, Sliding
+from analytic.rocking import restitution
 from engines import get_engine
-from engines.comparison import FRICTION, Reference, compare, outcome_of
+from engines.comparison import FRICTION, KICK, Reference, compare, is_too_coarse, outcome_of, too_coarse
 from engines.events import STILL
 from engines.simulating import RANGE, outside
 
@@ -338,3 +339,55 @@ def test_an_engine_says_once_that_a_scene_is_outside_the_range_and_is_compared(e
     losses = [difference for difference in run.differences if difference.quantity == "impact_loss"]
     assert len(losses) == (engine == "pybullet")
     assert all(loss.model == pytest.approx(3e-4, rel=1e-3) and loss.here > 10 * loss.model for loss in losses)
+
+
+TUNED = get_engine("pybullet").variants["impact-aware"]
+
+
+def impact_of(scene, error, share):
+    """The model's run, with one impact: a free swing that reaches `share` of the slenderness, e off by `error`."""
+    block = scene.block
+    rate = scene.rocking_frequency * math.sqrt(2 * share * math.sin(block.slenderness) * block.slenderness)
+    impact = Impact(1.0, -rate, -rate * (restitution(scene) + error), 0.0)
+    settings = {"largest_step": TUNED.default}
+    return replace(run_of(scene), impacts=(impact,), settings=settings)
+
+
+@pytest.mark.parametrize("scene", [FREE, SHAKEN], ids=["rigid", "base"])
+def test_a_run_is_too_coarse_by_its_own_impacts(scene):
+    """By the closed form of a free swing, whose pull toward contact is p^2 sin(gamma)."""
+    model = run_of(scene)
+    assert len(model.impacts) > 1 and too_coarse(scene, replace(model, settings={"largest_step": 1e-3}), TUNED) == ()
+    if scene.base:
+        return
+    e, share = restitution(scene), 0.5
+    for part, warns in ((0.9, False), (1.1, True)):
+        error = math.sqrt(e**2 + part * KICK / share) - e  # the swing is higher by this part of what is permitted
+        run = impact_of(scene, error, share)
+        assert is_too_coarse(replace(run, warnings=too_coarse(scene, run, TUNED))) == warns
+        lower = impact_of(scene, math.sqrt(e**2 - part * KICK / share) - e, share)
+        assert bool(too_coarse(scene, lower, TUNED)) == warns
+    assert too_coarse(scene, impact_of(scene, -0.5, 1e-5), TUNED) == ()  # a swing that matters to nobody
+
+
+def test_the_warning_names_a_finer_level_of_tuned_variants():
+    run = impact_of(FREE, -0.3, 0.5)
+    e = restitution(FREE)
+    for step, words in ((7e-3, "use largest_step = 0.003"), (1e-3, "use largest_step = 0.0005"), (5e-4, "no finer")):
+        (caution,) = too_coarse(FREE, replace(run, settings={"largest_step": step}), TUNED)
+        assert words in caution.text and (caution.kind, caution.limit) == ("engine", e)
+        assert caution.value == pytest.approx(e - 0.3)
+    stiff = get_engine("exudyn").variants["compliant-corners"]
+    (caution,) = too_coarse(FREE, replace(run, settings={"stiffness": 4.47e10}), stiff)
+    assert "use stiffness = 2e+11" in caution.text
+    assert too_coarse(FREE, run, get_engine("pybullet").variants["first-script"]) == ()
+    slid = Sliding(peak=0.01, end=0.0, path=0.01, work=math.nan, modes=())
+    assert too_coarse(FREE, replace(run, sliding=slid), TUNED) == ()
+
+
+def test_an_engines_run_carries_the_warning_also_without_the_models():
+    """At steps of .05 s PyBullet loses half the rate at an impact; at its default of 1 ms nothing is to be said."""
+    for settings, warned in (({"largest_step": 0.05}, True), ({}, False)):
+        engine = get_engine("pybullet")
+        run = engine.simulate(FREE.with_(duration=3.5), history=False, compare=False, **settings)
+        assert run.failure is None and len(run.impacts) > 3 and is_too_coarse(run) == warned

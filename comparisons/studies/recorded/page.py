@@ -1,6 +1,5 @@
 """The page of recorded motions: how many runs end otherwise than the model's, and in which way."""
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -12,7 +11,7 @@ from engines.comparison import FALL
 from ...execution.results import Result
 from ...plotting.charts import Axis, Chart, figure, key_of
 from ...plotting.figures import as_it_comes, kind, leading, mains, subject
-from ...plotting.glance import Glance, Peaks, counted
+from ...plotting.glance import Glance, counted
 from ...plotting.parts import Figure, Judgement, Mark, Page, grouped, table, where
 from ...plotting.wording import NOT_COMPARED, ends, ends_in_words, equal_mark, least_shown, left_out, tally
 from ...schemas.columns import NAME, Column, number, percent, short, typeset
@@ -143,32 +142,7 @@ def glance(result: Result) -> Glance:
         }
         for row in where(result.rows, part="run")
     ]
-    return Glance(endings=counted("recorded earthquakes", runs), peaks=tuple(_peaks(result, runs)))
-
-
-def _peaks(result, runs):
-    """Yield the errors of peak tilt of each tuned variant, over the slenderness.
-
-    The relative error times the largest tilt, at most the slenderness, is never less than the error over slenderness.
-    The error of a failed run is infinite.
-    """
-    for variant in where(result.settings["variants"], tier="tuned"):
-        members = where(
-            runs, engine=variant["engine"], variant=variant["variant"], **{"class": {"right", "differs", "failed"}}
-        )
-        errors = [
-            math.inf if row["falls"] is None else abs(row["own_tilt_error"]) * min(row["model_tilt"], 1.0)
-            for row in members
-            if row["falls"] is None or row["own_tilt_error"] is not None
-        ]
-        yield Peaks(
-            "recorded earthquakes",
-            variant["engine"],
-            variant["variant"],
-            variant["parameter"],
-            variant["default"],
-            tuple(errors),
-        )
+    return Glance(endings=counted("recorded earthquakes", runs))
 
 
 def summary(rows: Sequence[dict[str, Any]]) -> Iterator[dict[str, Any]]:

@@ -18,7 +18,7 @@ from ...execution.by_solver import timed_apart
 from ...execution.results import Result
 from ...metrics.scripts import NAME as SCRIPT
 from ...plotting.figures import Series, beside, lines, mains
-from ...plotting.glance import Advised, Curve, Glance
+from ...plotting.glance import Curve, Glance
 from ...plotting.parts import COST, Head, Judgement, Mark, Page, Table, cheapest, grouped, kept_from, table, where
 from ...plotting.wording import listed
 from ...schemas.columns import NAME, Column, Row, number, percent, short
@@ -173,7 +173,7 @@ def level_words(row: Row) -> str:
 
 
 def glance(result: Result) -> Glance | None:
-    """Return the curves and the recommendations of the report's first screen; None without the scene `PLAIN`."""
+    """Return the curves of the report's first screen; None without the scene `PLAIN`."""
     rows = _main_scene_rows(result)
     if not rows:
         return None
@@ -181,9 +181,6 @@ def glance(result: Result) -> Glance | None:
         says={"cost": words} if (words := at_a_glance(result)) else {},
         curves=tuple(_curves(result, rows)),
         scene=result.settings["scenes"][PLAIN]["title"],
-        advice=tuple(recommendation for error in WANTED for recommendation in advice(result, error)),
-        engines=tuple(name for name, engine in ENGINES.items() if engine.subject),
-        alike=noise(result),
     )
 
 
@@ -237,37 +234,6 @@ def keeping(result: Result, error: float) -> dict[str, Row]:
         if levels:
             cheapest_levels[name] = min(levels, key=lambda row: row["cpu_per_second"])
     return dict(sorted(cheapest_levels.items(), key=lambda item: item[1]["cpu_per_second"]))
-
-
-def advice(result: Result, error: float) -> list[Advised]:
-    """Recommend the levels that keep an error at least cost.
-
-    Only tuned variants of subject engines whose engine computes the impact are considered. The list has the cheapest of
-    them, each other one that costs the same within the `noise`, and each that was timed apart; with none of these, it
-    has one entry without an engine.
-    """
-    apart = timed_apart(result)
-    able = {
-        NAME.of(variant)
-        for variant in where(result.settings["variants"], tier="tuned", applies_impact=False)
-        if ENGINES[variant["engine"]].subject
-    }
-    candidates = [row for name, row in keeping(result, error).items() if name in able]
-    least = min((row["cpu_per_second"] for row in candidates if row["engine"] not in apart), default=0.0)
-    alike = [row for row in candidates if row["engine"] in apart or row["cpu_per_second"] <= noise(result) * least]
-    return [_advised(result, error, row) for row in alike] or [Advised(error)]
-
-
-def _advised(result, error, row):
-    """Recommendation of a row: its setting, its cost, the command that runs it, and its errors in other scenes."""
-    main = mains(result.settings["variants"])[row["engine"]] == row["variant"]
-    variant = "" if main else f" --variant {row['variant']}"
-    level = f"{row['level']:.3g}".replace("e+", "e")
-    same = {key: row[key] for key in ("engine", "variant", "parameter", "level")}
-    peaks = where(as_needed(result), **same, measure=PEAK)
-    elsewhere = {other["title"]: other["error"] for other in peaks if other["scene"] != PLAIN}
-    command = f"rocking run SCENE --engine {row['engine']}{variant} --set {row['parameter']}={level}"
-    return Advised(error, **same, cost=row["cpu_per_second"], command=command, elsewhere=elsewhere)
 
 
 def times(result: Result) -> str:

@@ -36,6 +36,8 @@ from ...plotting.glance import Glance, counted
 from ...plotting.parts import Figure, Judgement, Mark, Page, grouped, table, where
 from ...plotting.wording import TRUSTED, ends, left_out, listed, tally
 from ...schemas.columns import NAME, Column, number, percent, typeset
+from .advice import alarms, level_tables
+from .levels import SEEDS
 from .study import APART, COLUMNS, FREQUENCY
 
 LEAST_RIGHT = 0.95  # share of right runs, of those not left out, from which an engine is rated good
@@ -149,6 +151,8 @@ def _details(result, cells, settings, totals):
             COLUMNS["period"],
         ),
         missing(result),
+        *level_tables(result),
+        alarms(result),
         _shares(cells),
         _sliding([*summed(cells, "support"), *totals]),
         *(f"{NAME.of(row)}: {row['words']}" for row in settings["faults"]),
@@ -278,7 +282,7 @@ def glance(result: Result) -> Glance:
         for row in _runs(result)
         if row["friction"] is not None
     ]
-    return Glance(endings=counted("blocks that may slide", runs))
+    return Glance(endings=counted("blocks that may slide", runs), advice=level_tables(result))
 
 
 def summed(cells: Iterable[Mapping[str, Any]], key: Any) -> list[dict[str, Any]]:
@@ -376,6 +380,9 @@ def _how(result: Result) -> tuple[str, ...]:
         "provides, or which are near an outcome boundary (a change by 10⁻⁴, of the friction too, makes such a "
         "difference in the model). “Beyond it” counts runs of such scenes that fail, or differ by more than such "
         "changes do in the model.",
+        f"Levels: statues of two draws (seeds {SEEDS[0]} and {SEEDS[1]}), from the same range. They lift by at least "
+        "the least tilt of the range, and the model holds. Half of them stand under recorded motions (synthetic ones "
+        "where none are at hand), half under pulses; half have a friction.",
         f"Boundaries: those of {len(where(result.rows, part='drawn edge'))} of the statues, at rest. Shapes of "
         f"pulses take turns; frequencies are drawn from {FREQUENCY[0]:g} to {FREQUENCY[1]:g} times the rocking "
         f"frequency. The lowest boundary is taken if no other one is nearer than {percent(APART, 1)} and the block "

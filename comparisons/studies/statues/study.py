@@ -39,10 +39,11 @@ from ...execution.plan import Batch, Computed, Plan, Request
 from ...execution.progress import log
 from ...execution.results import commit_seed
 from ...execution.sweep import Row
-from ...metrics.boundaries import TOLERANCE, Edge, Runs, edges
+from ...metrics.boundaries import DISTANCES, TOLERANCE, Edge, Runs, edges
 from ...metrics.statistics import class_of
 from ...schemas.columns import declared, flag_of, list_of, number_of, whole_of, word_of
 from ..rows import BOUNDARY, BOUNDARY_ROW, EDGE, SHARED, SOUGHT
+from .levels import draw, level_cases, level_row, level_settings, of_level
 
 # The columns of its rows, and by part which of them a row has; see `comparisons.studies.rows`.
 COLUMNS = (
@@ -87,6 +88,12 @@ COLUMNS = (
         number_of("tilt_error", "tilt error", "relative error of the peak tilt, of a block that stays upright"),
         list_of("slipping", "slipping", "errors of the restitution at impacts in which the corner slides"),
         list_of("sticking", "sticking", "errors of the restitution at other impacts"),
+        whole_of("draw", "draw", "number of the draw of a statue at a level: 1 chooses, 2 judges", ""),
+        word_of("model_outcome", "outcome in the model", "outcome of the analytic model's run"),
+        number_of("displacement", "peak displacement", "peak base displacement in the analytic model", "m"),
+        number_of("peak_error", "error of the peak tilt", "of a block that stays upright, over the slenderness"),
+        number_of("displacement_error", "error of the peak displacement", "relative, of a block on bearings"),
+        flag_of("warned", "warned", "whether the run itself says that it is too coarse"),
         number_of("cpu_ratio", "cpu ratio", "CPU time over the analytic model's"),
     )
 )
@@ -97,12 +104,17 @@ PARTS = {
     "run": "engine variant tier index friction? class comparable | differences quantities",
     "drawn edge": f"{EDGE} slenderness radius base_mass? law? period?",
     "drawn shift": BOUNDARY_ROW,
+    "level": """engine variant level draw index motion friction? model_outcome comparable tilt displacement outcome
+             | peak_error? displacement_error? warned cpu_per_second""",
+    "level shift": BOUNDARY_ROW,
     "failure": SOUGHT,
 }
 
 # numbers of scenes without friction, of scenes with it, of those that engines run, and of statues whose boundaries are
 # searched for
 FULL, QUICK = (500, 20_000, 50, 20), (20, 400, 10, 2)
+DRAWN, DRAWN_QUICK = 200, 4  # statues of a draw at all levels
+LEVEL_EDGES = 30  # statues whose boundaries are searched for at all levels; at most those of the draw
 FEWER = 5  # variants other than the main ones of subject engines run one scene in so many
 BINS = 6  # intervals of the friction in which outcomes are counted
 SUPPORTS = ("rigid ground", "isolated")
@@ -114,6 +126,8 @@ Seed = Annotated[int | None, typer.Option(min=0, max=2**63, help=SEED)]
 Number = Annotated[int | None, typer.Option(min=1, max=10**6, help="Without friction. Default 500, quick 20.")]
 Sliders = Annotated[int | None, typer.Option(min=1, max=10**7, help="With friction. Default 20000, quick 400.")]
 
+Drawn = Annotated[int | None, typer.Option("--levels", min=1, max=10**4, help="Per draw, at all levels. Default 200.")]
+
 
 # Long, because a plan is best read in one piece, from the first run to the last row.
 def plan(
@@ -123,6 +137,7 @@ def plan(
     seed: Seed = None,
     scenes: Number = None,
     sliders: Sliders = None,
+    levels: Drawn = None,
     records: Folder = None,
 ) -> Plan:
     """Plan the study.
@@ -130,7 +145,8 @@ def plan(
     Rows by "part": "cell", how many scenes of a support, a kind of motion and an interval of friction have which fate
     in the model; "scene", a scene with friction that the engines run, and the model's answer; "run", an engine's run of
     a scene, with friction null where it has none; "drawn edge" and "drawn shift", a statue's boundary in the model and
-    in an engine; "failure", a failed run of the search for it.
+    in an engine; "failure", a failed run of the search for it; "level", a run of a statue at a level of a tuned
+    variant, and "level shift", a statue's boundary there, see `levels`.
 
     Parameters
     ----------
@@ -139,6 +155,8 @@ def plan(
         How many statues are drawn in place of those of `FULL` or `QUICK`.
     seed : int, optional
         Seed of the scenes.
+    levels : int, optional
+        How many statues each of the two draws at levels has. Their seeds do not change.
     records : str, optional
         Folder of records, or a set of FEMA P695, in place of all of these.
     """
@@ -159,10 +177,22 @@ def plan(
     engine_runs = yield Batch(cases, of_engine, "engines")
     rows += [_run_row(row, model_runs) for row in engine_runs]
     log("analytic boundaries of drawn statues")
-    statues = drawn_edges(count if boundaries is None else boundaries)
+    drawn_count = levels or (DRAWN_QUICK if request.quick else DRAWN)
+    counts = (count, min(LEVEL_EDGES, drawn_count)) if boundaries is None else (boundaries, boundaries)
+    all_statues = drawn_edges(max(counts))
+    statues, level_statues = (all_statues[:number] for number in counts)
     rows += [{"part": "drawn edge", **vars(edge), **drawn_columns(scene)} for scene, edge in statues]
     runs = Runs({edge.ground: scene for scene, edge in statues})
     rows += yield from runs.search_usual("drawn shift", request.engines, [edge for _, edge in statues])
+    log("statues drawn for levels")
+    at_levels = [case for number in (1, 2) for case in draw(motions, number, drawn_count)]
+    level_runs = yield Batch(list(level_cases(request.engines, at_levels)), of_level, "levels")
+    rows += map(level_row, level_runs)
+    level_search = Runs({edge.ground: scene for scene, edge in level_statues})
+    settings_of_levels = level_settings(request.engines)
+    rows += yield from level_search.search(
+        "level shift", settings_of_levels, [edge for _, edge in level_statues], DISTANCES, TOLERANCE
+    )
     variants = [(engine, variant) for engine in request.engines for variant in get_engine(engine).variants]
     settings = {
         "quick": request.quick,
@@ -184,7 +214,7 @@ def plan(
         ],
         "default_variants": {engine: get_engine(engine).default_variant for engine in request.engines},
     }
-    return Computed(settings, rows + runs.failures, seed=seed)
+    return Computed(settings, rows + runs.failures + level_search.failures, seed=seed)
 
 
 def _recorded(folder: str | None) -> tuple[list[SampledMotion], str]:

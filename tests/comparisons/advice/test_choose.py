@@ -23,8 +23,18 @@ ENGINE, VARIANT = "pybullet", "fixed-step"
 
 
 def row(error, cpu=1.0, failure=None):
-    values = {"outcome": "rocks", "error": error, "simulated": 1.0}
+    values = {"outcome": "rocks", "error": error, "simulated": 1.0, "too_coarse": False}
     return Row(Case(RIGID, ENGINE, VARIANT), values, failure, {"cpu_seconds": cpu}, False)
+
+
+def test_a_run_that_says_it_is_too_coarse_does_not_pass():
+    good, warned = row(1e-5), row(1e-5)
+    warned.values["too_coarse"] = True
+    assert problem({1.0: good}, 1e-3, "tilt") == (1e-5, None)
+    assert problem({1.0: good, 1.05: warned}, 1e-3, "tilt") == (
+        1e-5,
+        "warns that it is too coarse at 1.05 of the scene",
+    )
 
 
 def test_neighbours_have_start_and_motion_scaled():

@@ -6,20 +6,10 @@ from types import SimpleNamespace
 import pytest
 
 from analytic import Block, Scene, Start, simulate
-from comparisons.plotting.glance import Advised, Endings, Glance, Peaks, counted
+from comparisons.plotting.glance import Endings, counted
 from comparisons.plotting.parts import RESTITUTION, Judgement, Mark, Section
 from comparisons.plotting.wording import rating
-from comparisons.report.answer import (
-    QUESTION,
-    Stored,
-    advice,
-    judgements_of,
-    lines,
-    own_restitution,
-    setups_of,
-    shown,
-    title,
-)
+from comparisons.report.answer import QUESTION, Stored, judgements_of, lines, own_restitution, setups_of, shown, title
 from comparisons.report.runs import restitution_computed
 from comparisons.report.sections import restitution_section
 from comparisons.report.write import _outside
@@ -143,19 +133,6 @@ def test_the_first_screen_counts_outcomes_that_are_changed_of_subject_engines():
     assert all(words in sentences["Outcomes"] for words in counts)
     assert "30 of 200 (recorded motions) and 20 of 100 (a table)" in sentences["Near outcome boundaries"]
     assert "to within 1.0·10⁻⁵ (exudyn)" in sentences["Restitution"] and "is 0.20 (exudyn)" in sentences["Restitution"]
-
-
-def test_advice_says_what_its_levels_give_elsewhere_and_where_they_were_not_run():
-    level = Advised(1e-3, *FINE, "stiffness", 2e9, 0.02, "rocking run SCENE", {"a pulse": 2e-3, "a jump": 4e-4})
-    glance = Glance(advice=(Advised(1e-2), level), engines=("exudyn",), scene="a scene", alike=1.5)
-    peaks = Peaks("recorded motions", *FINE, "stiffness", 1e9, (1e-5, 5e-4, 2e-3, float("inf")))
-    first, second = advice(glance, [peaks])
-    assert first.rows[0] == ["1 %", "not reached", "–", "–", "–"]
-    assert first.rows[1] == ["0.1 %", "exudyn", "stiffness = 2·10⁹ N/m", "20 ms", "rocking run SCENE"]
-    there = "not run; at stiffness = 10⁹ N/m: 2 of 4 (50 %)"
-    assert second.rows == [["0.1 %", "exudyn, stiffness = 2·10⁹ N/m", "0.20 %: missed", "0.040 %", there]]
-    for changed, words in ((replace(peaks, level=2e9), "2 of 4 (50 %)"), (replace(peaks, engine="another"), "not run")):
-        assert advice(glance, [changed])[1].rows[0][-1] == words
 
 
 def test_endings_are_counted_run_by_run_and_an_interval_goes_by_group():

@@ -1,6 +1,7 @@
 """The study of drawn statues: what is run, which fate a scene has, and that tables, titles and marks count the rows."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ from answered import answered, by_model, stored
 from sliding_scenes import LOST, SAVED, SLIDES, scene_of
 
 from analytic import Block, PulseMotion, Scene, SceneError, Start, simulate, synthetic_motion
-from analytic.response import COMPARED
+from analytic.response import COMPARED, EDGE
 from comparisons.ensembles import SHAPES, random_slider
 from comparisons.execution.cases import Case
 from comparisons.execution.plan import Request
@@ -17,6 +18,8 @@ from comparisons.metrics.boundaries import pulse
 from comparisons.plotting.parts import where
 from comparisons.studies import get_study
 from comparisons.studies.statues import study
+from comparisons.studies.statues.advice import alarms, level_tables
+from comparisons.studies.statues.levels import LEVELS, advised, holds, misses, tally
 from comparisons.studies.statues.study import fates
 from engines import ENGINES, get_engine
 from engines.simulating import outside
@@ -182,3 +185,91 @@ def test_boundaries_of_drawn_statues_are_rated(tmp_path):
     judged, page = STUDY.judgements(result)[0], STUDY.page(result)
     assert {mark.words for mark in judged.marks.values()} == {"0.30 % (2 of 2 drawn statues)"}
     assert "0.30 % at most" in page.title
+
+
+def run_at(level, index, error, draw=1, model="rocks", outcome=None, comparable=COMPARED, **more):
+    """A row of a statue at a level."""
+    return {
+        "part": "level",
+        "engine": "exudyn",
+        "variant": "compliant-corners",
+        "level": level,
+        "draw": draw,
+        "index": index,
+        "model_outcome": model,
+        "outcome": outcome or model,
+        "comparable": comparable,
+        "peak_error": error,
+        "displacement_error": None,
+        "warned": False,
+        "cpu_per_second": 0.01 * level,
+    } | more
+
+
+def test_draws_at_levels_are_of_both_motions_with_and_without_friction_and_the_model_answers_them(result):
+    rows = where(result.rows, part="level")
+    assert len(rows) == 2 * 4 * sum(len(LEVELS[name]) for name in NAMES)
+    assert {row["motion"] for row in rows} == {"pulse", "recorded"} and {row["draw"] for row in rows} == {1, 2}
+    assert {row["friction"] is None for row in rows} == {True, False}
+    for row in rows:
+        assert row["outcome"] == row["model_outcome"] in ("rocks", "overturns") and row["tilt"] >= 0.01
+        assert (row["peak_error"] is None) == (row["outcome"] == "overturns") and not row["peak_error"]
+        assert row["cpu_per_second"] > 0 and row["warned"] is False and not misses(row, 1e-4)
+
+
+def test_a_statue_is_missed_by_either_peak_another_outcome_or_a_failure():
+    assert not misses(run_at(1, 0, 1e-3), 1e-3) and misses(run_at(1, 0, 1.1e-3), 1e-3)
+    assert misses(run_at(1, 0, 0.0, displacement_error=2e-3), 1e-3)
+    assert misses(run_at(1, 0, None, outcome="overturns"), 1.0) and misses(run_at(1, 0, None, outcome="failed"), 1.0)
+    near = run_at(1, 1, None, outcome="overturns", comparable=EDGE)
+    fell = run_at(1, 2, None, model="overturns", outcome="rocks")
+    rows = [run_at(1, 0, 0.0), near, fell, run_at(1, 3, 0.5)]
+    known = {"statues": 4, "upright": 3, "missed": 2, "missed_near": 1, "changed": 2, "away": 1}
+    assert tally(rows, 1e-2) == known
+    assert (
+        not holds(tally([], 1e-2), 1.0)
+        and not holds(known, 1.0)
+        and holds(known | {"away": 0}, 2 / 3)
+        and not holds(known | {"away": 0}, 0.6)
+    )
+
+
+@pytest.mark.parametrize(
+    "errors, chosen",
+    [
+        ({1: 0.1, 2: 1e-3, 3: 1e-4}, (2, True)),
+        ({1: 1e-3, 2: 0.1, 3: 1e-4}, (3, True)),  # a finer level contradicts the coarsest
+        ({1: 1e-3, 2: 1e-3, 3: 0.1}, (3, False)),
+    ],
+)
+def test_the_coarsest_level_is_advised_that_holds_as_all_finer_ones_do(errors, chosen):
+    """One miss in 50 is 2 %, two are more."""
+    for spoiled in (1, 2):
+        rows = [
+            run_at(level, index, error if index < spoiled else 0.0)
+            for level, error in errors.items()
+            for index in range(50)
+        ]
+        assert advised(rows, (1, 2, 3), 1e-2) == (chosen if spoiled == 2 else (1, True))
+
+
+def test_the_second_draw_says_whether_an_advised_level_passes():
+    variant = {"engine": "exudyn", "variant": "compliant-corners", "parameter": "stiffness", "tier": "tuned"}
+    settings = {"variants": [variant | {"default": 1e10, "applies_impact": False}]}
+    rows = [
+        run_at(level, index, 0.02 if level == 1e9 and draw == 2 and index < 3 else 0.002, draw)
+        for level in (1e9, 1e10)
+        for draw in (1, 2)
+        for index in range(40)
+    ]
+    rows[-1] |= {"warned": True}
+    made = SimpleNamespace(rows=rows, settings=settings)
+    first, second = level_tables(made)
+    assert [row[0] for row in first.rows] == ["1 %", "0.1 %", "0.01 %"]
+    coarse, unreached, _ = first.rows
+    assert coarse[2:6] == ["stiffness = 10⁹ N/m", "no", "3 of 40 (7.5 %; 20 %)", "0 of 40 (0)"]
+    assert coarse[-1].endswith("--engine exudyn --set stiffness=1e+09")
+    assert unreached[3].startswith("no level held") and unreached[3].endswith("no")
+    assert [row[2] for row in second.rows] == ["3 of 40 (7.5 %)", "0 of 40 (0 %)"]
+    assert alarms(made).rows[1] == ["2", "80", "1 of 77 (1.3 %)", "3 of 3 (100 %)"]
+    assert level_tables(SimpleNamespace(rows=[], settings={})) == ()

@@ -1,0 +1,150 @@
+"""The page's part on levels: which one is advised for an accuracy, and what all levels do on the second draw."""
+
+from collections.abc import Mapping
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from ...execution.results import Result
+from ...metrics.statistics import wilson
+from ...plotting.parts import Table, grouped, setting_of, table, where
+from ...schemas.columns import NAME, Column, number, percent
+from .levels import ACCURACIES, FALLS, FIRST, SECOND, advised, changed, holds, misses, tally
+
+LEVEL = Column("level", setting_of)
+COST = Column("CPU time per simulated second: median (range) [ms]", lambda row: _cost_in_words(row["cpu"]))
+OTHER = Column("other outcomes or failed: all (away from a boundary)", "{changed} of {statues} ({away})")
+
+
+def level_tables(result: Result) -> tuple[Table, ...]:
+    """Return the tables of the advised levels and of all levels on the second draw; none without rows of levels."""
+    if not where(result.rows, part="level"):
+        return ()
+    second = where(result.rows, part="level", draw=2)
+    statues = len({row["index"] for row in second})
+    upright = len({row["index"] for row in second if row["model_outcome"] != FALLS})
+    return (
+        table(
+            f"Which level to use, of tuned variants, on {statues} drawn statues. An accuracy is kept if the outcome is "
+            "the model's and both errors are within it: of peak tilt over slenderness, and of peak base displacement. "
+            f"The rule was fixed before. The coarsest level that misses at most {percent(FIRST, 1)} on a first draw is "
+            f"chosen; on this second one it passes if it misses at most {percent(SECOND, 1)} of the {upright} statues "
+            "that stay upright, and changes no outcome away from an outcome boundary of the model. CPU times go by "
+            "the machine",
+            [row for accuracy in ACCURACIES for row in _advised_rows(result, accuracy)],
+            Column("accuracy", lambda row: percent(row["accuracy"], 1)),
+            NAME,
+            LEVEL,
+            Column("passes", lambda row: row["verdict"]),
+            Column("missed (at most, 95 %)", lambda row: _missed_in_words(row, bound=True)),
+            OTHER,
+            Column("overturning boundaries within it", lambda row: row["edges"]),
+            COST,
+            Column("command", "command"),
+        ),
+        table(
+            "All levels on the same statues: how many that stay upright miss each accuracy, near an outcome boundary "
+            "or not",
+            _all_rows(result),
+            NAME,
+            LEVEL,
+            *(Column(percent(accuracy, 1), partial(_missed_at, accuracy)) for accuracy in ACCURACIES),
+            OTHER,
+            COST,
+        ),
+    )
+
+
+def alarms(result: Result) -> Table:
+    """Return the table of runs that say they are too coarse, beside those that miss `ACCURACIES[0]`, by draw."""
+    rows = []
+    for draw in (1, 2):
+        runs = [row for row in where(result.rows, part="level", draw=draw) if row["outcome"] != "failed"]
+        counts = {(bad, warned): 0 for bad in (True, False) for warned in (True, False)}
+        for row in runs:
+            numbers = row["model_outcome"] != FALLS and misses(row, ACCURACIES[0])
+            counts[changed(row) or numbers, row["warned"]] += 1
+        rows.append({"draw": draw, "runs": len(runs), "counts": counts})
+    return table(
+        f"Runs that say themselves that they are too coarse. Missed: another outcome, or off by more than "
+        f"{percent(ACCURACIES[0], 1)}. The limit was chosen on the first draw",
+        [row for row in rows if row["runs"]],
+        Column("draw", "draw"),
+        Column("runs that did not fail", "runs"),
+        Column("false alarms, of the runs that keep it", lambda row: _alarms_in_words(row["counts"], False)),
+        Column("no warning, of the runs that miss it", lambda row: _alarms_in_words(row["counts"], True)),
+    )
+
+
+def _alarms_in_words(counts, bad):
+    """Words on how many runs are (not) `bad`, and say the opposite."""
+    wrong, size = counts[bad, not bad], counts[bad, True] + counts[bad, False]
+    return f"{wrong} of {size}" + (f" ({percent(wrong / size)})" if size else "")
+
+
+def _levels(result):
+    """Yield (settings of a variant that has rows of levels, its levels from coarse to fine, the order of its rows)."""
+    for (engine, name), rows in grouped(where(result.rows, part="level"), "engine", "variant").items():
+        (variant,) = where(result.settings["variants"], engine=engine, variant=name)
+        yield variant, list(dict.fromkeys(row["level"] for row in rows))
+
+
+def _row(result, variant, level, draw=2):
+    """Runs of a level on a draw, with what names the level and costs."""
+    runs = where(result.rows, part="level", engine=variant["engine"], level=level, draw=draw)
+    cpu = [row["cpu_per_second"] for row in runs if "cpu_per_second" in row]
+    names = {key: variant[key] for key in ("engine", "variant", "parameter")}
+    return {**names, "level": level, "cpu": cpu}, runs
+
+
+def _all_rows(result):
+    """Yield a row for each level on the second draw."""
+    for variant, levels in _levels(result):
+        for level in levels:
+            row, runs = _row(result, variant, level)
+            by = {accuracy: tally(runs, accuracy) for accuracy in ACCURACIES}
+            yield {**row, **by[ACCURACIES[0]], "by": by}
+
+
+def _advised_rows(result, accuracy):
+    """Yield a row for the level of each engine that the first draw chooses for an accuracy."""
+    for variant, levels in _levels(result):
+        level, held = advised(where(result.rows, part="level", engine=variant["engine"], draw=1), levels, accuracy)
+        row, runs = _row(result, variant, level)
+        counts = tally(runs, accuracy)
+        shifts = where(result.rows, part="level shift", engine=variant["engine"], level=level)
+        within = sum(shift["shift"] is not None and abs(shift["shift"]) <= accuracy for shift in shifts)
+        yield {
+            **row,
+            **counts,
+            "accuracy": accuracy,
+            "edges": f"{within} of {len(shifts)}" if shifts else "not searched for",
+            "verdict": _verdict(counts, held),
+            "command": f"rocking run SCENE --engine {row['engine']} --set {row['parameter']}={level:g}",
+        }
+
+
+def _verdict(counts: Mapping[str, Any], held: bool) -> str:
+    """Return whether a level passes, in words."""
+    words = "yes" if holds(counts, SECOND) else "no"
+    return words if held else f"no level held on the first draw; this, the finest: {words}"
+
+
+def _missed_at(accuracy, row):
+    return _missed_in_words(row["by"][accuracy])
+
+
+def _missed_in_words(counts, bound=False):
+    missed, upright = counts["missed"], counts["upright"]
+    if not upright:
+        return "–"
+    words = f"{missed} of {upright} ({percent(missed / upright)}"
+    return f"{words}; {percent(wilson(missed, upright)[1])})" if bound else f"{words})"
+
+
+def _cost_in_words(cpu):
+    if not cpu:
+        return "–"
+    middle, low, high = (number(1e3 * value, 2) for value in (np.median(cpu), min(cpu), max(cpu)))
+    return f"{middle} ({low} to {high})"
