@@ -142,7 +142,7 @@ class Risk(Form):
     odds: list[Odds]
     records: dict[str, dict[LimitState, float | None]]
     travel: dict[str, tuple[float, ...]] = Field(
-        description="m; slip of the block and displacement of the base, in runs that stay upright: median, 95 % and most"
+        description="m; slip of the block and displacement of the base, where it stays upright: median, 95 % and most"
     )
     failed: int
     why: str
