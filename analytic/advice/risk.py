@@ -84,7 +84,7 @@ class Risk:
     runs: np.ndarray
     reached: dict[str, np.ndarray]
     why: str
-    travel: dict[str, tuple[float, ...]]
+    travel: dict[str, tuple[float, float, float]]
 
     def by_record(self, state: str) -> np.ndarray:
         """Return the probability of a limit state under each record, shape (records,); NaN where all runs failed."""
@@ -199,9 +199,10 @@ def risk(
     peaks = np.concatenate([each for parts in moved for each in parts], axis=1)
     wanted = {"slip": scene.friction is not None, "base": scene.base is not None}
     travel = {
-        name: tuple(np.quantile(values, SHARES).tolist())
+        name: (half, most, largest)
         for (name, has), values in zip(wanted.items(), peaks, strict=True)
         if has and len(values)
+        for half, most, largest in (np.quantile(values, SHARES).tolist(),)
     }
     return Risk(sizes, scores, runs, dict(zip(states, hits, strict=True)), why, travel)
 

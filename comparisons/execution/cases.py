@@ -3,9 +3,10 @@
 import functools
 import hashlib
 import json
+import math
 import pkgutil
 import platform
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -121,6 +122,12 @@ def _place(name):
     if ":" not in place:
         raise KeyError(f"unknown solver {name!r}: choose one of {', '.join([*SOLVERS, *ENGINES])}")
     return place
+
+
+def refined(levels: Sequence[float]) -> list[float]:
+    """Return levels with the geometric means of their neighbours between them."""
+    means = (math.sqrt(a * b) for a, b in zip(levels, levels[1:], strict=False))
+    return sorted({*levels, *means}, reverse=levels[0] > levels[-1])
 
 
 def variant_settings(engine: str, variant: str, levels: Iterable[float] | None = None) -> dict[str, Any]:

@@ -141,7 +141,7 @@ class Risk(Form):
     drawn: list[Drawn]
     odds: list[Odds]
     records: dict[str, dict[LimitState, float | None]]
-    travel: dict[str, tuple[float, ...]] = Field(
+    travel: dict[str, tuple[float, float, float]] = Field(
         description="m; slip of the block and displacement of the base, where it stays upright: median, 95 % and most"
     )
     failed: int

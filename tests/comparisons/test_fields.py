@@ -453,7 +453,9 @@ def risked(ask):
             {**known, "effects": lambda effects: agrees(effects.get("friction"), effect)},
         ]
 
-    share = float((drawn < 1.6 / G).mean())
+    share, creeps = float((drawn < 1.6 / G).mean()), load_scene("creeps.toml").with_(duration=None)
+    runs_ = [simulate(creeps.with_(friction=friction), history=False) for friction in drawn.tolist()]
+    slips = [run.sliding.peak if run.sliding else 0.0 for run in runs_]
     yield (
         "Risk",
         ask("risk", "creeps.toml", "--draws", 40, "--seed", 5, "--spread", "friction=0.15"),
@@ -468,6 +470,7 @@ def risked(ask):
                 1: {"quantity": "friction", "value": 0.15, "unit": "-", "spread": 0.15, "source": "given"},
             },
             "odds": odds(1.6),
+            "travel": {"slip": approx([np.quantile(slips, part) for part in (0.5, 0.95, 1.0)], rel=1e-9)},
             "records": {"the scene's own motion": {"overturns": 0.0, "lifts": 0.0, "slides": share}},
             "failed": 0,
             "why": "",

@@ -28,7 +28,7 @@ from analytic.scene import BASE, BEARINGS, caryatid_block
 from engines import ENGINES, get_engine
 from engines.contract import Variant
 
-from ...execution.cases import Case, variant_settings
+from ...execution.cases import Case, refined, variant_settings
 from ...execution.plan import Batch, Computed, Plan, Request
 from ...metrics import errors as models
 from ...metrics import scripts
@@ -293,12 +293,6 @@ SCIPY_SAMPLED = {
     "LSODA": (powers(-6), ()),
     "Radau": (powers(-3), ()),
 }
-
-
-def refined(levels: Sequence[float]) -> list[float]:
-    """Return levels with the geometric means of their neighbours between them."""
-    means = (math.sqrt(a * b) for a, b in zip(levels, levels[1:], strict=False))
-    return sorted({*levels, *means}, reverse=levels[0] > levels[-1])
 
 
 def levels_of(spec: Variant, quick: bool) -> list[float]:

@@ -25,7 +25,7 @@ from engines.comparison import LEAST_DISPLACEMENT, Reference, is_too_coarse
 from engines.simulating import RANGE
 
 from ...ensembles import PULSE, RECORDED, SYNTHETIC, random_slider
-from ...execution.cases import Case
+from ...execution.cases import Case, refined
 from ...execution.sweep import Row
 from ...metrics.boundaries import Setting
 
@@ -33,8 +33,7 @@ ACCURACIES = (1e-2, 1e-3, 1e-4)
 FIRST, SECOND = 0.02, 0.05  # largest share of statues on which a level misses, on the two draws
 SEEDS = (7001, 7002)  # of the draws
 FALLS = "overturns"
-# {engine: levels of its main variant that are run, from coarse to fine}
-LEVELS = {"exudyn": (4.47e10, 4.47e11, 1e12), "pybullet": (7e-3, 3e-3, 1.73e-3, 1e-3)}
+FINEST = 5  # levels of a main variant that are run, the finest ones, with those between its own levels
 
 
 def draw(records: Sequence[SampledMotion], number: int, count: int) -> list[Case]:
@@ -63,17 +62,18 @@ def _model(scene: Scene) -> dict[str, Any] | None:
 
 
 def level_settings(engines: Sequence[str]) -> list[Setting]:
-    """Return the `LEVELS` of the main variants of engines."""
-    settings = []
-    for engine in (get_engine(name) for name in engines if name in LEVELS):
-        variant = engine.default_variant
-        parameter = engine.variants[variant].accuracy_parameter
-        settings += [Setting(engine.name, variant, level, {parameter: level}) for level in LEVELS[engine.name]]
-    return settings
+    """Return the `FINEST` levels of the main variants of subject engines, from coarse to fine."""
+    return [
+        Setting(engine.name, engine.default_variant, level, {kind.accuracy_parameter: level})
+        for engine in map(get_engine, engines)
+        if engine.subject
+        for kind in (engine.variants[engine.default_variant],)
+        for level in refined(kind.levels)[-FINEST:]
+    ]
 
 
 def level_cases(engines: Sequence[str], statues: Sequence[Case]) -> Iterator[Case]:
-    """Yield the runs of statues at the `LEVELS` of the main variants of engines."""
+    """Yield the runs of statues at `level_settings`."""
     for case, setting in itertools.product(statues, level_settings(engines)):
         yield Case(case.scene, setting.engine, setting.variant, {"history": False, **setting.settings}, case.tag)
 

@@ -19,7 +19,7 @@ from comparisons.plotting.parts import where
 from comparisons.studies import get_study
 from comparisons.studies.statues import study
 from comparisons.studies.statues.advice import alarms, level_tables
-from comparisons.studies.statues.levels import LEVELS, advised, holds, misses, tally
+from comparisons.studies.statues.levels import advised, holds, level_settings, misses, tally
 from comparisons.studies.statues.study import fates
 from engines import ENGINES, get_engine
 from engines.simulating import outside
@@ -208,7 +208,7 @@ def run_at(level, index, error, draw=1, model="rocks", outcome=None, comparable=
 
 def test_draws_at_levels_are_of_both_motions_with_and_without_friction_and_the_model_answers_them(result):
     rows = where(result.rows, part="level")
-    assert len(rows) == 2 * 4 * sum(len(LEVELS[name]) for name in NAMES)
+    assert len(rows) == 2 * 4 * len(level_settings(NAMES))
     assert {row["motion"] for row in rows} == {"pulse", "recorded"} and {row["draw"] for row in rows} == {1, 2}
     assert {row["friction"] is None for row in rows} == {True, False}
     for row in rows:
