@@ -85,11 +85,12 @@ class BearingSizes:
         pendulum = f"radius of curvature {self.radius:.3g} m, friction {self.friction:.3g}" if self.radius else ""
         if self.kind == "pendulum":
             return f"Each pendulum bearing: {pendulum}.", *unmade
+        assert self.diameter and self.height and self.overlap is not None and self.pressure  # all but a pendulum have
         sizes = (
             f"Each {self.kind} bearing: {f'lead core {round(1000 * self.core, 1):g} mm, ' if self.core else ''}"
-            f"rubber {round(1000 * self.diameter, 1):g} mm in diameter, "  # type: ignore[operator]  # all but a pendulum has it
-            f"{round(1000 * self.height, 1):g} mm high; {self.overlap:.0%} of its area overlaps at x_max; "  # type: ignore[operator]  # likewise
-            f"pressure {self.pressure / 1e6:.3g} MPa"  # type: ignore[operator]  # likewise
+            f"rubber {round(1000 * self.diameter, 1):g} mm in diameter, "
+            f"{round(1000 * self.height, 1):g} mm high; {self.overlap:.0%} of its area overlaps at x_max; "
+            f"pressure {self.pressure / 1e6:.3g} MPa"
             + (f", {self.overlap_pressure / 1e6:.3g} MPa on the overlap." if self.overlap_pressure else ".")
         )
         outside = _unmade({"radius": self.radius, "friction": self.friction}) if self.radius else ()

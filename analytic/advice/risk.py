@@ -197,14 +197,17 @@ def risk(
         simulate(scene.with_(motion=longest), history=False)  # a refusal names the part
         raise SceneError("motion", None, f"every run failed: {why}", "change the scene")
     peaks = np.concatenate([each for parts in moved for each in parts], axis=1)
+    return Risk(sizes, scores, runs, dict(zip(states, hits, strict=True)), why, _travel(scene, peaks))
+
+
+def _travel(scene, peaks):
+    """Return the quantiles `SHARES` of the peaks of slip and base displacement, shape (2, runs); see `Risk`."""
     wanted = {"slip": scene.friction is not None, "base": scene.base is not None}
-    travel = {
-        name: (half, most, largest)
+    return {
+        name: tuple(np.quantile(values, SHARES).tolist())
         for (name, has), values in zip(wanted.items(), peaks, strict=True)
         if has and len(values)
-        for half, most, largest in (np.quantile(values, SHARES).tolist(),)
     }
-    return Risk(sizes, scores, runs, dict(zip(states, hits, strict=True)), why, travel)
 
 
 def _scores(seed, record, draws, names):

@@ -26,16 +26,17 @@ from ..execution.command_runs import (
     Directions,
     EngineNames,
     JsonFile,
+    PedestalChecked,
     Records,
     SceneFile,
     Units,
     check_time_limit,
-    checked,
     end_with,
     in_file,
     motions_of,
     named_by_options,
     other_motions,
+    pedestal_check,
     read_row,
     rows_of,
     scene_of,
@@ -164,8 +165,9 @@ def margin(
     scan: dict[str, Any] = {"tilt": tilt, "span": span / 100, "step": span / 100 / STEPS}
     with spinner(f"{loaded.name}: margins") as tell, in_file(scene):
         nearest = margins(loaded, **scan, progress=lambda name: tell(f"{loaded.name}: {name}"))
-        response = decided(loaded)
-        support, _, stays = checked(loaded.with_(duration=None))
+        check = pedestal_check(loaded.with_(duration=None))
+        response = decided(loaded, check)
+    support, _, stays = check
     contact, warnings = Contact.of(loaded, response), (*scene_warnings(loaded), *response.warnings)
     rows = rows_of(loaded, groups, decided, lambda scene: _changes(scene, scan))
 
@@ -178,11 +180,11 @@ def margin(
     end_with(rows, response)
 
 
-def decided(scene: Scene) -> Response:
-    """The response of the analytic model, run until the outcome is decided, with the warnings of `checked`."""
+def decided(scene: Scene, check: PedestalChecked | None = None) -> Response:
+    """The response of the analytic model, run until the outcome is decided, with the warnings of `pedestal_check`."""
     scene = scene.with_(duration=None)
-    response = simulate(scene, history=False)
-    return dataclasses.replace(response, warnings=(*response.warnings, *checked(scene)[1]))
+    response, (_, cautions, _) = simulate(scene, history=False), check or pedestal_check(scene)
+    return dataclasses.replace(response, warnings=(*response.warnings, *cautions))
 
 
 def _margin_form(scene, nearest, contact, warnings, rows, left, span, tilt, support):

@@ -26,13 +26,13 @@ from ..execution.command_runs import (
     Units,
     check_solver,
     check_time_limit,
-    checked,
     end_with,
     in_file,
     named_engines,
     near_motion,
     other_motions,
     parse_settings,
+    pedestal_check,
     print_failures,
     refused,
     rows_of,
@@ -78,7 +78,7 @@ def run(
     check_solver(engine)
     loaded, solver = load_scene(scene), (engine, variant, parse_settings(settings or []))
     (support, warned, stays), (groups, left) = (
-        checked(loaded),
+        pedestal_check(loaded),
         other_motions(loaded, records, both_signs, directions, units),
     )
     about = (*scene_warnings(loaded), *warned)
@@ -160,7 +160,7 @@ def compare(
         say("there is no history to draw")
         plot = None
     print_failures(responses)
-    support, cautions, stays = checked(loaded)
+    support, cautions, stays = pedestal_check(loaded)
     about = (*scene_warnings(loaded), *cautions)
     warned = [replace(responses[0], warnings=(*about, *responses[0].warnings)), *responses[1:]]
     write_output(

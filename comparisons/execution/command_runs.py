@@ -169,7 +169,11 @@ def simulate(
     return dataclasses.replace(response, warnings=tuple(odd))
 
 
-def checked(scene: Scene) -> tuple[dict[str, Any] | None, tuple[Caution, ...], list[str]]:
+# {field of `schemas.runs.Pedestal`: value} or None; warnings; the sentence that the pedestal stays, if it does
+PedestalChecked = tuple[dict[str, Any] | None, tuple[Caution, ...], list[str]]
+
+
+def pedestal_check(scene: Scene) -> PedestalChecked:
     """Return ({field of `schemas.runs.Pedestal`: value} or None, its warnings, or the sentence that it stays)."""
     if (check := check_pedestal(scene)) is None:
         return None, (), []
@@ -194,8 +198,8 @@ def near(scene: Scene) -> tuple[Caution, ...]:
 
 
 def with_near(scene: Scene, response: Response) -> Response:
-    """Return the response of a scene with the warnings of `near` and of `checked` added."""
-    return dataclasses.replace(response, warnings=(*response.warnings, *near(scene), *checked(scene)[1]))
+    """Return the response of a scene with the warnings of `near` and of `pedestal_check` added."""
+    return dataclasses.replace(response, warnings=(*response.warnings, *near(scene), *pedestal_check(scene)[1]))
 
 
 def check_solver(name: str) -> None:

@@ -18,7 +18,7 @@ from analytic.motion import Motion
 from analytic.records.folder import reversed_sign, same_reversed
 from analytic.response import FALLS, JUDGED, about_record, scene_warnings
 
-from ..execution.command_runs import checked, row_of, with_near, with_own
+from ..execution.command_runs import pedestal_check, row_of, with_near, with_own
 from ..execution.results import Result
 from ..plotting.margins import LIFTED, counted, doubts, falls_word, headline, motion_warnings, unit_of
 from ..plotting.parts import across, grouped, table
@@ -209,7 +209,7 @@ def statue_of(
     """
     statue: dict[str, Any] = {"own": _numbers(scene), "cautions": [], "near": [], "margins": []}
     statue["cautions"] += map(str, scene_warnings(scene))
-    statue["pedestal"], _, statue["stays"] = checked(scene)
+    statue["pedestal"], _, statue["stays"] = pedestal_check(scene)
     if scene.base is not None and scene.bearings is not None:
         start = {"base_displacement": 0.0, "base_velocity": 0.0}
         statue["free"] = _numbers_of_copy(scene.with_(base=None, bearings=None, start=start))
@@ -273,7 +273,7 @@ def _numbers_of_copy(scene):
 
 def _numbers(scene):
     response = simulate(scene, history=False)
-    warnings = dict.fromkeys((*about_record(scene.motion), *response.warnings, *checked(scene)[1]))
+    warnings = dict.fromkeys((*about_record(scene.motion), *response.warnings, *pedestal_check(scene)[1]))
     slid = response.sliding if response.sliding and response.sliding.peak else None
     return {
         "outcome": response.outcome,

@@ -18,9 +18,8 @@ from ...plotting.figures import Series, as_it_comes, beside, kind, lines, shades
 from ...plotting.parts import RESTITUTION, Figure, Head, Judgement, Mark, Page, Table, grouped, setting_of, table, where
 from ...plotting.wording import TRUSTED, USABLE, rating, trust, with_counts
 from ...schemas.columns import NAME, Column, Row, number, percent, short
-from .study import COLUMNS
+from .study import COLUMNS, STEPS
 
-STEPS_NAMED = ((1 / 60, "1/60 s"), (1 / 240, "1/240 s"), (1e-3, "1 ms"), (1e-4, "0.1 ms"))  # beside the axis
 FLOOR = 1e-9  # smaller errors are drawn here
 
 ERROR = COLUMNS["rms"]
@@ -588,7 +587,7 @@ def _over_step(levels):
         "step at impacts are not shown.",
         panel="ground",
         log="xy",
-        rules=[("x", step, words) for step, words in STEPS_NAMED],
+        rules=[("x", step, words) for words, step in STEPS.items()],
     )
 
 

@@ -267,12 +267,12 @@ def variants_of(engines: Sequence[str]) -> list[tuple[str, str, Variant]]:
 
 
 # s, fixed steps at which every variant with a fixed step is run, beside its own levels: a game's frame, to a fine one
-STEPS = (1 / 60, 1 / 240, 1e-3, 2.5e-4, 1e-4)
+STEPS = {"1/60 s": 1 / 60, "1/240 s": 1 / 240, "1 ms": 1e-3, "1/4000 s": 2.5e-4, "0.1 ms": 1e-4}
 
 
 def levels_run(kind: Variant) -> list[float]:
     """Return the values of a variant's accuracy parameter that are run: its levels, and `STEPS` where it is a step."""
-    return sorted({*kind.levels, *(STEPS if kind.accuracy_parameter == "step" else ())})
+    return sorted({*kind.levels, *(STEPS.values() if kind.accuracy_parameter == "step" else ())})
 
 
 def grid_cases(grid: Grid, engines: Sequence[str]) -> Iterator[Case]:

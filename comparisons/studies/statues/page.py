@@ -37,14 +37,14 @@ from ...plotting.parts import Figure, Judgement, Mark, Page, grouped, table, whe
 from ...plotting.wording import TRUSTED, ends, left_out, listed, tally
 from ...schemas.columns import NAME, Column, number, percent, typeset
 from .advice import alarms, level_tables
-from .levels import SEEDS
+from .levels import FALLS, SEEDS
 from .study import APART, COLUMNS, FREQUENCY
 
 LEAST_RIGHT = 0.95  # share of right runs, of those not left out, from which an engine is rated good
 LEAST = 1e-3  # share at which the figure's axis begins
 TICKS = ((1e-3, "≤ 0.1 %"), (1e-2, "1 %"), (0.1, "10 %"), (1.0, "100 %"))
 WRONG = Column("runs that differ or fail", "wrong", percent=True, within="interval")
-ALL, FALLS = "all", "overturns"
+ALL = "all"
 NONE, DRAWN = "no friction", "friction drawn"  # kinds of a run's scene
 # {share: (its words, the count of the scenes that it is a share of, words for those scenes)}
 SHARES = {

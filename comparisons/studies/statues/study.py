@@ -43,7 +43,7 @@ from ...metrics.boundaries import DISTANCES, TOLERANCE, Edge, Runs, edges
 from ...metrics.statistics import class_of
 from ...schemas.columns import declared, flag_of, list_of, number_of, whole_of, word_of
 from ..rows import BOUNDARY, BOUNDARY_ROW, EDGE, SHARED, SOUGHT
-from .levels import draw, level_cases, level_row, level_settings, of_level
+from .levels import FALLS, draw, level_cases, level_row, level_settings, of_level
 
 # The columns of its rows, and by part which of them a row has; see `comparisons.studies.rows`.
 COLUMNS = (
@@ -119,7 +119,6 @@ FEWER = 5  # variants other than the main ones of subject engines run one scene 
 BINS = 6  # intervals of the friction in which outcomes are counted
 SUPPORTS = ("rigid ground", "isolated")
 CHUNK = 500  # scenes held at once
-FALLS = "overturns"
 
 SEED = "Of the scenes, without it of the commit; with --check of the draw of runs."
 Seed = Annotated[int | None, typer.Option(min=0, max=2**63, help=SEED)]
