@@ -36,6 +36,7 @@ from .kernel.steps import LINEAR_GROUND, PULSE, QUIET, SHORT_ORDER
 from .motion import SERIES, SampledMotion, slowest_key
 from .response import FALLS, Energy, Failure, History, Impact, Response, State
 from .rocking import BearingLaw, RockingModel
+from .scene import refuse_free
 from .sliding.run import contact_of, is_needed
 from .sliding.run import slid as march
 
@@ -123,6 +124,7 @@ _NO_SAMPLES.flags.writeable = False  # the same compiled type as the samples of 
 
 def parameters(scene: Scene) -> Parameters:
     """Return the scene as the kernel's `Parameters`."""
+    refuse_free(scene, "the model of one block")
     model, law, start = RockingModel.of(scene), BearingLaw.of(scene.bearings), scene.start
     return Parameters(
         m=model.m,
@@ -202,7 +204,7 @@ def simulate(
     rest_rate: float = REST_RATE,
     output_step: float | None = None,
 ) -> Response:
-    """Simulate a scene with the analytic rocking model.
+    """Simulate a scene with the analytic rocking model; one with a free pedestal by `simulate_stack`.
 
     Without a duration the run ends when its outcome is decided and its peaks are final (`decision`). With one, a base
     that oscillates under a block which will not lift again is followed up to `longest_duration`. If the duration ends
@@ -228,6 +230,10 @@ def simulate(
     SceneError
         The run needs too many steps (`most_steps`) or has too many impacts; the message names the cause in the scene.
     """
+    if scene.is_stack:
+        from .stack.run import simulate_stack  # which needs this module
+
+        return simulate_stack(scene, history=history)
     output_step = _output_step(scene, output_step, history)
     settings = {"tolerance": tolerance, "rest_rate": rest_rate, "order": ORDER, "short_order": SHORT_ORDER}
     chosen = options(

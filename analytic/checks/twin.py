@@ -26,6 +26,7 @@ from ..kernel.decision import model_warnings
 from ..motion import PulseMotion, SampledMotion
 from ..response import Energy, Failure, History, Impact, Response, State, limit_warnings
 from ..rocking import RockingModel
+from ..scene import refuse_free
 from ..solver import is_decided, most_steps, too_long, until_decided
 
 if TYPE_CHECKING:
@@ -92,6 +93,7 @@ def simulate_twin(
         "rest_rate": rest_rate,
     }
     _check(settings)
+    refuse_free(scene, "the second implementation")
     if scene.duration is None:
         return until_decided(functools.partial(simulate_twin, history=history, energy=energy, **settings), scene)
     run = Run(scene, {**settings, "atol": rtol if atol is None else atol}, history, energy)
