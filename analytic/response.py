@@ -1,13 +1,13 @@
 """The response of a simulation, the same for every solver.
 
 An outcome is “stands” (never lifted), “slides” (slid on its support, never lifted), “rocks” (lifted, stayed upright),
-“falls off”, “overturns”, “pedestal overturns” or “failed” (with the reason). A block that slides falls off its pedestal when its centre of
-pressure leaves the width or, where it is tilted, its pivot corner does; the run ends there. A block past its balance
-overturns wherever its corner is. A run continues until its outcome is *decided*: the remaining energy can no
-longer overturn the block, or the block is certain to overturn (``analytic/kernel/decision.py`` says when), and the
-peaks are final. A run that a ``duration`` ends earlier is **undecided**: tables say “undecided (rocks so far)”, JSON
-has ``"decided": false``. A longer duration would not change a decided outcome. A base that oscillates below a block
-that will not lift again is followed for a hundred periods.
+“falls off”, “overturns”, “pedestal overturns” (a free one) or “failed” (with the reason). A block that slides falls off
+its pedestal when its centre of pressure leaves the width or, where it is tilted, its pivot corner does; the run ends
+there. A block past its balance overturns wherever its corner is. A run continues until its outcome is *decided*: the
+remaining energy can no longer overturn the block, or the block is certain to overturn
+(``analytic/kernel/decision.py`` says when), and the peaks are final. A run that a ``duration`` ends earlier is
+**undecided**: tables say “undecided (rocks so far)”, JSON has ``"decided": false``. A longer duration would not change
+a decided outcome. A base that oscillates below a block that will not lift again is followed for a hundred periods.
 
 If the block overturns, base peaks and contact forces are those up to the last passage of |tilt| = slenderness. During
 the fall that follows a real block slides.
@@ -44,7 +44,8 @@ import numpy as np
 if TYPE_CHECKING:
     from .scene import Scene
 
-OUTCOMES = ("stands", "slides", "rocks", "falls off", "overturns", "pedestal overturns", "failed")  # the worse, the later
+# the worse, the later
+OUTCOMES = ("stands", "slides", "rocks", "falls off", "overturns", "pedestal overturns", "failed")
 LEVEL = OUTCOMES[:2]  # of a block that never lifted
 FALLS = OUTCOMES[3:6]
 # Quantities of a `Difference`, in words. Restitution: at the matched impact with the largest error. Missing and extra

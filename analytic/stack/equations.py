@@ -52,7 +52,9 @@ from ..rocking import BearingLaw
 if TYPE_CHECKING:
     from ..scene import Scene
 
+Geometry = tuple[complex, complex, complex, float, float, float, float, float]  # of `StackModel.geometry`
 LOWER, UPPER = 0, 1  # the two interfaces, and the block on each
+PLACES = np.array([[0, 1], [3, 4]])  # of the velocities of both centres, see `StackModel.contacts`
 OPENINGS = sorted(product((0, 1, -1), repeat=2), key=lambda sides: abs(sides[0]) + abs(sides[1]))
 # Of velocities and impulses of an impact, relative to those of the closing: far above rounding, below any that count.
 ROUNDING = 1e-9
@@ -73,19 +75,6 @@ class Slab:
         return math.atan2(self.b, self.h)
 
 
-class Geometry(NamedTuple):
-    """R_1, R_d, R_2 [m], A_11, A_12, A_22 [kg m2] and c_1, c_2 [kg m] of the equations."""
-
-    R1: complex
-    Rd: complex
-    R2: complex
-    A11: float
-    A12: float
-    A22: float
-    c1: float
-    c2: float
-
-
 class Instant(NamedTuple):
     """What the equations give at one time.
 
@@ -104,13 +93,13 @@ class Answer(NamedTuple):
     """An answer of the impact law.
 
     rates : phi_1', phi_2' after it [rad/s]. v : velocity of the base [m/s]. sides : of the corners that carry, 0 for
-    both, None for an interface that jumps. impulses : (along, normal) of each interface [N s].
+    both, None for an interface that jumps. impulses : on pedestal and statue from below, along + 1j normal [N s].
     """
 
     rates: tuple[float, float]
     v: float
     sides: list[int | None]
-    impulses: list[tuple[float, float]]
+    impulses: tuple[complex, complex]
 
     @property
     def jumps(self) -> bool:
@@ -119,10 +108,9 @@ class Answer(NamedTuple):
 
 @dataclass(frozen=True)
 class StackModel:
-    """The equations of one scene: pedestal, statue, mass of the base alone [kg] (inf: rigid ground), gravity [m/s2]."""
+    """The equations of one scene: (pedestal, statue), mass of the base alone [kg], inf on rigid ground, and gravity."""
 
-    lower: Slab
-    upper: Slab
+    slabs: tuple[Slab, Slab]
     base: float
     g: float
     bearing: BearingLaw
@@ -133,31 +121,29 @@ class StackModel:
         width, mass, height = (float(getattr(scene.pedestal, name)) for name in ("width", "mass", "height"))
         block, b, h = scene.block, 0.5 * width, 0.5 * height
         return cls(
-            Slab(mass, mass * (b * b + h * h) / 3, b, h),
-            Slab(block.mass, block.centre_inertia, block.half_width, block.half_height),
+            (
+                Slab(mass, mass * (b * b + h * h) / 3, b, h),
+                Slab(block.mass, block.centre_inertia, block.half_width, block.half_height),
+            ),
             scene.base.mass if scene.base else math.inf,
             scene.gravity,
             BearingLaw.of(scene.bearings),
         )
 
     @property
-    def slabs(self) -> tuple[Slab, Slab]:
-        return self.lower, self.upper
-
-    @property
     def mass(self) -> float:
         """Return M [kg], inf on rigid ground."""
-        return self.lower.mass + self.upper.mass + self.base
+        return self.slabs[LOWER].mass + self.slabs[UPPER].mass + self.base
 
     def geometry(self, sides: Sequence[int], tilts: Sequence[float]) -> Geometry:
-        """Return what depends on the sides of the pivots and the tilts [rad] alone."""
+        """Return R_1, R_d, R_2 [m], A_11, A_12, A_22 [kg m2], c_1, c_2 [kg m] at these sides and tilts [rad]."""
         one, two = self.slabs
         r1 = complex(-sides[0] * one.b, one.h)
         d = complex(sides[1] * two.b - sides[0] * one.b, 2 * one.h)
         r2 = complex(-sides[1] * two.b, two.h)
         turn, turn2 = cmath.exp(-1j * tilts[0]), cmath.exp(-1j * tilts[1])
         R1, Rd, R2 = r1 * turn, d * turn, r2 * turn2
-        return Geometry(
+        return (
             R1,
             Rd,
             R2,
@@ -186,7 +172,7 @@ class StackModel:
         ground, vertical : a_g, a_v [m/s2]
         force : F of all bearings [N]; not used on rigid ground
         """
-        one, two, g, (w1, w2) = self.lower, self.upper, self.g + vertical, rates
+        (one, two), (w1, w2), g = self.slabs, rates, self.g + vertical
         R1, Rd, R2, A11, A12, A22, c1, c2 = self.geometry(sides, tilts)
         D_R2 = -(Rd.conjugate() * R2).imag  # D.R_2 = -U.R_d
         f1 = two.mass * D_R2 * w2 * w2 + g * (one.mass * R1.real + two.mass * Rd.real)  # (S1); T_z = -R_1x
@@ -214,22 +200,22 @@ class StackModel:
         moment = -one.h * (G.real + F2.real) + xi2 * F2.imag
         return Instant(a, spins, (G.real, f.real), (G.imag, f.imag), (sides[0] * one.b or moment / G.imag, xi2))
 
-    def opened(self, sides: Sequence[int], shut: Sequence[bool], state: Sequence[Sequence[float]], *loads: float):
+    def opened(
+        self, sides: Sequence[int], shut: Sequence[bool], tilts: Sequence[float], rates: Sequence[float], *loads: float
+    ) -> list[int] | None:
         """Return the sides after uplift, None where no choice of them has compressive forces.
 
-        shut : interfaces in full contact that move as one, which may open. state : tilts and rates. loads : as in
-        `instant`. Gauss's principle makes the choice unique.
+        shut : interfaces in full contact that move as one, which may open. loads : a_g, F and a_v of `instant`. By
+        Gauss's principle there is one choice, unless a pivot would jump.
         """
         for choice in OPENINGS:
             if all(may or not side for may, side in zip(shut, choice, strict=True)):
-                after = tuple(new if may else old for may, new, old in zip(shut, choice, sides, strict=True))
-                now = self.instant(after, *state, *loads)
+                after = [new if may else old for may, new, old in zip(shut, choice, sides, strict=True)]
+                now = self.instant(after, tilts, rates, *loads)
                 relative = now.spins[0], now.spins[1] - now.spins[0]
                 if all(
                     not may or (side * spin > 0 if side else abs(xi) <= slab.b * (1 + 1e-12))
-                    for may, side, spin, xi, slab in zip(
-                        shut, after, relative, now.pressure, self.slabs, strict=True
-                    )
+                    for may, side, spin, xi, slab in zip(shut, after, relative, now.pressure, self.slabs, strict=True)
                 ):
                     return after
         return None
@@ -300,9 +286,10 @@ class StackModel:
                 and min(leaving, default=math.inf) > small
                 and not any(must and len(both) < 2 for must, both in zip(forced, chosen, strict=True))
             ):
-                sums = [sum(float(p[i]) for i, (at, _) in enumerate(used) if at == k) for k in (LOWER, UPPER)]
-                rest = iter(p[len(used) :].tolist())
-                impulses = [(next(rest) if chosen[k] else 0.0, sums[k]) for k in (LOWER, UPPER)]
+                gain1, gain2 = (
+                    slab.mass * complex(*jump) for slab, jump in zip(self.slabs, (after - u)[PLACES], strict=True)
+                )
+                impulses = gain1 + gain2, gain2 * cmath.exp(1j * tilts[0])
                 answers.append(Answer((after[2], after[5]), float(after[6]), [*map(_side, chosen)], impulses))
         return sorted(answers, key=lambda answer: answer.jumps)
 
@@ -316,16 +303,17 @@ class StackModel:
         return 0.5 * (turning + (self.mass * v * v + 2 * v * (c1 * w1 + c2 * w2) if v else 0.0))
 
     def height_energy(self, first: float, second: float) -> float:
-        """Return the energy of gravity [J] over that at rest; first : tilt of the pedestal, second : of the statue on it.
+        """Return the energy of gravity [J] over that at rest.
 
-        It is m_1 g (R_1z - h_1) + m_2 g (R_dz + R_2z - H_1 - h_2).
+        first : tilt of the pedestal, second : of the statue from it [rad]. The energy is
+        m_1 g (R_1z - h_1) + m_2 g (R_dz + R_2z - H_1 - h_2).
         """
         one, two = self.slabs
         R1, Rd, R2, *_ = self.geometry([_sign(first), _sign(second)], [first, first + second])
         return self.g * (one.mass * (R1.imag - one.h) + two.mass * (Rd.imag + R2.imag - 2 * one.h - two.h))
 
     def rim(self, first: float, second: float) -> float:
-        """Return the energy [J] below which a stack within these tilts, of pedestal and statue on it, stays within them.
+        """Return the energy [J] below which a stack stays within these tilts of the pedestal, and the statue from it.
 
         It is the least energy of gravity on the rim |phi_1| = first or |phi_2 - phi_1| = second. Between sides it is a
         sum of cosines, concave on each edge of that rim, so that it is least at a corner or where a tilt is 0.
