@@ -184,13 +184,8 @@ class Stack:
     impulses: tuple[float, float]
     closest: float | None
 
-    @classmethod
-    def of(cls, values: Mapping[str, Any]) -> Self:
-        """Return it from the values of `Response.to_json`."""
-        series = {name: tuple(values[name]) for name in ("rocked", "uplifts", "rests", "impulses")}
-        return cls(**{**values, **series, "impacts": tuple(_of(Impact, impact) for impact in values["impacts"])})
 
-
+STACKED = ("rocked", "uplifts", "rests", "impulses")  # fields that are tuples of words or numbers
 ROUNDING, NO_EDGE = 1e-6, "Without a friction the block does not slide: the edge of its pedestal plays no part."
 KINDS = ("record", "model", "limit", "motion", "engine")
 
@@ -351,6 +346,7 @@ class Response:
             name: tuple(kind(**entry) for entry in values.get(name, ()))
             for name, kind in (("warnings", Caution), ("differences", Difference))
         }
+        landings = tuple(_of(Impact, impact) for impact in (stack or values)["impacts"])
         return cls(
             **{
                 **values,
@@ -362,7 +358,8 @@ class Response:
                 "energy": energy and Energy(**energy),
                 "sliding": sliding
                 and Sliding(**{**sliding, "modes": tuple((t, mode) for t, mode in sliding["modes"])}),
-                "stack": stack and Stack.of(stack),
+                "stack": stack
+                and Stack(**{**stack, **{name: tuple(stack[name]) for name in STACKED}, "impacts": landings}),
                 "history": history,
             }
         )

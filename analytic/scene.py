@@ -372,19 +372,14 @@ class Scene(Part):
             raise SceneError(
                 "pedestal.width", self.pedestal.width, "narrower than the block", f"give at least {wide:.6g} m"
             )
-        return self
-
-    @model_validator(mode="after")
-    def _stack_fits(self) -> Self:
-        if self.is_stack:
-            for key, value, problem in (
-                ("friction", self.friction, "on a free pedestal nothing slides"),
-                ("block.restitution", self.block.restitution, "on a free pedestal the law of impact gives it"),
-                ("start.tilt_rate", self.start.tilt_rate, "a stack starts without a velocity"),
-                ("start.base_velocity", self.start.base_velocity, "a stack starts without a velocity"),
-            ):
-                if value:
-                    raise SceneError(key, value, problem, "remove it, or the line free = true")
+        for key, value, problem in (
+            ("friction", self.friction, "on a free pedestal nothing slides"),
+            ("block.restitution", self.block.restitution, "on a free pedestal the law of impact gives it"),
+            ("start.tilt_rate", self.start.tilt_rate or None, "a stack starts without a velocity"),
+            ("start.base_velocity", self.start.base_velocity or None, "a stack starts without a velocity"),
+        ):
+            if self.is_stack and value is not None:
+                raise SceneError(key, value, problem, "remove it, or the line free = true")
         return self
 
     @model_validator(mode="after")

@@ -191,7 +191,7 @@ class _Run:
             if not self.followed(end, lambda t: np.multiply.outer(self.y, np.ones_like(t))):
                 self.t = end
             return
-        first = min(self.step, 1.1 * self.flight(), end - self.t, self.longest)
+        first = min(self.step, end - self.t, self.longest)
         solver = DOP853(
             self.slope, self.t, self.y, end, rtol=RTOL, atol=self.atol, max_step=self.longest, first_step=first
         )
@@ -205,16 +205,6 @@ class _Run:
             self.t, self.y = solver.t, solver.y
             if self.finished():
                 return
-
-    def flight(self) -> float:
-        """Return the time [s] until an open corner lands, as it moves now; inf where none does."""
-        first, second = self.instant(self.t, self.y).spins
-        times = [math.inf]
-        for k, spin in ((LOWER, first), (UPPER, second - first)):
-            tilt, rate, pull = (self.sides[k] * each for each in (self.y[k * 2], self.y[k * 2 + 1], -spin))
-            if min(rate, pull) > 0:
-                times.append((rate + math.sqrt(rate * rate + 2 * pull * tilt)) / pull)
-        return min(times)
 
     def prepare(self, end: float) -> None:
         """Set the direction of the base's travel, the law's branch in it, and its next corner."""
@@ -430,7 +420,7 @@ class _Run:
         rocked = tuple(name for name, peak in zip(NAMES, self.peaks, strict=False) if peak > 0)
         outcome = FALLS[self.fallen] if fell else "failed" if failure else "rocks" if rocked else "stands"
         x, acceleration, lower_demand, demand, lower_least, least = most.tolist()
-        tilt, psi, absolute = self.peaks.tolist()
+        (tilt, psi, absolute), columns = self.peaks.tolist(), np.array(self.rows).T
         stack = Stack(
             rocked=rocked,
             peak_tilt=tilt,
@@ -469,12 +459,8 @@ class _Run:
             warnings=run_warnings(scene, demand, -least, x, float(self.y[5])),
             failure=failure,
             stack=stack,
-            history=None if self.rows is None else self.history(),
+            history=None if self.rows is None else History(*columns[:7], None, columns[7]),  # type: ignore[call-arg]  # of seven
         )
-
-    def history(self) -> History:
-        columns = np.array(self.rows).T
-        return History(*columns[:7], None, columns[7])  # type: ignore[call-arg]  # of seven
 
 
 def suspect(table: np.ndarray) -> np.ndarray:
