@@ -1,4 +1,4 @@
-"""A run of a statue on a free pedestal: `simulate_stack`, by scipy's DOP853 between events.
+"""A run of a statue on a free pedestal, by scipy's DOP853 between events; `solver.simulate_stack` starts it.
 
 One integration covers an interval of smooth motion. It ends at the next corner of the ground motion, or at an event:
 an uplift, a landing, a reversal or a corner of the bearings, the largest tilt of a swing, the passage of a slenderness,
@@ -16,7 +16,6 @@ by pi/2.
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -25,7 +24,6 @@ import scipy
 from scipy.integrate import DOP853
 from scipy.optimize import brentq, minimize_scalar
 
-from ..checks.twin import shared_segments
 from ..kernel.compiled import entry
 from ..kernel.decision import (
     longest_duration,
@@ -36,13 +34,14 @@ from ..kernel.decision import (
     shortest_duration,
     will_not_overturn,
 )
-from ..kernel.layout import Base, Body, Parameters
+from ..kernel.layout import Base, Body
+from ..motion import shared_segments
 from ..response import Failure, History, Impact, Response, Stack, State
 from ..rocking import uplift_of_both
-from ..solver import compile_kernels, parameters, too_long, versions
 from .equations import LOWER, UPPER, Instant, StackModel
 
 if TYPE_CHECKING:
+    from ..kernel.layout import Parameters
     from ..scene import Scene
 
 RTOL, ATOL = 3e-14, 1e-15  # of a step; ATOL in rad, m, s and limit forces of the bearings
@@ -53,11 +52,11 @@ TOGETHER = 1e-12  # rad: a corner that is closer to what carries it at an impact
 SIZABLE = 0.01  # omega_r slenderness: slower landings, as at the end of an accumulation, have no part in `closest`
 STEPS = 200_000  # of a run, a minute or two; the longest seen took some thousands
 NAMES, FALLS = ("pedestal", "statue"), ("pedestal overturns", "overturns")
-LOST = "contact is lost"
+LOST, JUMPS = "outside the model: contact is lost", "outside the model: the pivot would jump"
 
 
-class _Outside(Exception):
-    """The run has left the model."""
+class _Ended(Exception):
+    """The run cannot go on; says why."""
 
 
 @entry
@@ -65,52 +64,16 @@ def _recoverable(law, constants, z):
     return recoverable_energy(law, constants, z)
 
 
-def simulate_stack(scene: Scene, *, history: bool = True, pedestal_tilt: float = 0.0) -> Response:
-    """Simulate a statue on a free pedestal.
-
-    Without a duration the run ends when, after the motion, the energy suffices for no fall and no larger peak, or at
-    `longest_duration`.
-
-    Parameters
-    ----------
-    scene : Scene
-        With a free pedestal. The tilt at the start is that of the statue from the pedestal.
-    history : bool
-        Keep the history, at the points where events were looked for.
-    pedestal_tilt : float
-        Tilt of the pedestal at the start [rad].
-
-    Returns
-    -------
-    Response
-        Tilts, impacts, friction demand and normal force are those of the statue on the pedestal; `Response.stack` has
-        those of the pedestal. A run that has left the model has failed, for a reason "outside the model: ...".
-
-    Raises
-    ------
-    SceneError
-        The run has too many steps; the message names the cause in the scene.
-    """
-    compile_kernels()
-    run, begin, failure = _Run(scene, history, pedestal_tilt), time.process_time(), None
-    try:
-        run.go()
-    except _Outside as cause:
-        failure = Failure(f"outside the model: {cause}", f"at {run.t:.6g} s", run.state())
-    return run.response(time.process_time() - begin, failure)
-
-
-class _Run:
+class Run:
     """The state of a run: time, sides of the pivots, y = [phi_1, phi_1', psi, psi', x, x', z]; and its results.
 
     psi = phi_2 - phi_1 is the tilt of the statue from the pedestal, which is thus known to its own last digit. z [N] of
-    one bearing is there where its law is a rate.
+    one bearing is there where its law is a rate. par : of the same scene with a fixed pedestal.
     """
 
-    def __init__(self, scene: Scene, history: bool, pedestal_tilt: float) -> None:
+    def __init__(self, scene: Scene, par: Parameters, history: bool, pedestal_tilt: float) -> None:
         self.scene, self.model, start = scene, StackModel.of(scene), scene.start
         self.law, self.frequency = self.model.bearing, scene.rocking_frequency
-        par = parameters(scene.with_(pedestal={"free": False}))
         first_uplift = min(par.slope, uplift_of_both(scene) / scene.gravity)
         self.par = par._replace(slope=first_uplift)  # of the blocks in full contact
         lower, upper = (scene.gravity * slab.mass for slab in self.model.slabs)
@@ -166,22 +129,20 @@ class _Run:
 
     # one interval
 
-    def go(self) -> None:
-        """Run to the end.
-
-        Raises
-        ------
-        _Outside
-            The model ends before.
-        """
+    def go(self) -> Failure | None:
+        """Run to the end; return a `Failure` where the model ends before."""
         scene, self.shortest = self.scene, math.inf
         end = scene.duration
         if end is None:
             end, self.shortest = longest_duration(scene), shortest_duration(scene)
-        for _, until, self.ground, self.vertical in shared_segments(scene.motion, end):
-            for stop in (min(self.shortest, until), until):  # from `shortest` on the run may end
-                while self.t < stop and self.fallen < 0 and not self.finished():
-                    self.stretch(stop)
+        try:
+            for _, until, self.ground, self.vertical in shared_segments(scene.motion, end):
+                for stop in (min(self.shortest, until), until):  # from `shortest` on the run may end
+                    while self.t < stop and self.fallen < 0 and not self.finished():
+                        self.stretch(stop)
+        except _Ended as cause:
+            return Failure(str(cause), f"at {self.t:.6g} s", self.state())
+        return None
 
     def stretch(self, end: float) -> None:
         """Integrate to `end` or to the first event, and apply that."""
@@ -198,7 +159,7 @@ class _Run:
         while solver.status == "running":
             message, self.steps = solver.step(), self.steps + 1
             if solver.status == "failed" or self.steps > STEPS:
-                raise too_long(self.scene, message or f"{self.steps} steps reach only {self.t:.3g} s")
+                raise _Ended(message or "too many steps")
             self.step = solver.h_abs
             if self.followed(solver.t, solver.dense_output()):
                 return
@@ -221,7 +182,7 @@ class _Run:
         loads = self.ground(self.t), self.force(self.y), self.vertical(self.t)
         sides = self.model.opened(self.sides, shut, *self.absolute(self.y), *loads)
         if sides is None:
-            raise _Outside(LOST)
+            raise _Ended(LOST)
         for k in (LOWER, UPPER):
             if sides[k] != self.sides[k]:
                 self.open(k, sides[k])
@@ -306,7 +267,7 @@ class _Run:
             case "uplift":
                 self.open(k, int(np.sign(self.instant(self.t, self.y).pressure[k])))
             case "loss":
-                raise _Outside(LOST)
+                raise _Ended(LOST)
             case "fall":
                 self.fallen = k
             case "passage":
@@ -350,7 +311,7 @@ class _Run:
         if any(forced):
             answers = [answer for answer in answers if not answer.jumps][:1]
         elif not answers or answers[-1].jumps:
-            raise _Outside("the pivot would jump")
+            raise _Ended(JUMPS)
         for answer in answers[:1]:
             for k, impulse in enumerate(answer.impulses):
                 if shut[k]:
@@ -453,7 +414,7 @@ class _Run:
             cpu_seconds=cpu_seconds,
             steps=self.steps,
             settings={"method": "DOP853", "rtol": RTOL},
-            versions={**versions(), "scipy": scipy.__version__},
+            versions={"numpy": np.__version__, "scipy": scipy.__version__},
             scene=scene.name,
             decided=failure is None and self.certain(),
             warnings=run_warnings(scene, demand, -least, x, float(self.y[5])),

@@ -15,7 +15,7 @@ from analytic.checks.time_stepping import simulate_time_stepping
 from analytic.checks.twin import simulate_twin
 from analytic.checks.two_bodies import simulate_two_bodies
 from analytic.scene import BASE, BEARINGS, problem_a, problem_b
-from analytic.stack.run import simulate_stack
+from analytic.solver import parameters, simulate_stack
 from engines import ENGINES
 
 ANSWERS = json.loads((Path(__file__).parent / "answers.json").read_text(encoding="utf-8"))
@@ -98,16 +98,16 @@ def test_halves_that_stay_together_are_one_block():
 
 @pytest.mark.parametrize("name", ("leaning", "opposite", "joined"))
 def test_free_it_loses_energy_at_impacts_alone(name, monkeypatch):
-    energies, land = [], run._Run.land
+    energies, land = [], run.Run.land
 
     def watched(self, k):
         energies.append(self.remaining_energy())
         land(self, k)
         energies.append(self.remaining_energy())
 
-    monkeypatch.setattr(run._Run, "land", watched)
+    monkeypatch.setattr(run.Run, "land", watched)
     scene, tilt = SIX[name]
-    first = run._Run(scene, False, tilt).remaining_energy()
+    first = run.Run(scene, parameters(fixed(scene)), False, tilt).remaining_energy()
     simulate_stack(scene, pedestal_tilt=tilt)
     before, after = np.array([first, *energies[:-1]]).reshape(-1, 2).T, np.array(energies).reshape(-1, 2)
     assert np.abs(before[1] - before[0]).max() < 1e-12 * first and (after[:, 1] < after[:, 0]).all()
