@@ -8,12 +8,12 @@ answer or two.
 import itertools
 import math
 import time
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
 
-from analytic import Base, Block, Pedestal, PulseMotion, Response, Scene
+from analytic import Base, Block, Pedestal, PulseMotion, Response, Scene, simulate
 from analytic.checks.two_bodies import simulate_two_bodies
 from analytic.response import COMPARED, EDGE, Impact, Stack, State
 from analytic.rocking import design_bearings, uplift_of_both
@@ -23,11 +23,13 @@ from analytic.stack.run import FALLS, SIZABLE
 from engines import get_engine
 from engines.comparison import CHANGE, PEAK
 from engines.events import LEAST_TILT, STILL
+from engines.loads import FRICTION
 
 from ...execution.cases import Case, variant_settings
-from ...execution.plan import Batch, Computed, Plan, Request, together
+from ...execution.plan import Batch, Computed, Plan, Request
 from ...execution.sweep import Row
 from ...metrics.boundaries import (
+    BESIDE,
     DISTANCES,
     LEVEL_DISTANCES,
     LEVEL_TOLERANCE,
@@ -35,6 +37,7 @@ from ...metrics.boundaries import (
     Edge,
     Runs,
     Setting,
+    pulse,
     usual_settings,
 )
 from ...metrics.statistics import class_of
@@ -72,31 +75,28 @@ PARTS = {
     "scene": """engine variant index ground hertz peak comparable | outcome change? demand impulse closest?
              cpu_per_second""",
     "run": """engine variant tier index ground class comparable | outcome quantities time_error? pedestal_error?
-           statue_error? cpu_per_second""",
+           statue_error? cpu_per_second?""",
     "edge": EDGE_ROW,
     "shift": BOUNDARY_ROW,
+    "check": BOUNDARY_ROW,
     "failure": SOUGHT,
-    "owner": "engine variant way hertz width fall? displacement? outside",
+    "set-up": "engine variant way hertz width fall? displacement? outside",
     "unique": "engine variant ground closed runs none second",
 }
 
 SEED = 71
 SECONDS = 6.0  # of every run; long after the pulse, as a fall near its boundary is slow
 FULL, QUICK = (60, (1.2, 1.5, 2.0), 0.02, 1500), (8, (1.5,), 0.1, 100)  # scenes, boundaries [Hz], steps [g], states
-GROUNDS, BOUNDARY_GROUND = ("rigid ground", "bearings"), "free pedestal"
+GROUNDS, FREE, SINE = ("rigid ground", "bearings"), "free pedestal", "one-sine"
 STRONGER = 1.5  # amplitudes on bearings over those on the ground: weaker ones lift nothing
 FIRST = 3  # impacts whose times are compared
-STEPPING, STEP = "time-stepping", 1e-5  # s
-LEAST_SWING = 1e-6  # rad: smaller tilts of the stepping are its contacts'
-NOTHING = dict.fromkeys(("time_error", "pedestal_error", "statue_error", "cpu_per_second"))
-SOLVER = f"{__name__}:time_stepping"
-
-BUST, HEIGHT, WIDTH, SQUARE = (0.25, 0.7, 120.0), 1.0, 0.4, 430 / 0.4**2  # m, m, kg; of the pedestal; kg/m2
-WIDTHS, PULSES, WIDE = (0.35, 0.4, 0.5, 0.6), (0.8, 1.2, 2.0), 1.2  # m, Hz; Hz of the pulse for all widths
-WAYS = ("fixed", "glued", "free", "isolated", "isolated and free")
-PLATE, DESIGN = 50.0, {"period": 2.0, "damping": 0.1, "x_max": 0.3}  # kg; of `design_bearings`, s, -, m
-CHUNK, MOST = 6, 3.0  # amplitudes at once; the largest [g]
-NEAR = 1e-6  # relative, of the model's boundaries
+NEAR, LEAST_SWING = 1e-6, 1e-6  # of the model's boundaries; rad: smaller tilts of the stepping are its contacts'
+STEPPING, SOLVER, STEP = "time-stepping", f"{__name__}:time_stepping", 1e-5  # s
+# bust: width, height [m], mass [kg]; pedestal: width, height [m], mass over width squared [kg/m2]
+BUST, WIDTH, HEIGHT, SQUARE = (0.25, 0.7, 120.0), 0.4, 1.0, 430 / 0.4**2
+PLATE, DESIGN = 50.0, {"period": 2.0, "damping": 0.1, "x_max": 0.3}  # kg of the base; of `design_bearings` [s, -, m]
+WAYS, PULSES, MOST = ("fixed", "glued", "free", "isolated", "isolated and free"), (0.8, 1.2, 2.0), 1.8  # Hz; g
+WIDTHS, WIDE = (0.35, 0.5, 0.6), 1.2  # m, beside `WIDTH`; Hz of the pulse
 # {impact: (interfaces that land, whether each block is open before)}; what does not land is open, or at rest
 CLOSED = {
     "both land joined": ((True, True), (True, False)),
@@ -123,28 +123,24 @@ def museum(index: int) -> Scene:
         count = max(1, round(BEARINGS.count * (mass + block.mass) / MASS))
         base, factor = Base(mass=BASE.mass * count / BEARINGS.count), STRONGER * factor
         scene = scene.with_(base=base, bearings=BEARINGS.model_copy(update={"count": count}))
-    pulse = PulseMotion("one-sine", factor * uplift_of_both(scene), 2 * math.pi * hertz)
-    return scene.with_(motion=pulse, name=f"museum {index}")
+    return shaken(scene, hertz, factor * uplift_of_both(scene) / scene.gravity)
 
 
 def bust(way: str, width: float = WIDTH) -> Scene:
     """Return the bust in one of `WAYS`, on a pedestal as deep as wide."""
-    block, mass = rectangle(*BUST), SQUARE * width**2
+    block, mass, half = rectangle(*BUST), SQUARE * width**2, 0.5 * width
+    if way == "glued":  # one block about the corner of the pedestal
+        lower, total = Block(mass=mass, radius=math.hypot(half, 0.5 * HEIGHT), slenderness=1.0), mass + block.mass
+        top = HEIGHT + block.half_height
+        high = (0.5 * HEIGHT * mass + top * block.mass) / total
+        inertia = lower.inertia + block.centre_inertia + block.mass * (half**2 + top**2)
+        size = {"radius": math.hypot(half, high), "slenderness": math.atan2(half, high)}
+        return Scene(block=Block(mass=total, corner_inertia=inertia, **size), duration=SECONDS)
     pedestal = Pedestal(width=width, mass=mass, height=HEIGHT, free=way.endswith("free"))
-    if way.startswith("isolated"):
-        bearings = design_bearings(block.mass + mass + PLATE, **DESIGN)
-        return Scene(block=block, pedestal=pedestal, base=Base(mass=PLATE), bearings=bearings, duration=SECONDS)
-    if way != "glued":
-        return Scene(block=block, pedestal=pedestal, duration=SECONDS)
-    parts = ((mass, 0.5 * HEIGHT, mass * (width**2 + HEIGHT**2) / 12),
-             (block.mass, HEIGHT + block.half_height, block.centre_inertia))  # fmt: skip
-    total, half = mass + block.mass, 0.5 * width
-    high = sum(part * z for part, z, _ in parts) / total
-    inertia = sum(own + part * (z * z + half * half) for part, z, own in parts)
-    slenderness, radius = math.atan2(half, high), math.hypot(half, high)
-    return Scene(
-        block=Block(mass=total, radius=radius, slenderness=slenderness, corner_inertia=inertia), duration=SECONDS
-    )
+    scene = Scene(block=block, pedestal=pedestal, duration=SECONDS)
+    if not way.startswith("isolated"):
+        return scene
+    return scene.with_(base=Base(mass=PLATE), bearings=design_bearings(mass + block.mass + PLATE, **DESIGN))
 
 
 def time_stepping(scene: Scene, *, step: float = STEP, history: bool = False) -> Response:
@@ -186,38 +182,31 @@ def measured(case: Case, response: Response) -> dict[str, Any]:
     assert stack is not None
     slabs = StackModel.of(scene).slabs
     tilts = [stack.peak_tilt / slabs[0].slenderness, response.peak_tilt_ratio]
-    moved = "rocks" if max(tilts) >= STILL else "stands"
-    impacts = [
-        [
-            impact.time
-            for impact in row
-            if abs(impact.rate_before) > SIZABLE * scene.rocking_frequency * slab.slenderness
-        ]
-        for row, slab in zip((stack.impacts, response.impacts), slabs, strict=True)
-    ]
+    least = [SIZABLE * scene.rocking_frequency * slab.slenderness for slab in slabs]  # rates of landings that count
+    demand, impulse = max(stack.friction_demand, response.friction_demand), max(stack.impulses)
+    pressed = min(stack.min_normal_ratio, response.min_normal_ratio) > 0
     return {
-        "outcome": response.outcome if response.outcome in FALLS else moved,
+        "outcome": response.outcome if response.outcome in FALLS else "rocks" if max(tilts) >= STILL else "stands",
         "tilts": tilts,
-        "landings": impacts,
-        "demand": max(stack.friction_demand, response.friction_demand),
-        "impulse": max(stack.impulses),
+        "landings": [
+            [impact.time for impact in impacts if abs(impact.rate_before) > rate]
+            for impacts, rate in zip((stack.impacts, response.impacts), least, strict=True)
+        ],
+        "demand": demand,
+        "impulse": impulse,
         "closest": stack.closest,
+        "held": "" if pressed and max(demand, impulse) <= FRICTION else "a contact pulls, or slips at any friction",
         "simulated": response.end.time,
     }
 
 
 def fate(case: Case, response: Response) -> dict[str, Any]:
-    """Measure whether anything falls, and how far the base moves."""
-    return {
-        "falls": response.outcome in FALLS,
-        "displacement": response.peak_base_displacement,
-        "impacts": len(response.impacts),
-        "normal": response.min_normal_ratio,
-    }
+    """Measure whether a block falls, and how far the base moves."""
+    return {"falls": response.outcome in FALLS, "displacement": response.peak_base_displacement}
 
 
-def scene_row(row: Row, copies: Sequence[Row]) -> dict[str, Any]:
-    """Row of the model's run; copies: with the motion changed by `CHANGE`."""
+def scene_row(row: Row, *copies: Row) -> dict[str, Any]:
+    """Return the row of the model's run; copies: with the motion changed by `CHANGE`."""
     scene, values = row.case.scene, row.values
     about = {
         "part": "scene",
@@ -227,201 +216,156 @@ def scene_row(row: Row, copies: Sequence[Row]) -> dict[str, Any]:
         "ground": GROUNDS[scene.base is not None],
         "hertz": scene.motion.frequency / (2 * math.pi),
         "peak": scene.motion.amplitude / scene.gravity,
+        "outcome": values["outcome"],
     }
     if row.failed:
-        return {**about, "outcome": "failed", "comparable": row.failure["reason"], "failure": row.failure}
-    outcomes = {None if copy.failed else copy.values["outcome"] for copy in copies}
-    alike = outcomes == {values["outcome"]}
-    apart = [abs(a - b) for copy in copies if alike for a, b in zip(copy.values["tilts"], values["tilts"], strict=True)]
+        return {**about, "comparable": row.failure["reason"], "failure": row.failure}
+    alike = all(copy.values["outcome"] == values["outcome"] for copy in copies)
+    changes = [np.abs(np.subtract(copy.values["tilts"], values["tilts"])).max() for copy in copies if alike]
     return {
         **about,
-        "comparable": COMPARED if alike else EDGE,
-        **{name: values[name] for name in ("outcome", "demand", "impulse", "closest")},
-        "change": max(apart, default=None) if values["outcome"] not in FALLS else None,
+        "comparable": values["held"] or (COMPARED if alike else EDGE),
+        "change": None if values["outcome"] in FALLS else max(map(float, changes), default=None),
+        **{name: values[name] for name in ("demand", "impulse", "closest")},
         "cpu_per_second": row.cost["cpu_seconds"] / values["simulated"],
     }
 
 
 def run_row(row: Row, model: Row, comparable: str) -> dict[str, Any]:
-    """Row of a run beside the model's: errors of the first impacts, and of the peaks of blocks that stay upright."""
-    engine, own, values = row.case.solver, row.values, model.values
+    """Return the row of a run beside the model's, with errors of the first impacts, and of blocks that stay upright."""
+    own, expected, engine = row.values, model.values, row.case.solver
     about = {
         "part": "run",
-        "engine": STEPPING if engine == SOLVER else engine,
+        "engine": engine,
         "variant": row.case.variant or "",
         "tier": "model" if engine == SOLVER else get_engine(engine).variants[row.case.variant].kind,
         "index": row.case.tag["index"],
         "ground": GROUNDS[row.case.scene.base is not None],
         "comparable": comparable,
+        "outcome": own["outcome"],
     }
     if row.failed or model.failed:
-        about |= {"failure": row.failure} if row.failed else {}
-        return {**about, "class": class_of(comparable, None), "outcome": own["outcome"], "quantities": [], **NOTHING}
-    upright = not {own["outcome"], values["outcome"]} & {*FALLS}
-    errors = [abs(a - b) if upright else None for a, b in zip(own["tilts"], values["tilts"], strict=True)]
-    quantities = ["outcome"] * (own["outcome"] != values["outcome"]) + ["peak_tilt"] * any(
-        error > PEAK * max(tilt, LEAST_TILT) for error, tilt in zip(errors, values["tilts"], strict=True) if upright
-    )
-    first = sorted((when, k) for k in (0, 1) for when in values["landings"][k])[:FIRST]
-    late = [min((abs(other - when) for other in own["landings"][k]), default=math.inf) for when, k in first]
+        numbers = dict.fromkeys(("time_error", "pedestal_error", "statue_error", "cpu_per_second"))
+        about |= {"failure": row.failure} if row.failed else {**numbers, "quantities": []}
+        return {**about, "class": class_of(comparable, None)}
+    errors = np.abs(np.subtract(own["tilts"], expected["tilts"]))
+    upright, other = not {own["outcome"], expected["outcome"]} & {*FALLS}, own["outcome"] != expected["outcome"]
+    off = upright and (errors > PEAK * np.maximum(expected["tilts"], LEAST_TILT)).any()
+    quantities = ["outcome"] if other else ["peak_tilt"] if off else []
+    first = sorted((when, k) for k in (0, 1) for when in expected["landings"][k])[:FIRST]
+    late = max((min((abs(t - when) for t in own["landings"][k]), default=math.inf) for when, k in first), default=None)
     return {
         **about,
         "class": class_of(comparable, quantities),
-        "outcome": own["outcome"],
         "quantities": quantities,
-        "time_error": max(late) if late and max(late) < math.inf else None,
-        "pedestal_error": errors[0],
-        "statue_error": errors[1],
+        "time_error": None if late == math.inf else late,
+        **dict(zip(("pedestal_error", "statue_error"), errors.tolist() if upright else (None, None), strict=True)),
         "cpu_per_second": row.cost["cpu_seconds"] / own["simulated"],
     }
 
 
-def answers(index: int, kind: str, draw: int) -> tuple[bool, bool]:
-    """Return whether an impact in a random state has no answer without a jump of the pivot, and one with a jump.
+def setup_row(way: str, hertz: float, width: float, rows: Sequence[Row]) -> dict[str, Any]:
+    """Return the row of a set-up from its runs at rising peaks."""
+    first = next((k for k, row in enumerate(rows) if not row.failed and row.values["falls"]), None)
+    about = {"part": "set-up", "engine": "analytic", "variant": "", "way": way, "hertz": hertz, "width": width}
+    about |= {"fall": None, "displacement": None, "outside": sum(row.failed for row in rows[:first])}
+    if first is not None:
+        scene, moved = rows[first].case.scene, rows[first].values["displacement"]
+        about |= {"fall": scene.motion.amplitude / scene.gravity, "displacement": moved if scene.base else None}
+    return about
 
-    The blocks are those of `museum`, on the ground or on bearings.
-    """
-    scene, (shut, opened) = museum(index), CLOSED[kind]
-    model, rng = StackModel.of(scene), np.random.default_rng([SEED, index, draw])
-    gammas = np.array([slab.slenderness for slab in model.slabs])
-    sides = rng.choice([-1, 1], 2) * opened
+
+def answers(scene: Scene, kind: str, seed: Sequence[int]) -> tuple[bool, bool]:
+    """Return whether an impact in a random state has no answer that keeps the pivots; and such a one and another."""
+    (shut, opened), model, rng = CLOSED[kind], StackModel.of(scene), np.random.default_rng(seed)
+    gammas, sides = [slab.slenderness for slab in model.slabs], rng.choice([-1, 1], 2) * opened
     tilts = sides * gammas * rng.uniform(0, 0.9, 2) * np.logical_not(shut)
-    rates = gammas * scene.rocking_frequency * rng.uniform(-1, 1, 2)
+    rates = np.array(gammas) * scene.rocking_frequency * rng.uniform(-1, 1, 2)
     rates = np.where(shut, -sides * np.abs(rates), rates)  # what lands closes
     v = 0.0 if scene.base is None else float(rng.normal(0, 0.3))
-    found = model.impact(sides.tolist(), np.cumsum(tilts).tolist(), np.cumsum(rates).tolist(), v, shut)
-    jumps = [answer.jumps for answer in found]
-    return all(jumps), any(jumps) and not all(jumps)
-
-
-def unique(states: int) -> Iterator[dict[str, Any]]:
-    """Yield rows on how many of so many random states have no answer, or a second one."""
-    for ground, kind in itertools.product((0, 1), CLOSED):
-        none, second = np.sum([answers(2 * k + ground, kind, k) for k in range(states)], axis=0).tolist()
-        about = {"part": "unique", "engine": "analytic", "variant": "", "ground": GROUNDS[ground], "closed": kind}
-        yield {**about, "runs": states, "none": none, "second": second}
-
-
-Search = Generator[list[float], list[Row], tuple[float | None, Row | None, int]]
-
-
-def first_fall(step: float, tolerance: float = math.inf) -> Search:
-    """Search for the least peak [g] at which a block falls, in steps, and by bisection if `tolerance` (relative) is given.
-
-    Returns
-    -------
-    generator
-        For `plan.together`. It yields peaks, is sent their rows, and returns the first peak that falls, or None, its
-        row, and at how many lower ones a run leaves the model.
-    """
-    outside = 0
-    for begin in range(1, round(MOST / step) + 1, CHUNK):
-        peaks = [step * k for k in range(begin, begin + CHUNK)]
-        for peak, row in zip(peaks, (yield peaks), strict=True):
-            if not row.failed and row.values["falls"]:
-                low, high = peak - step, peak
-                while high - low > tolerance * high:
-                    middle = 0.5 * (low + high)
-                    (between,) = yield [middle]
-                    falls = not between.failed and between.values["falls"]
-                    low, high, row = (low, middle, between) if falls else (middle, high, row)
-                return high, row, outside
-            outside += row.failed
-    return None, None, outside
-
-
-def searched(searches: Sequence[tuple[Scene, float, Search]], label: str) -> Generator[Batch, list[Row], list[Any]]:
-    """Return the results of searches in the model, each of a scene under one sine of so many Hz."""
-    rounds, rows = together([search for *_, search in searches]), None
-    while True:
-        try:
-            asked = rounds.send(rows)  # type: ignore[arg-type]  # None starts it
-        except StopIteration as stop:
-            return stop.value
-        cases = [Case(shaken(*searches[k][:2], peak), settings={"history": False}) for k, peak in asked]
-        rows = yield Batch(cases, fate, label)
+    jumps = {each.jumps for each in model.impact(sides.tolist(), np.cumsum(tilts), np.cumsum(rates), v, shut)}
+    return jumps == {True}, jumps == {True, False}
 
 
 def shaken(scene: Scene, hertz: float, peak: float) -> Scene:
     """Return the scene under one sine; peak [g]."""
-    return scene.with_(motion=PulseMotion("one-sine", peak * scene.gravity, 2 * math.pi * hertz))
+    return scene.with_(motion=PulseMotion(SINE, peak * scene.gravity, 2 * math.pi * hertz))
 
 
-def able(engines: Sequence[str]) -> list[str]:
-    """Return the engines that stack blocks."""
-    return [name for name in engines if hasattr(get_engine(name).load(), "run_stack")]
+def edge_of(scene: Scene, hertz: float, peak: float) -> Edge:
+    """Return a boundary of the model at a peak [g], as the searches of `metrics.boundaries` take it."""
+    amplitude, frequency = peak / math.tan(scene.block.slenderness), 2 * math.pi * hertz / scene.rocking_frequency
+    beside = simulate(scene.with_(motion=pulse(scene, SINE, frequency, amplitude * (1 + BESIDE))), history=False)
+    least = min(beside.min_normal_ratio, beside.stack.min_normal_ratio)
+    around = 0.5 * amplitude, 2 * amplitude, least  # no other boundary is known
+    return Edge(FREE, SINE, frequency, amplitude, True, len(beside.impacts), *around)
 
 
 def plan(request: Request, size: tuple[int, Sequence[float], float, int] | None = None) -> Plan:
     """Plan the study.
 
-    Rows by "part": "scene", the model's run of a random scene, and "run", another solver's; "edge", "shift" and
-    "failure", the first fall of the bust on its pedestal in the model and in other solvers, see `overturning`; "owner",
-    the first fall of a set-up in the model; "unique", how many random states have no answer of the impact law, or two.
+    Rows by "part": "scene", the model's run of a random scene, and "run", another solver's; "set-up", the first fall of
+    a bust in the model; "edge", "shift", "check" and "failure", that of the free one, in engines and the time stepping,
+    see `metrics.boundaries`; "unique", how many random states have no answer of the impact law, or a second one.
 
-    size : numbers of scenes, frequencies of the boundaries [Hz], step of first falls [g], and number of states, in
-        place of FULL or QUICK.
+    size : number of scenes, frequencies of the boundaries [Hz], step of the peaks [g], and number of states, in place
+        of FULL or QUICK.
     """
-    count, frequencies, step, states = size or (QUICK if request.quick else FULL)
-    engines, quiet = able(request.engines), {"history": False}
-    main, others = usual_settings(engines)
-    # 1. random scenes
-    scenes = list(map(museum, range(count)))
-    factors = (1.0, 1 + CHANGE, 1 - CHANGE)
-    cases = [
-        Case(scene.with_(motion=scene.motion.scaled(factor)), settings=quiet, tag={"index": k})
-        for k, scene in enumerate(scenes) for factor in factors
-    ]  # fmt: skip
-    runs = yield Batch(cases, measured, "analytic model")
-    model, copies = runs[::3], list(zip(runs[1::3], runs[2::3], strict=True))
-    rows = [scene_row(*each) for each in zip(model, copies, strict=True)]
+    count, hertzes, step, states = size or (QUICK if request.quick else FULL)
+    engines = [name for name in request.engines if hasattr(get_engine(name).load(), "run_stack")]
+    quiet, (main, others), stepping = {"history": False}, usual_settings(engines), Setting(SOLVER, "", STEP)
+    scenes = list(enumerate(map(museum, range(count))))
+    copies = itertools.product(scenes, (1, 1 + CHANGE, 1 - CHANGE))
+    cases = [Case(s.with_(motion=s.motion.scaled(f)), settings=quiet, tag={"index": k}) for (k, s), f in copies]
+    model = yield Batch(cases, measured, "model")
+    rows = [scene_row(*model[k : k + 3]) for k in range(0, len(model), 3)]
+    runs = itertools.product((stepping, *main, *others), scenes)
+    cases = [Case(scene, one.engine, one.variant or None, quiet, {"index": k}) for one, (k, scene) in runs]
     comparable = [row["comparable"] for row in rows]
-    solvers = [(SOLVER, None, quiet), *((each.engine, each.variant, quiet) for each in (*main, *others))]
-    cases = [Case(scene, *solver, {"index": k}) for solver in solvers for k, scene in enumerate(scenes)]
     for row in (yield Batch(cases, measured, "engines")):
         index = row.case.tag["index"]
-        rows.append(run_row(row, model[index], comparable[index]))
-    # 2. the first fall of the bust, on rigid ground
-    stack = bust("free")
-    found = yield from searched([(stack, hertz, first_fall(step, NEAR)) for hertz in frequencies], "boundaries")
-    edges = [edge_of(stack, hertz, peak, row) for hertz, (peak, row, _) in zip(frequencies, found, strict=True) if row]
-    rows += [{"part": "edge", "engine": "analytic", "variant": "", **vars(edge)} for edge in edges]
-    search = Runs({BOUNDARY_GROUND: stack})
-    fine = [Setting(SOLVER, "", STEP), *main]
-    for settings, distances, tolerance in ((fine, DISTANCES, TOLERANCE), (others, LEVEL_DISTANCES, LEVEL_TOLERANCE)):
-        rows += yield from search.search("shift", settings, edges, distances, tolerance)
-    # 3. the owner's table: set-ups at each frequency, and widths at one
-    ways = [(way, hertz, WIDTH) for way in WAYS for hertz in PULSES]
-    ways += [(way, WIDE, width) for way in ("fixed", "glued", "free") for width in WIDTHS if width != WIDTH]
-    found = yield from searched([(bust(way, width), hertz, first_fall(step)) for way, hertz, width in ways], "owner")
-    for (way, hertz, width), (peak, row, outside) in zip(ways, found, strict=True):
-        about = {"part": "owner", "engine": "analytic", "variant": "", "way": way, "hertz": hertz, "width": width}
-        moved = row.values["displacement"] if row and way.startswith("isolated") else None
-        rows.append({**about, "fall": peak, "displacement": moved, "outside": outside})
-    rows += unique(states)
-    rows += search.failures
+        rows.append(run_row(row, model[3 * index], comparable[index]))
+
+    setups = [*itertools.product(WAYS, PULSES, [WIDTH]), *itertools.product(WAYS[:3], [WIDE], WIDTHS)]
+    setups += [("free", hertz, WIDTH) for hertz in hertzes if hertz not in PULSES]
+    peaks, stack = (step * np.arange(1, round(MOST / step) + 1)).tolist(), bust("free")
+    shakes = itertools.product(setups, peaks)
+    cases = [Case(shaken(bust(way, width), hertz, g), settings=quiet) for (way, hertz, width), g in shakes]
+    falls = yield Batch(cases, fate, "set-ups")
+    found = [setup_row(*one, falls[k * len(peaks) : (k + 1) * len(peaks)]) for k, one in enumerate(setups)]
+    free = [row for row in found if row["way"] == "free" and row["width"] == WIDTH and row["hertz"] in hertzes]
+    rough = [edge_of(stack, row["hertz"], row["fall"] - 0.5 * step) for row in free if row["fall"]]
+    search, unit = Runs({FREE: stack}), math.tan(stack.block.slenderness)
+    located = yield from search.search("edge", [Setting("analytic", "", 0.0)], rough, DISTANCES, NEAR)
+    edges = [
+        edge_of(stack, row["hertz"], edge.amplitude * unit * (1 + each["shift"]))
+        for row, edge, each in zip(free, rough, located, strict=True)
+    ]
+    for part, settings, *how in (
+        ("check", [stepping], DISTANCES, TOLERANCE),
+        ("shift", main, DISTANCES, TOLERANCE),
+        ("shift", others, LEVEL_DISTANCES, LEVEL_TOLERANCE),
+    ):
+        found += yield from search.search(part, settings, edges, *how)
+    rows += [*found, *({"part": "edge", "engine": "analytic", "variant": "", **vars(edge)} for edge in edges)]
+    for ground, kind in itertools.product((0, 1), CLOSED):
+        drawn = [answers(museum(2 * k + ground), kind, (SEED, k)) for k in range(states)]
+        none, second = np.sum(drawn, axis=0).tolist()
+        about = {"part": "unique", "engine": "analytic", "variant": "", "ground": GROUNDS[ground], "closed": kind}
+        rows.append({**about, "runs": states, "none": none, "second": second})
     return Computed(
         {
             "quick": request.quick,
             "scenes": count,
             "step": step,
-            "seconds": SECONDS,
             "tolerance": TOLERANCE,
-            "unit": math.tan(stack.block.slenderness),
+            "unit": unit,
             "omega_r": stack.rocking_frequency,
             "bearings": bust("isolated").bearings.model_dump(),
             "engines": engines,
             "variants": [variant_settings(each.engine, each.variant) for each in (*main, *others)],
             "default_variants": {each.engine: each.variant for each in main},
         },
-        [row | ({"engine": STEPPING} if row["engine"] == SOLVER else {}) for row in rows],
+        [row | {"engine": STEPPING} if row["engine"] == SOLVER else row for row in (*rows, *search.failures)],
         seed=SEED,
     )
-
-
-def edge_of(scene: Scene, hertz: float, peak: float, row: Row) -> Edge:
-    """Return a boundary of the model as searches of engines take it: in their units, with no other one near."""
-    amplitude = peak / math.tan(scene.block.slenderness)
-    frequency = 2 * math.pi * hertz / scene.rocking_frequency
-    mode, normal = row.values["impacts"], row.values["normal"]
-    return Edge(BOUNDARY_GROUND, "one-sine", frequency, amplitude, True, mode, 0.5 * amplitude, 2 * amplitude, normal)
