@@ -45,6 +45,7 @@ from .loads import (
     longest_step,
     placement,
     size_scale,
+    slabs_of,
 )
 from .swings import Trace
 
@@ -138,6 +139,7 @@ def aligned(step: float, ahead: float) -> float:
 
 if TYPE_CHECKING:
     from analytic import Scene
+    from analytic.stack.equations import Slab
 
 # Steps after which a run is given up: this many per largest step of the duration, and a reserve for the impacts.
 ROWS_PER_STEP, RESERVE, MOST_ROWS = 50, 100_000, 20_000_000
@@ -265,11 +267,14 @@ class Bodies(Protocol):
     """The block and the base of a scene as an engine holds them.
 
     Those of a variant that takes a restitution have a method ``twist(moment)``, too: it applies a couple [N m] to the
-    block in the next step, and is called before every one.
+    block in the next step, and is called before every one. Those of a stack have a method ``ruled(rule)``: it returns
+    the `Rule` of their own corners.
     """
 
-    def step(self, step: float, before: float, across: float, up: float, impulse: float) -> State:
-        """Advance the engine by one step and return the state of its bodies.
+    def step(self, step: float, before: float, across: float, up: float, impulse: float) -> Sequence[float]:
+        """Advance the engine by one step and return the `State` of its bodies.
+
+        That of a stack begins with the tilt, rate, x, z, x', z' of the pedestal.
 
         Parameters
         ----------
@@ -444,7 +449,7 @@ def run_of(
     bodies_of : function
         From the longest step [s] to the engine's bodies; it may raise `Mismatch`.
     raw : function
-        From rows to the trace of a first script.
+        From rows to the trace of a first script, or of a stack.
     depth : float
         Largest penetration of a corner that closes too slowly for the rule, over g h^2.
     """
@@ -460,6 +465,8 @@ def run_of(
     clock = time.process_time()
     if isinstance(settings, ImpactAware):
         rule, jumps = gap_rule(largest, smallest, scene.gravity), scene.motion.jumps if scene.motion else ()
+        if scene.is_stack:
+            rule = bodies.ruled(rule)  # type: ignore[attr-defined]  # see `Bodies`
     else:
         rule, jumps = fixed_rule(largest), ()
     if isinstance(settings, FirstScript):  # all steps are the same
@@ -467,10 +474,12 @@ def run_of(
     loads = sampled_loads(scene) if isinstance(settings, FirstScript) else mean_loads(scene, bodies, largest)
     rows, ended = march(bodies, scene, duration, rule, loads, largest, jumps)
     cpu = time.process_time() - clock
-    if isinstance(settings, FirstScript):
+    if isinstance(settings, FirstScript) or scene.is_stack:
         trace = raw(rows)
     else:
-        trace = trace_of(rows, scene, contact_tilt(scene, largest, smallest, depth), smeared=SMEARED)
+        trace = trace_of(
+            rows, scene, contact_tilt(slabs_of(scene)[-1], scene.gravity, largest, smallest, depth), smeared=SMEARED
+        )
         if couple := couple_of(scene):
             trace = replace(trace, early=couple.lasts)
     failure = failure_of(scene, rows, ended)
@@ -493,16 +502,15 @@ def step_limits(scene: Scene, settings: Settings) -> tuple[float, float]:
     return largest, min(largest, SMALLEST_STEP * finer * scale)
 
 
-def contact_tilt(scene: Scene, largest: float, smallest: float, depth: float) -> float:
+def contact_tilt(slab: Slab, g: float, largest: float, smallest: float, depth: float) -> float:
     """Tilt [rad] below which the block counts as in flat contact.
 
     It is twice the largest penetration of a corner, over 2 b.
     A corner whose landing the rule anticipates sinks by its speed times the smallest step, any other by `depth` g h^2
     at most.
     """
-    block, g = scene.block, scene.gravity
-    landing = LANDING * block.slenderness * math.sqrt(g / block.radius) * smallest
-    return landing + depth * g * largest * largest / block.half_width
+    landing = LANDING * slab.slenderness * math.sqrt(g / math.hypot(slab.b, slab.h)) * smallest
+    return landing + depth * g * largest * largest / slab.b
 
 
 RELATIVE, ABSOLUTE = 1e-12, 1e-14  # round-off

@@ -1,0 +1,340 @@
+"""A statue on a free pedestal in an engine: its corners for the step rule, what is read from its steps, its checks.
+
+An adapter that builds a stack has a function ``run_stack(scene, variant, settings, pedestal_tilt=0.0)``, which returns
+the `Run` of `run_of_stack`. Its bodies are those of `engines.loop.Bodies`, whose states have the six numbers of the
+pedestal before those of the block. All tilts of an engine are absolute; in a `StackTrace` and in a `Response` those of
+the block are from the pedestal.
+
+The forces on contacts are not read, so that friction demands, normal forces, impulses and the acceleration of the base
+are NaN.
+"""
+
+from __future__ import annotations
+
+import math
+from array import array
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from analytic.kernel.decision import motion_end, will_not_overturn
+from analytic.kernel.layout import Base, Body
+from analytic.response import Failure, Impact, Response, Stack, limit_warnings
+from analytic.rocking import BearingLaw, uplift_of_both
+from analytic.solver import parameters
+from analytic.stack.equations import LOWER, UPPER, StackModel
+from analytic.stack.run import FALLS, NAMES
+
+from .contract import Run
+from .events import STILL, ended_early, finite_part, last_state
+from .loads import centres, moving_mass, placements, slabs_of
+from .loop import (
+    SMEARED,
+    Bodies,
+    FirstScript,
+    Rule,
+    Settings,
+    contact_tilt,
+    raw_trace_of,
+    run_of,
+    step_limits,
+    trace_of,
+)
+from .observe import cautions, failed_response, run_history
+from .simulating import choose
+from .swings import Trace, find_swings
+from .trace_checks import GAIN_LIMIT, HEIGHT_TOLERANCE, SLIDING_TOLERANCE, trapezoid, work
+
+if TYPE_CHECKING:
+    from analytic import Scene
+
+    from .contract import Engine
+
+FALLEN = 0.5 * math.pi
+
+
+@dataclass(frozen=True)
+class StackTrace(Trace):
+    """The `Trace` of the block, its tilt from the pedestal, its centre absolute; pedestal: the trace of that.
+
+    hysteretic: force of one bearing [N], shape (n,).
+    """
+
+    pedestal: Trace = field(kw_only=True)
+    hysteretic: np.ndarray = field(kw_only=True)
+
+    def at(self, steps: slice | np.ndarray) -> StackTrace:
+        """The steps of a slice or of an array of indices."""
+        return replace(super().at(steps), pedestal=self.pedestal.at(steps), hysteretic=self.hysteretic[steps])
+
+
+class Pair:
+    """An engine's two bodies as the `Bodies` of `march`, which sees the one that is tilted more; keeps their states."""
+
+    def __init__(self, bodies: Bodies, scene: Scene, pedestal_tilt: float) -> None:
+        self.bodies, self.slabs, self.weigh = bodies, slabs_of(scene), bodies.weigh
+        self.now: list[float] = []
+        for (x, vx), (z, vz), (tilt, rate) in placements(scene, pedestal_tilt):
+            self.now += [tilt, rate, x, z, vx, vz]
+        self.states = array("d", self.now)
+
+    def step(self, *loads: float) -> Sequence[float]:
+        """A step: see `engines.loop.Bodies`."""
+        *self.now, base, v = self.bodies.step(*loads)
+        self.states.extend(self.now)
+        first, w1, _, _, vx1, vz1, second, w2, x, z, vx2, vz2 = self.now
+        tilt = second - first if abs(second - first) > abs(first) else first  # a NaN in any is one here
+        return tilt, w1 + w2, x, z, vx1 + vx2, vz1 + vz2, base, v
+
+    def ruled(self, rule: Rule) -> Rule:
+        """The `Rule` of the four corners: two of the pedestal, two of the block over the pedestal's top."""
+        return lambda _: rule(self.corners())
+
+    def corners(self) -> tuple[tuple[float, float], ...]:
+        """(Gap [m], closing speed [m/s]) of each corner."""
+        first, w1, x1, z1, vx1, vz1, second, w2, x2, z2, vx2, vz2 = self.now
+        (one, two), c, s = self.slabs, math.cos(first), math.sin(first)
+        # of the block's centre from the pedestal's, along the pedestal's axes
+        x, z, vx, vz = x2 - x1, z2 - z1 + one.h + two.h, vx2 - vx1, vz2 - vz1
+        high, rising = x * s + z * c - one.h, vx * s + vz * c + w1 * (x * c - z * s)
+        return (
+            *_corners(z1 + one.h, vz1, first, w1, one.b, one.h),
+            *_corners(high, rising, second - first, w2 - w1, two.b, two.h),
+        )
+
+
+def _corners(
+    high: float, rising: float, tilt: float, rate: float, b: float, h: float
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """(Gap, closing speed) of both corners of a block whose centre is `high` over its support; all relative to that."""
+    c, s = math.cos(tilt), math.sin(tilt)
+    mean, lower, sinking, turning = high - h * c, b * s, -rising - h * s * rate, b * c * rate
+    return (mean - lower, sinking + turning), (mean + lower, sinking - turning)
+
+
+def run_of_stack(
+    scene: Scene,
+    settings: Settings,
+    bodies_of: Callable[[float], Bodies],
+    pedestal_tilt: float,
+    edge: float,
+    depth: float,
+) -> Run:
+    """The `Run` of a stack, with a `StackTrace`.
+
+    Parameters
+    ----------
+    scene, settings, bodies_of, depth
+        As in `engines.loop.run_of`.
+    pedestal_tilt : float
+        At the start [rad].
+    edge : float
+        Tilt at which a first script's block counts as in flat contact, over its slenderness.
+    """
+    pairs: list[Pair] = []
+
+    def paired(step: float) -> Bodies:
+        pairs.append(Pair(bodies_of(step), scene, pedestal_tilt))
+        return pairs[-1]
+
+    def traced(rows: np.ndarray) -> Trace:
+        states, (largest, smallest) = np.frombuffer(pairs[-1].states).reshape(-1, 12), step_limits(scene, settings)
+        traces: list[Trace] = []
+        below = np.zeros(2)
+        for slab, state in zip(pairs[-1].slabs, np.hsplit(states, 2), strict=True):
+            tilts, centre = state[:, :2], state[:, 2:]
+            each, below = np.column_stack([rows[:, :2], tilts - below, rows[:, 4:8], centre]), tilts
+            if isinstance(settings, FirstScript):
+                traces.append(replace(raw_trace_of(each, scene, edge * slab.slenderness), centre=centre))
+            else:
+                contact = contact_tilt(slab, scene.gravity, largest, smallest, depth)
+                traces.append(trace_of(each, scene, contact, smeared=SMEARED))
+        parts = {name: getattr(traces[UPPER], name) for name in Trace.__dataclass_fields__}
+        return StackTrace(**parts, pedestal=traces[LOWER], hysteretic=rows[:, 6])
+
+    return run_of(scene, settings, paired, traced, depth)
+
+
+def observe_stack(scene: Scene, run: Run, *, history: bool = True, **labels: Any) -> Response:
+    """The `Response` of a run of a stack; labels: as in `engines.observe.observe`.
+
+    Raises
+    ------
+    TypeError
+        The run's trace is no `StackTrace`.
+    """
+    if run.trace is None:
+        return failed_response(scene, run.failure, **labels)
+    if not isinstance(run.trace, StackTrace):
+        raise TypeError(f"run_stack returned a {type(run.trace).__name__}, no engines.stack.StackTrace")
+    trace, failure = finite_part(run.trace, run.failure)
+    if not isinstance(trace, StackTrace):
+        return failed_response(scene, failure, **labels)
+    both, gammas = (trace.pedestal, trace), [slab.slenderness for slab in slabs_of(scene)]
+    sizes = np.abs([part.tilt for part in both])
+    k = int(sizes[:, -1].argmax())
+    falls = bool(sizes[k, -1] >= FALLEN)
+    fall = _passages(trace.time, sizes[k], gammas[k])[-1] if falls else math.inf
+    failure = failure or _checked(scene, trace, falls)
+    (landings, lifts, still), (impacts, uplifts, rests) = (_events(part) for part in both)
+    first, second = sizes.max(axis=1).tolist()
+    rocked = tuple(
+        name
+        for name, peak, gamma, part in zip(NAMES, (first, second), gammas, both, strict=True)
+        if peak >= STILL * gamma and peak > part.contact_tilt
+    )
+    x, end = float(np.abs(trace.base_displacement[trace.time <= fall]).max()), last_state(trace)
+    outcome = FALLS[k] if falls else "rocks" if rocked else "stands"
+    return Response.unmeasured(
+        outcome="failed" if failure else outcome,
+        overturning_time=_passages(trace.time, sizes[k], FALLEN)[-1] if falls else None,
+        unstable_time=next(iter(_passages(trace.time, sizes[UPPER], gammas[UPPER])), None),
+        fall_time=fall if falls else None,
+        peak_tilt=second,
+        peak_tilt_ratio=second / gammas[UPPER],
+        peak_base_displacement=x,
+        impacts=impacts,
+        uplifts=uplifts,
+        rests=rests,
+        end=end,
+        scene=scene.name,
+        decided=not failure and (falls or _decided(scene, trace)),
+        failure=failure and replace(failure, last_state=failure.last_state or end),
+        stack=Stack(
+            rocked=rocked,
+            peak_tilt=first,
+            statue_tilt=float(np.abs(trace.tilt + trace.pedestal.tilt).max()),
+            impacts=landings,
+            uplifts=lifts,
+            rests=still,
+            friction_demand=math.nan,
+            min_normal_ratio=math.nan,
+            impulses=(math.nan, math.nan),
+            closest=None,
+        ),
+        history=replace(run_history(scene, trace), pedestal_tilt=run_history(scene, trace.pedestal).tilt)
+        if history
+        else None,
+        **{**labels, "warnings": cautions(scene, (*labels["warnings"], *limit_warnings(scene, x)))},
+    )
+
+
+def _passages(time: np.ndarray, size: np.ndarray, limit: float) -> list[float]:
+    """Times [s] at which a tilt of these sizes rises through a limit; the start, too, where it is above."""
+    above = np.append(False, size >= limit)
+    ends = np.flatnonzero(above[1:] & ~above[:-1])
+    before = np.maximum(ends - 1, 0)
+    share = np.divide(size[ends] - limit, size[ends] - size[before], out=np.zeros(len(ends)), where=ends > before)
+    return (time[ends] - share * (time[ends] - time[before])).tolist()
+
+
+def _events(trace: Trace) -> tuple[tuple[Impact, ...], tuple[float, ...], tuple[float, ...]]:
+    """Impacts, uplifts and rests of a block on what carries it; the rate after an impact into contact is 0."""
+    swings, time, v = find_swings(trace), trace.time, trace.base_velocity
+    impacts: list[Impact] = []
+    uplifts, rests, left = [], [], -math.inf
+    for first, last in zip(swings.first.tolist(), swings.last.tolist(), strict=True):
+        # time in which a block passes through contact, at its rates and with the steps on both ends
+        passing = left + _blur(trace, first)
+        if impacts and time[first] <= passing:
+            impacts[-1] = replace(impacts[-1], rate_after=_at_contact(trace, first, -1)[1])
+        elif first:
+            uplifts.append(float(time[first]))
+            rests += [impact.time for impact in impacts[-1:]]
+        if last == len(time) - 1:
+            return tuple(impacts), tuple(uplifts), tuple(rests)
+        jump = v[min(last + 1 + SMEARED, len(v) - 1)] - v[last]
+        impacts.append(Impact(*_at_contact(trace, last, 1), 0.0, float(jump)))
+        left = time[last] + _blur(trace, last)
+    return tuple(impacts), tuple(uplifts), (*rests, *(impact.time for impact in impacts[-1:]))
+
+
+def _blur(trace: Trace, step: int) -> float:
+    """Time [s] from a swing's end to contact, at the rate there, and two steps."""
+    rate = abs(trace.tilt_rate[step])
+    near = np.diff(trace.time[max(step - 1, 0) : step + 2]).max()
+    return float(2 * near + (trace.contact_tilt / rate if rate else 0.0))
+
+
+def _at_contact(trace: Trace, step: int, way: int) -> tuple[float, float]:
+    """Time [s] and rate [rad/s] at tilt = 0 after a step (way 1) or before it (-1), at the acceleration there."""
+    beside = min(max(step - way, 0), len(trace.time) - 1)
+    (t, near), (rate, other) = trace.time[[step, beside]], trace.tilt_rate[[step, beside]]
+    tilt, spin = trace.tilt[step], (rate - other) / (t - near) if beside != step else 0.0
+    closing = -way * math.copysign(1.0, tilt) * rate
+    speed = closing + math.sqrt(max(closing * closing - 2 * tilt * spin, 0.0))
+    ahead = way * 2 * abs(tilt) / speed if speed > 0 else 0.0
+    return float(t + ahead), float(rate + spin * ahead)
+
+
+def _energy(scene: Scene, trace: StackTrace) -> tuple[np.ndarray, np.ndarray]:
+    """(Kinetic energy, that of gravity) [J] of both blocks and the base, shapes (n,), in the ground's frame."""
+    kinetic, gravity = 0.5 * moving_mass(scene) * trace.base_velocity**2, np.zeros(len(trace.time))
+    rates = trace.pedestal.tilt_rate, trace.pedestal.tilt_rate + trace.tilt_rate
+    for slab, part, rate in zip(slabs_of(scene), (trace.pedestal, trace), rates, strict=True):
+        _, z, vx, vz = part.centre.T
+        kinetic = kinetic + 0.5 * (slab.mass * (vx**2 + vz**2) + slab.inertia * rate**2)
+        gravity += slab.mass * scene.gravity * z
+    return kinetic, gravity
+
+
+def _checked(scene: Scene, trace: StackTrace, falls: bool) -> Failure | None:
+    """A `Failure` if the run ends early, gains energy, or ends with a block that has left its place, else None.
+
+    The energy is that of `engines.trace_checks.energy_balance`, the place that of `check_place`: a block that falls and
+    those of a first script may slide.
+    """
+    if not falls and (early := ended_early(scene, trace)):
+        return early
+    motion, time, x = scene.motion, trace.time, trace.base_displacement
+    slabs, parts = slabs_of(scene), (trace.pedestal, trace)
+    moved = np.array([moving_mass(scene) * x, moving_mass(scene) * trace.base_velocity, 0 * x, 0 * x])
+    moved += sum(slab.mass * part.centre.T[[0, 2, 1, 3]] for slab, part in zip(slabs, parts, strict=True))
+    kinetic, gravity = _energy(scene, trace)
+    balance = kinetic + gravity + trapezoid(trace.bearing_force, x) - work(motion, time, *moved[:2])
+    if motion:
+        balance = balance - work(motion.vertical, time, *moved[2:])
+    gain = (balance - np.minimum.accumulate(balance)).max() / max(StackModel.of(scene).barrier[0], kinetic.max())
+    if not gain <= GAIN_LIMIT:
+        return Failure("the run gained energy", f"{gain:.3g} of its energy scale; at most {GAIN_LIMIT} can be error")
+    if falls or trace.first_script:
+        return None
+    tilts = float(trace.pedestal.tilt[-1]), float(trace.pedestal.tilt[-1] + trace.tilt[-1])
+    for name, part, place in zip(NAMES, parts, centres(StackModel.of(scene), tilts), strict=True):
+        off, R = complex(*part.centre[-1, :2]) - place - x[-1], scene.block.radius
+        if not (abs(off.real) <= SLIDING_TOLERANCE * R and abs(off.imag) <= HEIGHT_TOLERANCE * R):
+            return Failure(f"the {name} has left its place", f"by {off.real:.6g} m across and {off.imag:.6g} m up")
+    return None
+
+
+def _decided(scene: Scene, trace: StackTrace) -> bool:
+    """Whether, after the motion, the energy suffices for no fall, or both blocks stand and no force lifts them.
+
+    As the analytic model decides (`analytic.stack.run`).
+    """
+    if trace.time[-1] < motion_end(scene) * (1 - 1e-9):
+        return False
+    law, model, z = BearingLaw.of(scene.bearings), StackModel.of(scene), float(trace.hysteretic[-1])
+    x, v = float(trace.base_displacement[-1]), float(trace.base_velocity[-1])
+    ends = np.abs([trace.pedestal.tilt[-1], trace.tilt[-1]])
+    if (ends < [trace.pedestal.contact_tilt, trace.contact_tilt]).all():
+        par = parameters(scene.with_(pedestal={"free": False}))
+        par = par._replace(slope=min(par.slope, uplift_of_both(scene) / scene.gravity))
+        if will_not_overturn(par, Body(0.0, 0.0, 0.0), Base(x, v, z), False):
+            return True
+    back = max(0.5 * z * z / law.constants.dk, law.unit.recoverable.py_func(abs(z), law.constants)) if z else 0.0
+    most, *rim = model.barrier
+    energy = sum(each[-1] for each in _energy(scene, trace)) + law.count * (0.5 * law.kb * x * x + back)
+    return bool((ends < rim).all() and energy < most)
+
+
+def release(
+    engine: Engine, scene: Scene, pedestal_tilt: float, *, variant: str | None = None, **settings: float
+) -> Response:
+    """The response of a stack with a duration whose pedestal is tilted at the start, too [rad]."""
+    name, chosen = choose(engine, variant, settings)
+    run = engine.load().run_stack(scene, name, chosen, pedestal_tilt)
+    labels = dict(engine=engine.name, variant=name, settings=asdict(chosen), versions=engine.versions())
+    return observe_stack(scene, run, cpu_seconds=run.cpu_seconds, steps=run.steps, warnings=run.warnings, **labels)
