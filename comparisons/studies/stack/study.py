@@ -8,8 +8,8 @@ answer or two.
 import itertools
 import math
 import time
-from collections.abc import Iterator, Sequence
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, cast
 
 import numpy as np
 
@@ -37,7 +37,6 @@ from ...metrics.boundaries import (
     Edge,
     Runs,
     Setting,
-    pulse,
     usual_settings,
 )
 from ...metrics.statistics import class_of
@@ -52,7 +51,7 @@ COLUMNS = (
     | declared(
         whole_of("index", "scene", "number of the scene", ""),
         word_of("outcome", "outcome", "outcome of the run: stands, rocks, overturns, pedestal overturns or failed"),
-        number_of("hertz", "frequency", "frequency of the pulse", "Hz"),
+        number_of("hertz", "frequency", "frequency of the pulse", "Hz", digits=None),
         number_of("peak", "peak", "peak acceleration of the pulse", "g"),
         number_of("time_error", "error of the first impacts", "largest error of the first three impact times", "s"),
         number_of("pedestal_error", "error of the pedestal's tilt", "error of its peak, over its slenderness"),
@@ -62,10 +61,10 @@ COLUMNS = (
         number_of("impulse", "ratio of impulses", "largest ratio of impulses along and off a contact at an impact"),
         number_of("closest", "closest landings", "least time between two landings, one of each, in rocking periods"),
         word_of("way", "set-up", "how the bust is set up"),
-        number_of("width", "width of the pedestal", "width of the pedestal", "m"),
-        number_of("fall", "first fall", "least amplitude at which a block falls, in steps; null: none", "g"),
+        number_of("width", "width of the pedestal", "width of the pedestal", "m", digits=None),
+        number_of("fall", "first fall", "least peak at which a block falls, in steps; null: none", "g", digits=None),
         number_of("displacement", "base displacement", "peak base displacement at the first fall", "m"),
-        whole_of("outside", "outside the model", "amplitudes below it at which the run leaves the model"),
+        whole_of("outside", "outside the model", "lower peaks at which the run leaves the model"),
         word_of("closed", "impact", "what lands, and what is open"),
         whole_of("none", "no answer", "states in which no answer keeps all pivots"),
         whole_of("second", "a second answer", "states in which another answer lets the pivot jump"),
@@ -84,17 +83,20 @@ PARTS = {
     "unique": "engine variant ground closed runs none second",
 }
 
-SEED = 71
+ERRORS, SEED = ("time_error", "pedestal_error", "statue_error", "cpu_per_second"), 71
 SECONDS = 6.0  # of every run; long after the pulse, as a fall near its boundary is slow
 FULL, QUICK = (60, (1.2, 1.5, 2.0), 0.02, 1500), (8, (1.5,), 0.1, 100)  # scenes, boundaries [Hz], steps [g], states
 GROUNDS, FREE, SINE = ("rigid ground", "bearings"), "free pedestal", "one-sine"
+# range of each number of a random scene; peak: over the acceleration that lifts the weaker block
+LIMITS = {"width": (0.35, 0.9), "height": (0.4, 1.3), "tangent": (0.12, 0.4), "share": (0.3, 0.9),
+          "hertz": (0.8, 2.5), "peak": (1.05, 2.2)}  # fmt: skip
 STRONGER = 1.5  # amplitudes on bearings over those on the ground: weaker ones lift nothing
 FIRST = 3  # impacts whose times are compared
 NEAR, LEAST_SWING = 1e-6, 1e-6  # of the model's boundaries; rad: smaller tilts of the stepping are its contacts'
 STEPPING, SOLVER, STEP = "time-stepping", f"{__name__}:time_stepping", 1e-5  # s
 # bust: width, height [m], mass [kg]; pedestal: width, height [m], mass over width squared [kg/m2]
 BUST, WIDTH, HEIGHT, SQUARE = (0.25, 0.7, 120.0), 0.4, 1.0, 430 / 0.4**2
-PLATE, DESIGN = 50.0, {"period": 2.0, "damping": 0.1, "x_max": 0.3}  # kg of the base; of `design_bearings` [s, -, m]
+PLATE, PERIOD, DAMPING, X_MAX = 50.0, 2.0, 0.1, 0.3  # mass of the base [kg]; of `design_bearings` [s, -, m]
 WAYS, PULSES, MOST = ("fixed", "glued", "free", "isolated", "isolated and free"), (0.8, 1.2, 2.0), 1.8  # Hz; g
 WIDTHS, WIDE = (0.35, 0.5, 0.6), 1.2  # m, beside `WIDTH`; Hz of the pulse
 # {impact: (interfaces that land, whether each block is open before)}; what does not land is open, or at rest
@@ -114,10 +116,10 @@ def rectangle(width: float, height: float, mass: float) -> Block:
 
 def museum(index: int) -> Scene:
     """Return scene `index` of the ensemble: marble on stone under one sine, every second one on bearings."""
-    rng = np.random.default_rng([SEED, index])
-    width, height, tangent = rng.uniform(0.35, 0.9), rng.uniform(0.4, 1.3), rng.uniform(0.12, 0.4)
-    across, hertz, factor = width * rng.uniform(0.3, 0.9), rng.uniform(0.8, 2.5), rng.uniform(1.05, 2.2)
-    mass, block = 2700 * width**2 * height, rectangle(across, across / tangent, 1500 * across**3 / tangent)
+    values = np.random.default_rng([SEED, index]).uniform(*zip(*LIMITS.values(), strict=True)).tolist()
+    width, height, tangent, share, hertz, factor = values
+    across, mass = width * share, 2700 * width**2 * height
+    block = rectangle(across, across / tangent, 1500 * across**3 / tangent)
     scene = Scene(block=block, pedestal=Pedestal(width=width, mass=mass, height=height, free=True), duration=SECONDS)
     if index % 2:  # the paper's bearings, as many as carry the weight
         count = max(1, round(BEARINGS.count * (mass + block.mass) / MASS))
@@ -129,18 +131,16 @@ def museum(index: int) -> Scene:
 def bust(way: str, width: float = WIDTH) -> Scene:
     """Return the bust in one of `WAYS`, on a pedestal as deep as wide."""
     block, mass, half = rectangle(*BUST), SQUARE * width**2, 0.5 * width
-    if way == "glued":  # one block about the corner of the pedestal
-        lower, total = Block(mass=mass, radius=math.hypot(half, 0.5 * HEIGHT), slenderness=1.0), mass + block.mass
-        top = HEIGHT + block.half_height
-        high = (0.5 * HEIGHT * mass + top * block.mass) / total
-        inertia = lower.inertia + block.centre_inertia + block.mass * (half**2 + top**2)
-        size = {"radius": math.hypot(half, high), "slenderness": math.atan2(half, high)}
-        return Scene(block=Block(mass=total, corner_inertia=inertia, **size), duration=SECONDS)
     pedestal = Pedestal(width=width, mass=mass, height=HEIGHT, free=way.endswith("free"))
+    if way == "glued":  # one block about the corner of the pedestal
+        total, top = mass + block.mass, HEIGHT + block.half_height
+        high = (0.5 * HEIGHT * mass + top * block.mass) / total
+        inertia = rectangle(width, HEIGHT, mass).inertia + block.centre_inertia + block.mass * (half**2 + top**2)
+        size = {"radius": math.hypot(half, high), "slenderness": math.atan2(half, high), "corner_inertia": inertia}
+        return Scene(block=Block(mass=total, **size), duration=SECONDS)
     scene = Scene(block=block, pedestal=pedestal, duration=SECONDS)
-    if not way.startswith("isolated"):
-        return scene
-    return scene.with_(base=Base(mass=PLATE), bearings=design_bearings(mass + block.mass + PLATE, **DESIGN))
+    bearings = design_bearings(mass + block.mass + PLATE, PERIOD, DAMPING, X_MAX)
+    return scene.with_(base=Base(mass=PLATE), bearings=bearings) if way.startswith("isolated") else scene
 
 
 def time_stepping(scene: Scene, *, step: float = STEP, history: bool = False) -> Response:
@@ -149,17 +149,17 @@ def time_stepping(scene: Scene, *, step: float = STEP, history: bool = False) ->
     simulate_two_bodies(fixed.with_(duration=step), step=step)  # compiled, before the clock starts
     clock = time.process_time()
     run = simulate_two_bodies(fixed, step=step)
-    cpu, relative = time.process_time() - clock, run.upper - run.lower
-    peak, lower, upper = (float(np.abs(tilt).max()) for tilt in (relative, run.lower, run.upper))
-    on_ground, on_top = (tuple(landings(run.time, tilt)) for tilt in (run.lower, relative))
+    cpu, tilts = time.process_time() - clock, (run.lower, run.upper, run.upper - run.lower)
+    lower, upper, peak = (float(np.abs(tilt).max()) for tilt in tilts)
+    below, _, above = (landings(run.time, tilt) for tilt in tilts)
     return Response.unmeasured(
         engine=STEPPING,
         variant="",
         outcome={"lower": FALLS[0], "upper": FALLS[1], "": "rocks"}[run.fallen],
         peak_tilt=peak,
         peak_tilt_ratio=peak / scene.block.slenderness,
-        impacts=on_top,
-        stack=Stack((), lower, upper, on_ground, (), (), math.nan, math.nan, (math.nan, math.nan), None),
+        impacts=above,
+        stack=Stack((), lower, upper, below, (), (), math.nan, math.nan, (math.nan, math.nan), None),
         cpu_seconds=cpu,
         settings={"step": step},
         versions={},
@@ -167,20 +167,18 @@ def time_stepping(scene: Scene, *, step: float = STEP, history: bool = False) ->
     )
 
 
-def landings(times: np.ndarray, tilt: np.ndarray) -> Iterator[Impact]:
-    """Yield the impacts that end the swings of a tilt; their times are extrapolated from the last two steps before."""
+def landings(times: np.ndarray, tilt: np.ndarray) -> tuple[Impact, ...]:
+    """Return the impacts that end the swings of a tilt; their times are extrapolated from the last two steps before."""
     side = np.sign(tilt) * (np.abs(tilt) > LEAST_SWING)
     last = np.flatnonzero((side[1:-1] != 0) & (side[2:] != side[1:-1]) & (side[:-2] == side[1:-1])) + 1
     rates = (tilt[last] - tilt[last - 1]) / (times[last] - times[last - 1])
-    for when, rate in zip((times[last] - tilt[last] / rates).tolist(), rates.tolist(), strict=True):
-        yield Impact(when, rate, math.nan, math.nan)
+    ends = zip((times[last] - tilt[last] / rates).tolist(), rates.tolist(), strict=True)
+    return tuple(Impact(when, rate, math.nan, math.nan) for when, rate in ends)
 
 
 def measured(case: Case, response: Response) -> dict[str, Any]:
     """Measure a run of two blocks; tilts: peaks of both over their slendernesses, landings: times [s] on each."""
-    scene, stack = case.scene, response.stack
-    assert stack is not None
-    slabs = StackModel.of(scene).slabs
+    scene, stack, slabs = case.scene, cast(Any, response.stack), StackModel.of(case.scene).slabs
     tilts = [stack.peak_tilt / slabs[0].slenderness, response.peak_tilt_ratio]
     least = [SIZABLE * scene.rocking_frequency * slab.slenderness for slab in slabs]  # rates of landings that count
     demand, impulse = max(stack.friction_demand, response.friction_demand), max(stack.impulses)
@@ -245,13 +243,12 @@ def run_row(row: Row, model: Row, comparable: str) -> dict[str, Any]:
         "outcome": own["outcome"],
     }
     if row.failed or model.failed:
-        numbers = dict.fromkeys(("time_error", "pedestal_error", "statue_error", "cpu_per_second"))
-        about |= {"failure": row.failure} if row.failed else {**numbers, "quantities": []}
-        return {**about, "class": class_of(comparable, None)}
+        missing = {"failure": row.failure} if row.failed else {**dict.fromkeys(ERRORS), "quantities": []}
+        return {**about, "class": class_of(comparable, None), **missing}
     errors = np.abs(np.subtract(own["tilts"], expected["tilts"]))
-    upright, other = not {own["outcome"], expected["outcome"]} & {*FALLS}, own["outcome"] != expected["outcome"]
+    upright = not {own["outcome"], expected["outcome"]} & {*FALLS}
     off = upright and (errors > PEAK * np.maximum(expected["tilts"], LEAST_TILT)).any()
-    quantities = ["outcome"] if other else ["peak_tilt"] if off else []
+    quantities = ["outcome"] if own["outcome"] != expected["outcome"] else ["peak_tilt"] if off else []
     first = sorted((when, k) for k in (0, 1) for when in expected["landings"][k])[:FIRST]
     late = max((min((abs(t - when) for t in own["landings"][k]), default=math.inf) for when, k in first), default=None)
     return {
@@ -264,26 +261,26 @@ def run_row(row: Row, model: Row, comparable: str) -> dict[str, Any]:
     }
 
 
-def setup_row(way: str, hertz: float, width: float, rows: Sequence[Row]) -> dict[str, Any]:
+def setup_row(way: str, hertz: float, width: float, peaks: Sequence[float], rows: Sequence[Row]) -> dict[str, Any]:
     """Return the row of a set-up from its runs at rising peaks."""
     first = next((k for k, row in enumerate(rows) if not row.failed and row.values["falls"]), None)
-    about = {"part": "set-up", "engine": "analytic", "variant": "", "way": way, "hertz": hertz, "width": width}
-    about |= {"fall": None, "displacement": None, "outside": sum(row.failed for row in rows[:first])}
-    if first is not None:
-        scene, moved = rows[first].case.scene, rows[first].values["displacement"]
-        about |= {"fall": scene.motion.amplitude / scene.gravity, "displacement": moved if scene.base else None}
-    return about
+    return {
+        **{"part": "set-up", "engine": "analytic", "variant": "", "way": way, "hertz": hertz, "width": width},
+        "fall": None if first is None else peaks[first],
+        "displacement": None if first is None or way not in WAYS[3:] else rows[first].values["displacement"],
+        "outside": sum(row.failed for row in rows[:first]),
+    }
 
 
-def answers(scene: Scene, kind: str, seed: Sequence[int]) -> tuple[bool, bool]:
+def answers(index: int, kind: str) -> tuple[bool, bool]:
     """Return whether an impact in a random state has no answer that keeps the pivots; and such a one and another."""
-    (shut, opened), model, rng = CLOSED[kind], StackModel.of(scene), np.random.default_rng(seed)
-    gammas, sides = [slab.slenderness for slab in model.slabs], rng.choice([-1, 1], 2) * opened
-    tilts = sides * gammas * rng.uniform(0, 0.9, 2) * np.logical_not(shut)
-    rates = np.array(gammas) * scene.rocking_frequency * rng.uniform(-1, 1, 2)
-    rates = np.where(shut, -sides * np.abs(rates), rates)  # what lands closes
+    scene, (shut, opened), rng = museum(index), CLOSED[kind], np.random.default_rng([SEED, index, 1])
+    model, sides, frequency = StackModel.of(scene), rng.choice([-1, 1], 2) * opened, scene.rocking_frequency
+    tilts, rates = (rng.uniform(0, 1, (2, 2)) * [[0.9], [frequency]]) * [slab.slenderness for slab in model.slabs]
+    turns = np.where(shut, -sides, rng.choice([-1, 1], 2))  # what lands closes
     v = 0.0 if scene.base is None else float(rng.normal(0, 0.3))
-    jumps = {each.jumps for each in model.impact(sides.tolist(), np.cumsum(tilts), np.cumsum(rates), v, shut)}
+    tilts, rates = np.cumsum(sides * tilts * np.logical_not(shut)), np.cumsum(turns * rates)
+    jumps = {answer.jumps for answer in model.impact(sides.tolist(), tilts.tolist(), rates.tolist(), v, shut)}
     return jumps == {True}, jumps == {True, False}
 
 
@@ -295,12 +292,12 @@ def shaken(scene: Scene, hertz: float, peak: float) -> Scene:
 def edge_of(scene: Scene, hertz: float, peak: float) -> Edge:
     """Return a boundary of the model at a peak [g], as the searches of `metrics.boundaries` take it."""
     amplitude, frequency = peak / math.tan(scene.block.slenderness), 2 * math.pi * hertz / scene.rocking_frequency
-    beside = simulate(scene.with_(motion=pulse(scene, SINE, frequency, amplitude * (1 + BESIDE))), history=False)
-    least = min(beside.min_normal_ratio, beside.stack.min_normal_ratio)
-    around = 0.5 * amplitude, 2 * amplitude, least  # no other boundary is known
-    return Edge(FREE, SINE, frequency, amplitude, True, len(beside.impacts), *around)
+    beside = simulate(shaken(scene, hertz, peak * (1 + BESIDE)), history=False)
+    numbers = len(beside.impacts), 0.5 * amplitude, 2 * amplitude, beside.min_normal_ratio  # no other one is known
+    return Edge(FREE, SINE, frequency, amplitude, True, *numbers)
 
 
+# Long, because a plan is best read in one piece, from the first run to the last row.
 def plan(request: Request, size: tuple[int, Sequence[float], float, int] | None = None) -> Plan:
     """Plan the study.
 
@@ -315,43 +312,51 @@ def plan(request: Request, size: tuple[int, Sequence[float], float, int] | None 
     engines = [name for name in request.engines if hasattr(get_engine(name).load(), "run_stack")]
     quiet, (main, others), stepping = {"history": False}, usual_settings(engines), Setting(SOLVER, "", STEP)
     scenes = list(enumerate(map(museum, range(count))))
-    copies = itertools.product(scenes, (1, 1 + CHANGE, 1 - CHANGE))
-    cases = [Case(s.with_(motion=s.motion.scaled(f)), settings=quiet, tag={"index": k}) for (k, s), f in copies]
-    model = yield Batch(cases, measured, "model")
+    near = [(k, scene.with_(motion=scene.motion.scaled(factor)))
+            for k, scene in scenes for factor in (1, 1 + CHANGE, 1 - CHANGE)]  # fmt: skip
+    model = yield Batch([Case(scene, settings=quiet, tag={"index": k}) for k, scene in near], measured, "model")
     rows = [scene_row(*model[k : k + 3]) for k in range(0, len(model), 3)]
-    runs = itertools.product((stepping, *main, *others), scenes)
-    cases = [Case(scene, one.engine, one.variant or None, quiet, {"index": k}) for one, (k, scene) in runs]
-    comparable = [row["comparable"] for row in rows]
-    for row in (yield Batch(cases, measured, "engines")):
-        index = row.case.tag["index"]
-        rows.append(run_row(row, model[3 * index], comparable[index]))
-
+    solvers = [(one.engine, one.variant or None, quiet) for one in (stepping, *main, *others)]
+    engine_runs = yield Batch(
+        [Case(scene, *solver, {"index": k}) for solver in solvers for k, scene in scenes], measured, "engines"
+    )
+    places = [row.case.tag["index"] for row in engine_runs]
+    rows += [run_row(row, model[3 * k], rows[k]["comparable"]) for k, row in zip(places, engine_runs, strict=True)]
     setups = [*itertools.product(WAYS, PULSES, [WIDTH]), *itertools.product(WAYS[:3], [WIDE], WIDTHS)]
     setups += [("free", hertz, WIDTH) for hertz in hertzes if hertz not in PULSES]
-    peaks, stack = (step * np.arange(1, round(MOST / step) + 1)).tolist(), bust("free")
-    shakes = itertools.product(setups, peaks)
-    cases = [Case(shaken(bust(way, width), hertz, g), settings=quiet) for (way, hertz, width), g in shakes]
-    falls = yield Batch(cases, fate, "set-ups")
-    found = [setup_row(*one, falls[k * len(peaks) : (k + 1) * len(peaks)]) for k, one in enumerate(setups)]
-    free = [row for row in found if row["way"] == "free" and row["width"] == WIDTH and row["hertz"] in hertzes]
-    rough = [edge_of(stack, row["hertz"], row["fall"] - 0.5 * step) for row in free if row["fall"]]
+    peaks, stack = [round(step * k, 12) for k in range(1, round(MOST / step) + 1)], bust("free")
+    falls = yield Batch(
+        [Case(shaken(bust(way, width), hertz, g), settings=quiet) for way, hertz, width in setups for g in peaks],
+        fate,
+        "set-ups",
+    )
+    found = [
+        setup_row(way, hertz, width, peaks, falls[k : k + len(peaks)])
+        for (way, hertz, width), k in zip(setups, range(0, len(falls), len(peaks)), strict=True)
+    ]
+    free = [
+        row
+        for row in found
+        if row["way"] == "free" and row["width"] == WIDTH and row["hertz"] in hertzes and row["fall"]
+    ]
+    rough = [edge_of(stack, row["hertz"], row["fall"] - 0.5 * step) for row in free]
     search, unit = Runs({FREE: stack}), math.tan(stack.block.slenderness)
     located = yield from search.search("edge", [Setting("analytic", "", 0.0)], rough, DISTANCES, NEAR)
     edges = [
         edge_of(stack, row["hertz"], edge.amplitude * unit * (1 + each["shift"]))
         for row, edge, each in zip(free, rough, located, strict=True)
+        if each["shift"] is not None
     ]
-    for part, settings, *how in (
+    for part, settings, distances, tolerance in (
         ("check", [stepping], DISTANCES, TOLERANCE),
         ("shift", main, DISTANCES, TOLERANCE),
         ("shift", others, LEVEL_DISTANCES, LEVEL_TOLERANCE),
     ):
-        found += yield from search.search(part, settings, edges, *how)
+        found += yield from search.search(part, settings, edges, distances, tolerance)
     rows += [*found, *({"part": "edge", "engine": "analytic", "variant": "", **vars(edge)} for edge in edges)]
-    for ground, kind in itertools.product((0, 1), CLOSED):
-        drawn = [answers(museum(2 * k + ground), kind, (SEED, k)) for k in range(states)]
-        none, second = np.sum(drawn, axis=0).tolist()
-        about = {"part": "unique", "engine": "analytic", "variant": "", "ground": GROUNDS[ground], "closed": kind}
+    for k, kind in itertools.product((0, 1), CLOSED):
+        none, second = np.sum([answers(2 * index + k, kind) for index in range(states)], axis=0).tolist()
+        about = {"part": "unique", "engine": "analytic", "variant": "", "ground": GROUNDS[k], "closed": kind}
         rows.append({**about, "runs": states, "none": none, "second": second})
     return Computed(
         {
