@@ -15,6 +15,7 @@ by pi/2.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
@@ -97,7 +98,7 @@ class Run:
         self.impacts: tuple[list[Impact], list[Impact]] = ([], [])
         self.uplifts: tuple[list[float], list[float]] = ([], [])
         self.rests: tuple[list[float], list[float]] = ([], [])
-        self.ratios, self.closest, self.last = [0.0, 0.0], math.inf, (-1, 0.0)
+        self.ratios = [0.0, 0.0]
         self.rows: list[Sequence[float]] | None = [] if history else None
 
     # equations
@@ -290,12 +291,8 @@ class Run:
         before = self.y.tolist()
         self.strike(shut, (False, False))
         for j in landing:
-            rate = before[2 * j + 1]
-            self.impacts[j].append(Impact(self.t, rate, float(self.y[2 * j + 1]), float(self.y[5]) - before[5]))
-            if abs(rate) > SIZABLE * self.frequency * self.gammas[j]:
-                if self.last[0] == 1 - j:
-                    self.closest = min(self.closest, self.t - self.last[1])
-                self.last = j, self.t
+            rates = before[2 * j + 1], float(self.y[2 * j + 1])
+            self.impacts[j].append(Impact(self.t, *rates, float(self.y[5]) - before[5]))
         for over in ((True, True), (False, True), (True, False)):  # interfaces that may rest at once
             resting = [j for j in (LOWER, UPPER) if over[j]]
             if any(self.sides[j] for j in resting) and all(shut[j] and self.rests_at(j, over) for j in resting):
@@ -309,8 +306,8 @@ class Run:
         """Take the velocities and sides after an impact; see `StackModel.impact`. Nothing rests that cannot."""
         answers = self.model.impact(self.sides, *self.absolute(self.y), float(self.y[5]), shut, forced)
         if any(forced):
-            answers = [answer for answer in answers if not answer.jumps][:1]
-        elif not answers or answers[-1].jumps:
+            answers = [answer for answer in answers if None not in answer.sides][:1]
+        elif not answers or None in answers[-1].sides:
             raise _Ended(JUMPS)
         for answer in answers[:1]:
             for k, impulse in enumerate(answer.impulses):
@@ -376,12 +373,20 @@ class Run:
 
     def response(self, cpu_seconds: float, failure: Failure | None) -> Response:
         """Return the `Response` of the run."""
-        scene, gamma, fell = self.scene, self.gammas[UPPER], self.fallen >= 0
+        scene, fell = self.scene, self.fallen >= 0
         fall_time, most = self.held[self.fallen] if fell else (None, self.most)
         rocked = tuple(name for name, peak in zip(NAMES, self.peaks, strict=False) if peak > 0)
         outcome = FALLS[self.fallen] if fell else "failed" if failure else "rocks" if rocked else "stands"
         x, acceleration, lower_demand, demand, lower_least, least = most.tolist()
         (tilt, psi, absolute), columns = self.peaks.tolist(), np.array(self.rows).T
+        period, least_rate = 2 * math.pi / self.frequency, SIZABLE * self.frequency
+        sizable = [
+            (impact.time / period, k)
+            for k, impacts in enumerate(self.impacts)
+            for impact in impacts
+            if abs(impact.rate_before) > least_rate * self.gammas[k]
+        ]
+        pairs = itertools.pairwise(sorted(sizable))
         stack = Stack(
             rocked=rocked,
             peak_tilt=tilt,
@@ -392,7 +397,7 @@ class Run:
             friction_demand=lower_demand,
             min_normal_ratio=-lower_least,
             impulses=(self.ratios[LOWER], self.ratios[UPPER]),
-            closest=None if self.closest == math.inf else self.closest * self.frequency / (2 * math.pi),
+            closest=min((later[0] - sooner[0] for sooner, later in pairs if sooner[1] != later[1]), default=None),
         )
         return Response(
             engine="analytic",
@@ -402,7 +407,7 @@ class Run:
             unstable_time=self.unstable,
             fall_time=fall_time,
             peak_tilt=psi,
-            peak_tilt_ratio=psi / gamma,
+            peak_tilt_ratio=psi / self.gammas[UPPER],
             peak_base_displacement=x,
             peak_base_acceleration=acceleration,
             impacts=tuple(self.impacts[UPPER]),
