@@ -189,6 +189,7 @@ class Run:
             if sides and sides[k] != self.sides[k]:
                 self.open(k, sides[k])
         if not sides or (np.abs(self.y[:4:2]) < FALLING).all() and min(self.instant(self.t, self.y).normal) <= 0:
+            self.keep(self.t, self.y)
             raise _Ended(LOST)
 
     def open(self, k: int, side: int) -> None:
@@ -263,8 +264,9 @@ class Run:
         demands = [abs(along) / normal if normal > 0 else math.inf for along, normal in zip(*now[2:4], strict=True)]
         least = [-normal / weight for normal, weight in zip(now.normal, self.weights, strict=True)]
         self.most = np.maximum(self.most, [abs(x), abs(now.a), *demands, *least])
-        if self.rows is not None:
-            self.rows.append((t, psi, turn, x, v, self.force(y), self.ground(t), tilt))
+        row = t, psi, turn, x, v, self.force(y), self.ground(t), tilt
+        if self.rows is not None and row not in self.rows[-1:]:  # two rows of a time are before and after an impact
+            self.rows.append(row)
 
     def apply(self, event: str, k: int) -> None:
         """Apply an event at interface k; the largest tilt of a swing, "turn", needs nothing more."""
