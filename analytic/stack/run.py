@@ -15,6 +15,7 @@ by pi/2.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
@@ -97,7 +98,7 @@ class Run:
         self.impacts: tuple[list[Impact], list[Impact]] = ([], [])
         self.uplifts: tuple[list[float], list[float]] = ([], [])
         self.rests: tuple[list[float], list[float]] = ([], [])
-        self.ratios, self.closest, self.last = [0.0, 0.0], math.inf, (-1, 0.0)
+        self.ratios = [0.0, 0.0]
         self.rows: list[Sequence[float]] | None = [] if history else None
 
     # equations
@@ -177,15 +178,19 @@ class Run:
         self.corner = self.law.unit.begin.py_func(self.travel, z, 1.0, self.law.constants)[2]
 
     def settle(self) -> None:
-        """Let interfaces in full contact open where their centres of pressure are beyond a corner, as after a jump."""
+        """Let interfaces in full contact open where their centres of pressure are beyond a corner, as after a jump.
+
+        After one a normal force may be negative, too.
+        """
         shut = [side == 0 for side in self.sides]
         loads = self.ground(self.t), self.force(self.y), self.vertical(self.t)
         sides = self.model.opened(self.sides, shut, *self.absolute(self.y), *loads)
-        if sides is None:
-            raise _Ended(LOST)
         for k in (LOWER, UPPER):
-            if sides[k] != self.sides[k]:
+            if sides and sides[k] != self.sides[k]:
                 self.open(k, sides[k])
+        if not sides or (np.abs(self.y[:4:2]) < FALLING).all() and min(self.instant(self.t, self.y).normal) <= 0:
+            self.keep(self.t, self.y)
+            raise _Ended(LOST)
 
     def open(self, k: int, side: int) -> None:
         self.sides[k], self.lifted[k] = side, self.t
@@ -219,12 +224,12 @@ class Run:
         times = np.array([times[0] - width, *times, end + width])  # beyond both ends: minima there
         states = dense(times).T
         rows = [self.watch(t, y) for t, y in zip(times.tolist(), states, strict=True)]
-        keys, table, until, event = list(rows[0]), np.array([[*row.values()] for row in rows]), end, None
+        keys, table, until, event = list(rows[0]), np.array([[*row.values()] for row in rows]), math.inf, None
         for i, j in zip(*np.nonzero(suspect(table)), strict=True):
             if times[i] <= until and (root := self.root(keys[j], times, table[:, j], i, dense)) < until:
                 until, event = root, keys[j]
         for t, y in zip(times[1:-1].tolist(), states[1:-1], strict=True):
-            if t < until or event is None:
+            if t < until:
                 self.keep(t, y)
         if event:
             self.t, self.y = until, dense(until).ravel()
@@ -233,21 +238,24 @@ class Run:
         return event is not None
 
     def root(self, key: tuple[str, int], times: np.ndarray, values: np.ndarray, i: int, dense: Callable) -> float:
-        """Return the time [s] of an event after point i, or at a minimum beside it; inf where that is above 0."""
+        """Return the time [s] of an event after point i, or at a minimum beside it; inf where that is above 0.
+
+        At it the function is 0 or less, so that the event is not found again.
+        """
 
         def value(t: float) -> float:
             return self.watch(t, dense(t).ravel())[key]
 
-        low, high = float(times[i]), float(times[i + 1])
-        if values[i + 1] > 0 or i > POINTS:
+        low, high, crosses = float(times[i]), float(times[i + 1]), values[i + 1] <= 0 and i <= POINTS
+        if not crosses:
             low, high = float(times[max(i - 1, 1)]), float(times[min(i + 1, POINTS + 1)])
             high = float(minimize_scalar(value, bounds=(low, high), method="bounded", options={"xatol": 1e-9}).x)
-            if not value(low) > 0 >= value(high):
-                return math.inf
-        root = brentq(value, low, high, xtol=1e-16, rtol=1e-15)
-        while value(root) > 0:  # beyond the event, so that it is not found again
+        if not value(low) > 0 >= value(high):  # at a crossing by rounding alone, as many points are read at once
+            return (low if value(low) <= 0 else high) if crosses else math.inf
+        root = float(brentq(value, low, high, xtol=1e-16, rtol=1e-15))
+        while value(root) > 0:
             root = min(root + 4 * math.ulp(root), high)
-        return float(root)
+        return root
 
     def keep(self, t: float, y: np.ndarray) -> None:
         """Include a state in the extremes and the history."""
@@ -256,8 +264,9 @@ class Run:
         demands = [abs(along) / normal if normal > 0 else math.inf for along, normal in zip(*now[2:4], strict=True)]
         least = [-normal / weight for normal, weight in zip(now.normal, self.weights, strict=True)]
         self.most = np.maximum(self.most, [abs(x), abs(now.a), *demands, *least])
-        if self.rows is not None:
-            self.rows.append((t, psi, turn, x, v, self.force(y), self.ground(t), tilt))
+        row = t, psi, turn, x, v, self.force(y), self.ground(t), tilt
+        if self.rows is not None and row not in self.rows[-1:]:  # two rows of a time are before and after an impact
+            self.rows.append(row)
 
     def apply(self, event: str, k: int) -> None:
         """Apply an event at interface k; the largest tilt of a swing, "turn", needs nothing more."""
@@ -290,12 +299,8 @@ class Run:
         before = self.y.tolist()
         self.strike(shut, (False, False))
         for j in landing:
-            rate = before[2 * j + 1]
-            self.impacts[j].append(Impact(self.t, rate, float(self.y[2 * j + 1]), float(self.y[5]) - before[5]))
-            if abs(rate) > SIZABLE * self.frequency * self.gammas[j]:
-                if self.last[0] == 1 - j:
-                    self.closest = min(self.closest, self.t - self.last[1])
-                self.last = j, self.t
+            rates = before[2 * j + 1], float(self.y[2 * j + 1])
+            self.impacts[j].append(Impact(self.t, *rates, float(self.y[5]) - before[5]))
         for over in ((True, True), (False, True), (True, False)):  # interfaces that may rest at once
             resting = [j for j in (LOWER, UPPER) if over[j]]
             if any(self.sides[j] for j in resting) and all(shut[j] and self.rests_at(j, over) for j in resting):
@@ -309,8 +314,8 @@ class Run:
         """Take the velocities and sides after an impact; see `StackModel.impact`. Nothing rests that cannot."""
         answers = self.model.impact(self.sides, *self.absolute(self.y), float(self.y[5]), shut, forced)
         if any(forced):
-            answers = [answer for answer in answers if not answer.jumps][:1]
-        elif not answers or answers[-1].jumps:
+            answers = [answer for answer in answers if None not in answer.sides][:1]
+        elif not answers or None in answers[-1].sides:
             raise _Ended(JUMPS)
         for answer in answers[:1]:
             for k, impulse in enumerate(answer.impulses):
@@ -376,12 +381,20 @@ class Run:
 
     def response(self, cpu_seconds: float, failure: Failure | None) -> Response:
         """Return the `Response` of the run."""
-        scene, gamma, fell = self.scene, self.gammas[UPPER], self.fallen >= 0
+        scene, fell = self.scene, self.fallen >= 0
         fall_time, most = self.held[self.fallen] if fell else (None, self.most)
         rocked = tuple(name for name, peak in zip(NAMES, self.peaks, strict=False) if peak > 0)
         outcome = FALLS[self.fallen] if fell else "failed" if failure else "rocks" if rocked else "stands"
         x, acceleration, lower_demand, demand, lower_least, least = most.tolist()
         (tilt, psi, absolute), columns = self.peaks.tolist(), np.array(self.rows).T
+        period, least_rate = 2 * math.pi / self.frequency, SIZABLE * self.frequency
+        sizable = [
+            (impact.time / period, k)
+            for k, impacts in enumerate(self.impacts)
+            for impact in impacts
+            if abs(impact.rate_before) > least_rate * self.gammas[k]
+        ]
+        pairs = itertools.pairwise(sorted(sizable))
         stack = Stack(
             rocked=rocked,
             peak_tilt=tilt,
@@ -392,7 +405,7 @@ class Run:
             friction_demand=lower_demand,
             min_normal_ratio=-lower_least,
             impulses=(self.ratios[LOWER], self.ratios[UPPER]),
-            closest=None if self.closest == math.inf else self.closest * self.frequency / (2 * math.pi),
+            closest=min((later[0] - sooner[0] for sooner, later in pairs if sooner[1] != later[1]), default=None),
         )
         return Response(
             engine="analytic",
@@ -402,7 +415,7 @@ class Run:
             unstable_time=self.unstable,
             fall_time=fall_time,
             peak_tilt=psi,
-            peak_tilt_ratio=psi / gamma,
+            peak_tilt_ratio=psi / self.gammas[UPPER],
             peak_base_displacement=x,
             peak_base_acceleration=acceleration,
             impacts=tuple(self.impacts[UPPER]),
