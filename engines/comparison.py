@@ -383,10 +383,10 @@ def _why_incomparable(scene: Scene, model: Response) -> str | None:
     if scene.friction is not None:
         return None
     if scene.is_stack:
-        demand = max(model.friction_demand, model.stack.friction_demand, *model.stack.impulses)
-        if min(model.min_normal_ratio, model.stack.min_normal_ratio) > 0 and demand <= FRICTION:
+        asked = max(model.friction_demand, model.stack.friction_demand, *model.stack.impulses)
+        if min(model.min_normal_ratio, model.stack.min_normal_ratio) > 0 and asked <= FRICTION:
             return None
-        return f"a normal force falls to 0 in the analytic model, or it asks for a friction of {demand:.3g}"
+        return f"a normal force falls to 0 in the analytic model, or it asks for a friction of {asked:.3g}"
     if not model.min_normal_ratio > 0:
         return f"the normal force falls to 0 in the analytic model; {_with_friction('flies')}"
     if not model.friction_demand <= FRICTION:

@@ -15,7 +15,7 @@ import math
 from array import array
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -67,7 +67,8 @@ class StackTrace(Trace):
 
     def at(self, steps: slice | np.ndarray) -> StackTrace:
         """The steps of a slice or of an array of indices."""
-        return replace(super().at(steps), pedestal=self.pedestal.at(steps), hysteretic=self.hysteretic[steps])
+        parts: dict[str, Any] = {"pedestal": self.pedestal.at(steps), "hysteretic": self.hysteretic[steps]}
+        return cast(StackTrace, replace(super().at(steps), **parts))
 
 
 class Pair:
@@ -179,7 +180,7 @@ def observe_stack(scene: Scene, run: Run, *, history: bool = True, **labels: Any
     fall = _passages(trace.time, sizes[k], gammas[k])[-1] if falls else math.inf
     failure = failure or _checked(scene, trace, falls)
     (landings, lifts, still), (impacts, uplifts, rests) = (_events(part) for part in both)
-    first, second = sizes.max(axis=1).tolist()
+    first, second = np.minimum(sizes.max(axis=1), FALLEN).tolist()  # the last step of a fall is beyond
     rocked = tuple(
         name
         for name, peak, gamma, part in zip(NAMES, (first, second), gammas, both, strict=True)
@@ -290,8 +291,9 @@ def _checked(scene: Scene, trace: StackTrace, falls: bool) -> Failure | None:
         return early
     motion, time, x = scene.motion, trace.time, trace.base_displacement
     slabs, parts = slabs_of(scene), (trace.pedestal, trace)
-    moved = np.array([moving_mass(scene) * x, moving_mass(scene) * trace.base_velocity, 0 * x, 0 * x])
-    moved += sum(slab.mass * part.centre.T[[0, 2, 1, 3]] for slab, part in zip(slabs, parts, strict=True))
+    moved = moving_mass(scene) * np.array([x, trace.base_velocity, 0 * x, 0 * x])
+    for slab, part in zip(slabs, parts, strict=True):
+        moved += slab.mass * part.centre.T[[0, 2, 1, 3]]
     kinetic, gravity = _energy(scene, trace)
     balance = kinetic + gravity + trapezoid(trace.bearing_force, x) - work(motion, time, *moved[:2])
     if motion:
@@ -324,7 +326,7 @@ def _decided(scene: Scene, trace: StackTrace) -> bool:
         par = par._replace(slope=min(par.slope, uplift_of_both(scene) / scene.gravity))
         if will_not_overturn(par, Body(0.0, 0.0, 0.0), Base(x, v, z), False):
             return True
-    back = max(0.5 * z * z / law.constants.dk, law.unit.recoverable.py_func(abs(z), law.constants)) if z else 0.0
+    back = max(0.5 * z * z / law.constants.dk, law.unit.recoverable.py_func(abs(z), law.constants)) if z else 0.0  # type: ignore[attr-defined]  # compiled
     most, *rim = model.barrier
     energy = sum(each[-1] for each in _energy(scene, trace)) + law.count * (0.5 * law.kb * x * x + back)
     return bool((ends < rim).all() and energy < most)
@@ -336,5 +338,5 @@ def release(
     """The response of a stack with a duration whose pedestal is tilted at the start, too [rad]."""
     name, chosen = choose(engine, variant, settings)
     run = engine.load().run_stack(scene, name, chosen, pedestal_tilt)
-    labels = dict(engine=engine.name, variant=name, settings=asdict(chosen), versions=engine.versions())
+    labels: dict[str, Any] = dict(engine=engine.name, variant=name, settings=asdict(chosen), versions=engine.versions())
     return observe_stack(scene, run, cpu_seconds=run.cpu_seconds, steps=run.steps, warnings=run.warnings, **labels)
