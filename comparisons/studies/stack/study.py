@@ -280,7 +280,7 @@ def answers(index: int, kind: str) -> tuple[bool, bool]:
     turns = np.where(shut, -sides, rng.choice([-1, 1], 2))  # what lands closes
     v = 0.0 if scene.base is None else float(rng.normal(0, 0.3))
     tilts, rates = np.cumsum(sides * tilts * np.logical_not(shut)), np.cumsum(turns * rates)
-    jumps = {answer.jumps for answer in model.impact(sides.tolist(), tilts.tolist(), rates.tolist(), v, shut)}
+    jumps = {None in answer.sides for answer in model.impact(sides.tolist(), tilts.tolist(), rates.tolist(), v, shut)}
     return jumps == {True}, jumps == {True, False}
 
 
