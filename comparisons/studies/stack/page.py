@@ -44,8 +44,8 @@ HERTZ = COLUMNS["hertz"].called("frequency of the sine")
 
 def page(result: Result) -> Page:
     """Return the page of a result."""
-    settings, counts, setups = result.settings, tallies(result), where(result.rows, part="set-up")
-    ways = [row for row in setups if row["width"] == WIDTH and row["hertz"] in PULSES]
+    settings, counts, mountings = result.settings, tallies(result), where(result.rows, part="mounting")
+    ways = [row for row in mountings if row["width"] == WIDTH and row["hertz"] in PULSES]
     free, fixed = (number(where(ways, way=way, hertz=WIDE)[0]["fall"], 2) for way in ("free", "fixed"))
     return Page(
         f"Stacked blocks: {ends_in_words(where(counts, tier='tuned') or counts)}",
@@ -80,7 +80,7 @@ def page(result: Result) -> Page:
             ),
             _first_falls("The least peak at which the bust or its pedestal falls [g]", ways, HERTZ),
         ),
-        more=_details(result, setups),
+        more=_details(result, mountings),
         how=_how(settings),
         evidence=failures(result),
     )
@@ -124,18 +124,19 @@ def _runs(result: Result) -> list[dict[str, Any]]:
     ]
 
 
-def _first_falls(caption: str, setups: Sequence[Row], by: Column) -> Table:
-    """Return the table of first falls: a row for each set-up, a column for each value of a field."""
+def _first_falls(caption: str, mountings: Sequence[Row], by: Column) -> Table:
+    """Return the table of first falls: a row for each mounting, a column for each value of a field."""
     ways = [
-        {"way": way, **{by.text(row): row["fall"] for row in rows}} for (way,), rows in grouped(setups, "way").items()
+        {"way": way, **{by.text(row): row["fall"] for row in rows}}
+        for (way,), rows in grouped(mountings, "way").items()
     ]
     return table(
         f"{caption}, by the {by.head}", ways, COLUMNS["way"],
-        *(Column(text, text) for (text,) in sorted(grouped(setups, by.text))),
+        *(Column(text, text) for (text,) in sorted(grouped(mountings, by.text))),
     )  # fmt: skip
 
 
-def _details(result: Result, setups: Sequence[Row]) -> tuple[Any, ...]:
+def _details(result: Result, mountings: Sequence[Row]) -> tuple[Any, ...]:
     """Return what only the study's own page shows."""
     scenes, settings = where(result.rows, part="scene"), result.settings
     compared = where(scenes, comparable=COMPARED)
@@ -147,12 +148,12 @@ def _details(result: Result, setups: Sequence[Row]) -> tuple[Any, ...]:
     return (
         _first_falls(
             f"The same under {WIDE:g} Hz, where nothing is isolated",
-            where(setups, hertz=WIDE, way={*WAYS[:3]}),
+            where(mountings, hertz=WIDE, way={*WAYS[:3]}),
             COLUMNS["width"],
         ),
         table(
             "The isolated bust at its first fall",
-            where(setups, way={*WAYS[3:]}),
+            where(mountings, way={*WAYS[3:]}),
             *(COLUMNS[name] for name in ("way", "hertz", "fall", "displacement", "outside")),
         ),
         listing(

@@ -60,7 +60,7 @@ COLUMNS = (
         number_of("demand", "friction demand", "largest |H|/N of both contacts"),
         number_of("impulse", "ratio of impulses", "largest ratio of impulses along and off a contact at an impact"),
         number_of("closest", "closest landings", "least time between two landings, one of each, in rocking periods"),
-        word_of("way", "set-up", "how the bust is set up"),
+        word_of("way", "mounting", "how the bust is set up"),
         number_of("width", "width of the pedestal", "width of the pedestal", "m", digits=None),
         number_of("fall", "first fall", "least peak at which a block falls, in steps; null: none", "g", digits=None),
         number_of("displacement", "base displacement", "peak base displacement at the first fall", "m"),
@@ -79,7 +79,7 @@ PARTS = {
     "shift": BOUNDARY_ROW,
     "check": BOUNDARY_ROW,
     "failure": SOUGHT,
-    "set-up": "engine variant way hertz width fall? displacement? outside",
+    "mounting": "engine variant way hertz width fall? displacement? outside",
     "unique": "engine variant ground closed runs none second",
 }
 
@@ -261,11 +261,11 @@ def run_row(row: Row, model: Row, comparable: str) -> dict[str, Any]:
     }
 
 
-def setup_row(way: str, hertz: float, width: float, peaks: Sequence[float], rows: Sequence[Row]) -> dict[str, Any]:
-    """Return the row of a set-up from its runs at rising peaks."""
+def mounting_row(way: str, hertz: float, width: float, peaks: Sequence[float], rows: Sequence[Row]) -> dict[str, Any]:
+    """Return the row of a mounting from its runs at rising peaks."""
     first = next((k for k, row in enumerate(rows) if not row.failed and row.values["falls"]), None)
     return {
-        **{"part": "set-up", "engine": "analytic", "variant": "", "way": way, "hertz": hertz, "width": width},
+        **{"part": "mounting", "engine": "analytic", "variant": "", "way": way, "hertz": hertz, "width": width},
         "fall": None if first is None else peaks[first],
         "displacement": None if first is None or way not in WAYS[3:] else rows[first].values["displacement"],
         "outside": sum(row.failed for row in rows[:first]),
@@ -301,9 +301,9 @@ def edge_of(scene: Scene, hertz: float, peak: float) -> Edge:
 def plan(request: Request, size: tuple[int, Sequence[float], float, int] | None = None) -> Plan:
     """Plan the study.
 
-    Rows by "part": "scene", the model's run of a random scene, and "run", another solver's; "set-up", the first fall of
-    a bust in the model; "edge", "shift", "check" and "failure", that of the free one, in engines and the time stepping,
-    see `metrics.boundaries`; "unique", how many random states have no answer of the impact law, or a second one.
+    Rows by "part": "scene", the model's run of a random scene, and "run", another solver's; "mounting", the first fall
+    of a bust in the model; "edge", "shift", "check" and "failure", that of the free one, in engines and the time
+    stepping, see `metrics.boundaries`; "unique", how many random states have no answer of the impact law, or a second.
 
     size : number of scenes, frequencies of the boundaries [Hz], step of the peaks [g], and number of states, in place
         of FULL or QUICK.
@@ -322,17 +322,17 @@ def plan(request: Request, size: tuple[int, Sequence[float], float, int] | None 
     )
     places = [row.case.tag["index"] for row in engine_runs]
     rows += [run_row(row, model[3 * k], rows[k]["comparable"]) for k, row in zip(places, engine_runs, strict=True)]
-    setups = [*itertools.product(WAYS, PULSES, [WIDTH]), *itertools.product(WAYS[:3], [WIDE], WIDTHS)]
-    setups += [("free", hertz, WIDTH) for hertz in hertzes if hertz not in PULSES]
+    mountings = [*itertools.product(WAYS, PULSES, [WIDTH]), *itertools.product(WAYS[:3], [WIDE], WIDTHS)]
+    mountings += [("free", hertz, WIDTH) for hertz in hertzes if hertz not in PULSES]
     peaks, stack = [round(step * k, 12) for k in range(1, round(MOST / step) + 1)], bust("free")
     falls = yield Batch(
-        [Case(shaken(bust(way, width), hertz, g), settings=quiet) for way, hertz, width in setups for g in peaks],
+        [Case(shaken(bust(way, width), hertz, g), settings=quiet) for way, hertz, width in mountings for g in peaks],
         fate,
-        "set-ups",
+        "mountings",
     )
     found = [
-        setup_row(way, hertz, width, peaks, falls[k : k + len(peaks)])
-        for (way, hertz, width), k in zip(setups, range(0, len(falls), len(peaks)), strict=True)
+        mounting_row(way, hertz, width, peaks, falls[k : k + len(peaks)])
+        for (way, hertz, width), k in zip(mountings, range(0, len(falls), len(peaks)), strict=True)
     ]
     free = [
         row

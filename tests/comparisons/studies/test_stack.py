@@ -1,4 +1,4 @@
-"""The study of a free pedestal: its solvers and set-ups by other ways, the class of a run, and what is counted."""
+"""The study of a free pedestal: its solvers and mountings by other ways, the class of a run, and what is counted."""
 
 import numpy as np
 import pytest
@@ -83,7 +83,7 @@ def test_the_model_in_every_solvers_place_agrees_with_itself(monkeypatch, tmp_pa
         monkeypatch.setattr(study, name, few)
     plan = get_study("stack").plan(Request(("mujoco",), True), (2, (1.2,), 0.12, 2))
     result = stored(tmp_path, "stack", answered(plan, by_model())[-1])
-    runs, falls = where(result.rows, part="run"), where(result.rows, part="set-up")
+    runs, falls = where(result.rows, part="run"), where(result.rows, part="mounting")
     assert {(row["class"], row["time_error"] or 0.0) for row in runs} == {("right", 0.0)} and len(runs) == 6
     assert [row["fall"] for row in falls] == [0.48, 0.48, 0.36]  # .44, .40 and .36 g in finer steps
     (edge,) = where(result.rows, part="edge")
