@@ -265,9 +265,7 @@ def slabs_of(scene: Scene) -> tuple[Slab, ...]:
 
 def moving_mass(scene: Scene) -> float:
     """Mass of the base, with a pedestal that is fixed to it [kg]; 0 on rigid ground."""
-    if scene.is_stack:
-        return scene.base.mass if scene.base else 0.0
-    return scene.base_mass
+    return scene.base.mass if scene.base and scene.is_stack else scene.base_mass
 
 
 Start = tuple[tuple[float, float], tuple[float, float], tuple[float, float]]

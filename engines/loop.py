@@ -27,6 +27,7 @@ import time
 from array import array
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -45,7 +46,6 @@ from .loads import (
     longest_step,
     placement,
     size_scale,
-    slabs_of,
 )
 from .swings import Trace
 
@@ -139,7 +139,6 @@ def aligned(step: float, ahead: float) -> float:
 
 if TYPE_CHECKING:
     from analytic import Scene
-    from analytic.stack.equations import Slab
 
 # Steps after which a run is given up: this many per largest step of the duration, and a reserve for the impacts.
 ROWS_PER_STEP, RESERVE, MOST_ROWS = 50, 100_000, 20_000_000
@@ -211,10 +210,13 @@ def _synchronised(value: np.ndarray, h: np.ndarray, from_before: np.ndarray, fro
 
 
 def raw_trace_of(rows: Sequence[Sequence[float]] | np.ndarray, scene: Scene, contact_tilt: float) -> Trace:
-    """The `Trace` of uncorrected rows, as in a first script; the block's position is read only where it may slide."""
+    """The `Trace` of uncorrected rows, as in a first script.
+
+    The block's position is read only in a stack, and where it may slide.
+    """
     t, _, tilt, rate, x, v, _, force, *centre = np.array(rows).T
     law = RockingModel.of(scene).bearing
-    place = np.column_stack(centre) if centre and scene.friction is not None else None
+    place = np.column_stack(centre) if centre and (scene.is_stack or scene.friction is not None) else None
     total = force + law.count * law.damping * v
     return Trace(t, tilt, rate, x, v, total, contact_tilt, centre=place, first_script=True)
 
@@ -267,8 +269,7 @@ class Bodies(Protocol):
     """The block and the base of a scene as an engine holds them.
 
     Those of a variant that takes a restitution have a method ``twist(moment)``, too: it applies a couple [N m] to the
-    block in the next step, and is called before every one. Those of a stack have a method ``ruled(rule)``: it returns
-    the `Rule` of their own corners.
+    block in the next step, and is called before every one.
     """
 
     def step(self, step: float, before: float, across: float, up: float, impulse: float) -> Sequence[float]:
@@ -439,6 +440,7 @@ def run_of(
     bodies_of: Callable[[float], Bodies],
     raw: Callable[[np.ndarray], Trace],
     depth: float = SLOW,
+    pedestal_tilt: float = 0.0,
 ) -> Run:
     """The `Run` of a scene.
 
@@ -449,9 +451,11 @@ def run_of(
     bodies_of : function
         From the longest step [s] to the engine's bodies; it may raise `Mismatch`.
     raw : function
-        From rows to the trace of a first script, or of a stack.
+        From rows to the trace of a first script.
     depth : float
         Largest penetration of a corner that closes too slowly for the rule, over g h^2.
+    pedestal_tilt : float
+        Tilt of a free pedestal at the start [rad].
     """
     largest, smallest = step_limits(scene, settings)
     duration = scene.duration or 0.0  # never None in a run
@@ -462,11 +466,15 @@ def run_of(
         bodies = bodies_of(largest)
     except Mismatch as error:
         return Run(None, 0, math.nan, Failure("the engine does not hold the scene", str(error)))
+    if scene.is_stack:
+        from .stack import Pair  # slow to load
+
+        bodies = pair = Pair(bodies, scene, pedestal_tilt)
     clock = time.process_time()
     if isinstance(settings, ImpactAware):
         rule, jumps = gap_rule(largest, smallest, scene.gravity), scene.motion.jumps if scene.motion else ()
         if scene.is_stack:
-            rule = bodies.ruled(rule)  # type: ignore[attr-defined]  # see `Bodies`
+            rule = pair.ruled(rule)
     else:
         rule, jumps = fixed_rule(largest), ()
     if isinstance(settings, FirstScript):  # all steps are the same
@@ -474,14 +482,13 @@ def run_of(
     loads = sampled_loads(scene) if isinstance(settings, FirstScript) else mean_loads(scene, bodies, largest)
     rows, ended = march(bodies, scene, duration, rule, loads, largest, jumps)
     cpu = time.process_time() - clock
-    if isinstance(settings, FirstScript) or scene.is_stack:
-        trace = raw(rows)
-    else:
-        trace = trace_of(
-            rows, scene, contact_tilt(slabs_of(scene)[-1], scene.gravity, largest, smallest, depth), smeared=SMEARED
-        )
-        if couple := couple_of(scene):
-            trace = replace(trace, early=couple.lasts)
+    traced = raw
+    if not isinstance(settings, FirstScript):
+        contact = contact_tilt(scene, largest, smallest, depth)
+        traced = partial(trace_of, scene=scene, contact_tilt=contact, smeared=SMEARED)
+    trace = pair.trace(rows, traced) if scene.is_stack else traced(rows)
+    if couple := couple_of(scene):
+        trace = replace(trace, early=couple.lasts)
     failure = failure_of(scene, rows, ended)
     if ended not in ENDS:
         reason, _, why = ended.partition(": ")
@@ -502,15 +509,16 @@ def step_limits(scene: Scene, settings: Settings) -> tuple[float, float]:
     return largest, min(largest, SMALLEST_STEP * finer * scale)
 
 
-def contact_tilt(slab: Slab, g: float, largest: float, smallest: float, depth: float) -> float:
+def contact_tilt(scene: Scene, largest: float, smallest: float, depth: float) -> float:
     """Tilt [rad] below which the block counts as in flat contact.
 
     It is twice the largest penetration of a corner, over 2 b.
     A corner whose landing the rule anticipates sinks by its speed times the smallest step, any other by `depth` g h^2
     at most.
     """
-    landing = LANDING * slab.slenderness * math.sqrt(g / math.hypot(slab.b, slab.h)) * smallest
-    return landing + depth * g * largest * largest / slab.b
+    block, g = scene.block, scene.gravity
+    landing = LANDING * block.slenderness * math.sqrt(g / block.radius) * smallest
+    return landing + depth * g * largest * largest / block.half_width
 
 
 RELATIVE, ABSOLUTE = 1e-12, 1e-14  # round-off

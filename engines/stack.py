@@ -1,9 +1,9 @@
 """A statue on a free pedestal in an engine: its corners for the step rule, what is read from its steps, its checks.
 
-An adapter that builds a stack has a function ``run_stack(scene, variant, settings, pedestal_tilt=0.0)``, which returns
-the `Run` of `run_of_stack`. Its bodies are those of `engines.loop.Bodies`, whose states have the six numbers of the
-pedestal before those of the block. All tilts of an engine are absolute; in a `StackTrace` and in a `Response` those of
-the block are from the pedestal.
+An adapter that builds a stack has a function ``run_stack(scene, variant, settings, pedestal_tilt=0.0)``: a `Run` with a
+`StackTrace`, of `engines.loop.run_of`. Its bodies are those of `engines.loop.Bodies`, whose states have the six numbers
+of the pedestal before those of the block. All tilts of an engine are absolute; in a `StackTrace` and in a `Response`
+those of the block are from the pedestal.
 
 The forces on contacts are not read, so that friction demands, normal forces, impulses and the acceleration of the base
 are NaN.
@@ -30,18 +30,7 @@ from analytic.stack.run import FALLS, NAMES
 from .contract import Run
 from .events import STILL, ended_early, finite_part, last_state
 from .loads import centres, moving_mass, placements, slabs_of
-from .loop import (
-    SMEARED,
-    Bodies,
-    FirstScript,
-    Rule,
-    Settings,
-    contact_tilt,
-    raw_trace_of,
-    run_of,
-    step_limits,
-    trace_of,
-)
+from .loop import SMEARED, Bodies, Rule
 from .observe import cautions, failed_response, run_history
 from .simulating import choose
 from .swings import Trace, find_swings
@@ -105,6 +94,19 @@ class Pair:
             *_corners(high, rising, second - first, w2 - w1, two.b, two.h),
         )
 
+    def trace(self, rows: np.ndarray, traced: Callable[[np.ndarray], Trace]) -> StackTrace:
+        """The `StackTrace` of the rows of `march`; traced: from such rows of one block to its `Trace`.
+
+        What the block's traces take as contact holds of the pedestal, too: it is as wide, so that a penetration tilts
+        it by less.
+        """
+        states = np.hsplit(np.frombuffer(self.states).reshape(-1, 12), 2)
+        states[UPPER] = states[UPPER] - states[LOWER] * [1, 1, 0, 0, 0, 0]
+        lower, upper = (
+            traced(np.column_stack([rows[:, :2], state[:, :2], rows[:, 4:8], state[:, 2:]])) for state in states
+        )
+        return StackTrace(**vars(upper), pedestal=lower, hysteretic=rows[:, 6])
+
 
 def _corners(
     high: float, rising: float, tilt: float, rate: float, b: float, h: float
@@ -113,49 +115,6 @@ def _corners(
     c, s = math.cos(tilt), math.sin(tilt)
     mean, lower, sinking, turning = high - h * c, b * s, -rising - h * s * rate, b * c * rate
     return (mean - lower, sinking + turning), (mean + lower, sinking - turning)
-
-
-def run_of_stack(
-    scene: Scene,
-    settings: Settings,
-    bodies_of: Callable[[float], Bodies],
-    pedestal_tilt: float,
-    edge: float,
-    depth: float,
-) -> Run:
-    """The `Run` of a stack, with a `StackTrace`.
-
-    Parameters
-    ----------
-    scene, settings, bodies_of, depth
-        As in `engines.loop.run_of`.
-    pedestal_tilt : float
-        At the start [rad].
-    edge : float
-        Tilt at which a first script's block counts as in flat contact, over its slenderness.
-    """
-    pairs: list[Pair] = []
-
-    def paired(step: float) -> Bodies:
-        pairs.append(Pair(bodies_of(step), scene, pedestal_tilt))
-        return pairs[-1]
-
-    def traced(rows: np.ndarray) -> Trace:
-        states, (largest, smallest) = np.frombuffer(pairs[-1].states).reshape(-1, 12), step_limits(scene, settings)
-        traces: list[Trace] = []
-        below = np.zeros(2)
-        for slab, state in zip(pairs[-1].slabs, np.hsplit(states, 2), strict=True):
-            tilts, centre = state[:, :2], state[:, 2:]
-            each, below = np.column_stack([rows[:, :2], tilts - below, rows[:, 4:8], centre]), tilts
-            if isinstance(settings, FirstScript):
-                traces.append(replace(raw_trace_of(each, scene, edge * slab.slenderness), centre=centre))
-            else:
-                contact = contact_tilt(slab, scene.gravity, largest, smallest, depth)
-                traces.append(trace_of(each, scene, contact, smeared=SMEARED))
-        parts = {name: getattr(traces[UPPER], name) for name in Trace.__dataclass_fields__}
-        return StackTrace(**parts, pedestal=traces[LOWER], hysteretic=rows[:, 6])
-
-    return run_of(scene, settings, paired, traced, depth)
 
 
 def observe_stack(scene: Scene, run: Run, *, history: bool = True, **labels: Any) -> Response:
@@ -312,16 +271,13 @@ def _checked(scene: Scene, trace: StackTrace, falls: bool) -> Failure | None:
 
 
 def _decided(scene: Scene, trace: StackTrace) -> bool:
-    """Whether, after the motion, the energy suffices for no fall, or both blocks stand and no force lifts them.
-
-    As the analytic model decides (`analytic.stack.run`).
-    """
+    """Whether, after the motion, energy, or force in full contact, suffices for no fall, as in `analytic.stack.run`."""
     if trace.time[-1] < motion_end(scene) * (1 - 1e-9):
         return False
     law, model, z = BearingLaw.of(scene.bearings), StackModel.of(scene), float(trace.hysteretic[-1])
     x, v = float(trace.base_displacement[-1]), float(trace.base_velocity[-1])
     ends = np.abs([trace.pedestal.tilt[-1], trace.tilt[-1]])
-    if (ends < [trace.pedestal.contact_tilt, trace.contact_tilt]).all():
+    if ends.max() < trace.contact_tilt:
         par = parameters(scene.with_(pedestal={"free": False}))
         par = par._replace(slope=min(par.slope, uplift_of_both(scene) / scene.gravity))
         if will_not_overturn(par, Body(0.0, 0.0, 0.0), Base(x, v, z), False):

@@ -11,7 +11,7 @@ The scene is an MJCF model. Tested with mujoco 4.0.0; diagexact needs 3.9.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -27,7 +27,6 @@ from ..loop import (
     MEAN_LOADS,
     RULED,
     SAMPLED,
-    SLOW,
     FirstScript,
     FixedStep,
     ImpactAware,
@@ -274,38 +273,20 @@ def versions() -> dict[str, str]:
     return {"mujoco": mujoco.__version__, "mujoco-library": mujoco.mj_versionString()}
 
 
-def run(scene: Scene, variant: str, settings: Settings) -> Run:
-    """The `Run` of a scene."""
+def run(scene: Scene, variant: str, settings: Settings, pedestal_tilt: float = 0.0) -> Run:
+    """The `Run` of a scene; pedestal_tilt: of a free pedestal at the start [rad]."""
     edge, plain = FIRST_CONTACT * scene.block.slenderness, isinstance(settings, FirstScript)
-    return _watched(
-        lambda: run_of(
-            scene,
-            settings,
-            lambda step: build(scene, step, plain),
-            lambda rows: replace(raw_trace_of(rows, scene, edge), settle=FIRST_SETTLE),
-        )
-    )
-
-
-def run_stack(scene: Scene, variant: str, settings: Settings, pedestal_tilt: float = 0.0) -> Run:
-    """The `Run` of a stack; pedestal_tilt: at the start [rad]."""
-    from ..stack import run_of_stack  # slow to load
-
-    plain = isinstance(settings, FirstScript)
-    return _watched(
-        lambda: run_of_stack(
-            scene, settings, lambda step: build(scene, step, plain, pedestal_tilt), pedestal_tilt, FIRST_CONTACT, SLOW
-        )
-    )
-
-
-def _watched(run: Callable[[], Run]) -> Run:
-    """A run whose warnings and errors from MuJoCo are failures."""
     messages: list[str] = []
     handler = mujoco.get_mju_user_warning()
     mujoco.set_mju_user_warning(messages.append)  # otherwise MuJoCo writes a log file into the working directory
     try:
-        result = run()
+        result = run_of(
+            scene,
+            settings,
+            lambda step: build(scene, step, plain, pedestal_tilt),
+            lambda rows: replace(raw_trace_of(rows, scene, edge), settle=FIRST_SETTLE),
+            pedestal_tilt=pedestal_tilt,
+        )
     except mujoco.FatalError as error:
         return Run(None, 0, 0.0, Failure("MuJoCo does not run the scene", str(error)))
     finally:
@@ -315,3 +296,6 @@ def _watched(run: Callable[[], Run]) -> Run:
     words = "; ".join(line.strip() for line in messages)  # of a bad state, at which MuJoCo would reset to the start
     message = f"{result.failure.message}. {words}" if result.failure else words
     return replace(result, failure=Failure(result.failure.reason if result.failure else "MuJoCo warned", message))
+
+
+run_stack = run

@@ -10,7 +10,7 @@ The pitfalls named in the comments were observed with PyBullet 3.2.7.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from importlib.metadata import version
 from typing import TYPE_CHECKING
@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np  # before PyBullet, which would load it slowly
 
 from analytic.response import Caution, Failure
+from analytic.stack.equations import StackModel
 
 from ..contract import Run, Variant
 from ..guard import without
@@ -33,7 +34,6 @@ from ..loop import (
     SHARE,
     SLOW,
     SMALLEST_STEP,
-    Bodies,
     FirstScript,
     FixedStep,
     ImpactAware,
@@ -132,19 +132,13 @@ def iterations(scene: Scene, corners: int) -> int:
     """
     slabs, light = slabs_of(scene), moving_mass(scene) if scene.base else math.inf
     mobility = np.diag([*(1 / part for slab in slabs for part in (slab.mass, slab.mass, slab.inertia)), 1 / light])
-    count = len(mobility)
-    normal, along = [], []
-    for k, slab in enumerate(slabs):
-        for x in (slab.b,) if corners == 1 else (-slab.b, slab.b):
-            up, side, i = np.zeros(count), np.zeros(count), 3 * k
-            up[i + 1], up[i + 2], side[i], side[i + 2] = 1, -x, 1, -slab.h
-            if k:  # less the velocity of the pedestal's top there
-                up[i - 2], up[i - 1], side[i - 3], side[i - 1] = -1, x, -1, -slabs[k - 1].h
-            else:
-                side[-1] = -1
-            normal.append(up)
-            along.append(side)
-    directions = np.array(normal + along)
+    if scene.is_stack:
+        rows = StackModel.of(scene).contacts((0.0, 0.0))[:, 2 - corners :].reshape(-1, len(mobility))
+        directions = np.vstack([rows.imag, rows.real])
+    else:
+        b, h = scene.block.half_width, scene.block.half_height
+        across = (b,) if corners == 1 else (-b, b)
+        directions = np.array([[0, 1, -x, 0] for x in across] + [[1, 0, -h, -1] for _ in across])
     delassus = directions @ mobility @ directions.T
     lower = np.tril(delassus)
     rates = np.abs(np.linalg.eigvals(np.linalg.solve(lower, lower - delassus)))
@@ -481,41 +475,21 @@ def versions() -> dict[str, str]:
     return {"pybullet": version("pybullet"), "bullet-api": str(pybullet.getAPIVersion())}
 
 
-def run(scene: Scene, variant: str, settings: Settings) -> Run:
-    """The `Run` of a scene."""
-    edge, depth = FIRST_CONTACT * scene.block.slenderness, 0.0  # contacts act before penetration
-    return _run(
-        scene,
-        settings,
-        0.0,
-        lambda made: run_of(scene, settings, made, lambda rows: raw_trace_of(rows, scene, edge), depth),
-    )
-
-
-def run_stack(scene: Scene, variant: str, settings: Settings, pedestal_tilt: float = 0.0) -> Run:
-    """The `Run` of a stack; pedestal_tilt: at the start [rad]."""
-    from ..stack import run_of_stack  # slow to load
-
-    return _run(
-        scene,
-        settings,
-        pedestal_tilt,
-        lambda made: run_of_stack(scene, settings, made, pedestal_tilt, FIRST_CONTACT, depth=0.0),
-    )
-
-
-def _run(
-    scene: Scene, settings: Settings, pedestal_tilt: float, run: Callable[[Callable[[float], Bodies]], Run]
-) -> Run:
-    """A run in a client of its own; run: from what makes the bodies, given the longest step [s]."""
-    plain, friction = isinstance(settings, FirstScript), scene.friction
+def run(scene: Scene, variant: str, settings: Settings, pedestal_tilt: float = 0.0) -> Run:
+    """The `Run` of a scene; pedestal_tilt: of a free pedestal at the start [rad]."""
+    plain, edge, friction = isinstance(settings, FirstScript), FIRST_CONTACT * scene.block.slenderness, scene.friction
     client = pybullet.connect(pybullet.DIRECT)
-
-    def made(step: float) -> Bodies:
-        return FreeBox(client, scene, step, pedestal_tilt) if plain else BulletBodies(client, scene, pedestal_tilt)
-
     try:
-        result = run(made)
+        result = run_of(
+            scene,
+            settings,
+            lambda step: (
+                FreeBox(client, scene, step, pedestal_tilt) if plain else BulletBodies(client, scene, pedestal_tilt)
+            ),
+            lambda rows: raw_trace_of(rows, scene, edge),
+            depth=0.0,  # contacts act before penetration
+            pedestal_tilt=pedestal_tilt,
+        )
     except pybullet.error as error:
         return Run(None, 0, math.nan, Failure("Bullet raised an error", str(error)))
     finally:
@@ -526,6 +500,9 @@ def _run(
         words = f"friction = {friction:.4g} is above {FRICTION:g}: Bullet takes it as {FRICTION:g}"
         result = replace(result, warnings=(Caution("engine", words, "friction", friction, FRICTION),))
     return result
+
+
+run_stack = run
 
 
 def _fail_if_limited(result: Run) -> Run:
