@@ -72,7 +72,7 @@ def page(result: Result) -> Page:
                 counts,
                 NAME,
                 COLUMNS["tier"],
-                Column("right [-]", "right"),
+                Column("right [-]", lambda row: f"{row['runs'] - row['differing']} of {row['runs']}"),
                 *ends(counts),
                 Column("differ or fail", "share", percent=True, within="interval"),
             ),
@@ -92,8 +92,7 @@ def tallies(result: Result) -> list[dict[str, Any]]:
         judged = [row for row in runs if row["class"] in ("right", "differs")]
         known = {name: [row[name] for row in judged if row[name] is not None] for name in ERRORS}
         spans = {name: [float(np.median(values)), max(values)] if values else [] for name, values in known.items()}
-        right = f"{counts['runs'] - counts['differing']} of {counts['runs']}"
-        rows.append({"engine": engine, "variant": variant, "tier": tier, "right": right, **counts, **spans})
+        rows.append({"engine": engine, "variant": variant, "tier": tier, **counts, **spans})
     return rows
 
 
@@ -199,12 +198,12 @@ def _details(result: Result, counts: Sequence[Row], mountings: Sequence[Row]) ->
 
 def _how(settings: dict[str, Any]) -> tuple[str, ...]:
     """Return what was run."""
-    across, high, mass = BUST
+    spans = {name: f"{low:g} to {high:g}" for name, (low, high) in LIMITS.items()}
     return (
         "Random scenes, by a fixed seed: a pedestal of 2700 kg/m³, "
-        f"{_span('width')} m wide, as deep, and {_span('height')} m high; a statue of 1500 kg/m³, "
-        f"{_span('share')} times as wide, with tan γ of {_span('tangent')}. One sine of {_span('hertz')} Hz, with "
-        f"{_span('peak')} times the acceleration that lifts the first block. Half of the scenes stand on as many of "
+        f"{spans['width']} m wide, as deep, and {spans['height']} m high; a statue of 1500 kg/m³, "
+        f"{spans['share']} times as wide, with tan γ of {spans['tangent']}. One sine of {spans['hertz']} Hz, with "
+        f"{spans['peak']} times the acceleration that lifts the first block. Half of the scenes stand on as many of "
         f"the Caryatid's bearings as carry their weight, under sines {STRONGER:g} times stronger. Each run lasts "
         f"{SECONDS:g} s.",
         f"First impacts: the first {FIRST} of both blocks in the model, without those at the end of a chatter. Each is "
@@ -214,14 +213,10 @@ def _how(settings: dict[str, Any]) -> tuple[str, ...]:
         "pulls, or asks for more friction than engines have, and those in which a change of the motion by "
         f"{percent(CHANGE, 1)} changes what falls. Time-stepping: Moreau's method for two bodies, in steps of "
         f"{short(STEP)} s.",
-        f"The bust: {across:g} × {high:g} m, {mass:g} kg. Its pedestal: {HEIGHT:g} m high, as deep as wide, "
+        f"The bust: {BUST[0]:g} × {BUST[1]:g} m, {BUST[2]:g} kg. Its pedestal: {HEIGHT:g} m high, as deep as wide, "
         f"{SQUARE * WIDTH**2:g} kg where it is {WIDTH:g} m wide. Fixed: the pedestal moves as what carries it. Glued: "
         "bust and pedestal are one block. Free: neither. Isolated: the pedestal is fixed to a base of "
         f"{PLATE:g} kg on {settings['bearings']['count']} bearings, with a secant period of {PERIOD:g} s and "
         f"{percent(DAMPING)} equivalent damping at {X_MAX:g} m. The model's bearings go on beyond "
         "that displacement.",
     )
-
-
-def _span(name: str) -> str:
-    return " to ".join(f"{end:g}" for end in LIMITS[name])

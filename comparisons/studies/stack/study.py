@@ -84,14 +84,13 @@ PARTS = {
 }
 
 ERRORS, SEED = ("time_error", "pedestal_error", "statue_error", "cpu_per_second"), 71
-SECONDS = 6.0  # of every run; long after the pulse, as a fall near its boundary is slow
+SECONDS, FIRST = 6.0, 3  # of every run, long after the pulse, as falls near a boundary are slow; impacts compared
 FULL, QUICK = (60, (1.2, 1.5, 2.0), 0.02, 1500), (8, (1.5,), 0.1, 100)  # scenes, boundaries [Hz], steps [g], states
 GROUNDS, FREE, SINE = ("rigid ground", "bearings"), "free pedestal", "one-sine"
 # range of each number of a random scene; peak: over the acceleration that lifts the weaker block
 LIMITS = {"width": (0.35, 0.9), "height": (0.4, 1.3), "tangent": (0.12, 0.4), "share": (0.3, 0.9),
           "hertz": (0.8, 2.5), "peak": (1.05, 2.2)}  # fmt: skip
 STRONGER = 1.5  # amplitudes on bearings over those on the ground: weaker ones lift nothing
-FIRST = 3  # impacts whose times are compared
 NEAR, LEAST_SWING = 1e-6, 1e-6  # of the model's boundaries; rad: smaller tilts of the stepping are its contacts'
 STEPPING, SOLVER, STEP = "time-stepping", f"{__name__}:time_stepping", 1e-5  # s
 # bust: width, height [m], mass [kg]; pedestal: width, height [m], mass over width squared [kg/m2]
@@ -116,8 +115,8 @@ def rectangle(width: float, height: float, mass: float) -> Block:
 
 def museum(index: int) -> Scene:
     """Return scene `index` of the ensemble: marble on stone under one sine, every second one on bearings."""
-    values = np.random.default_rng([SEED, index]).uniform(*zip(*LIMITS.values(), strict=True)).tolist()
-    width, height, tangent, share, hertz, factor = values
+    limits = zip(*LIMITS.values(), strict=True)
+    width, height, tangent, share, hertz, factor = np.random.default_rng([SEED, index]).uniform(*limits).tolist()
     across, mass = width * share, 2700 * width**2 * height
     block = rectangle(across, across / tangent, 1500 * across**3 / tangent)
     scene = Scene(block=block, pedestal=Pedestal(width=width, mass=mass, height=height, free=True), duration=SECONDS)
@@ -136,8 +135,9 @@ def bust(way: str, width: float = WIDTH) -> Scene:
         total, top = mass + block.mass, HEIGHT + block.half_height
         high = (0.5 * HEIGHT * mass + top * block.mass) / total
         inertia = rectangle(width, HEIGHT, mass).inertia + block.centre_inertia + block.mass * (half**2 + top**2)
-        size = {"radius": math.hypot(half, high), "slenderness": math.atan2(half, high), "corner_inertia": inertia}
-        return Scene(block=Block(mass=total, **size), duration=SECONDS)
+        radius, slenderness = math.hypot(half, high), math.atan2(half, high)
+        block = Block(mass=total, radius=radius, slenderness=slenderness, corner_inertia=inertia)
+        return Scene(block=block, duration=SECONDS)
     scene = Scene(block=block, pedestal=pedestal, duration=SECONDS)
     bearings = design_bearings(mass + block.mass + PLATE, PERIOD, DAMPING, X_MAX)
     return scene.with_(base=Base(mass=PLATE), bearings=bearings) if way.startswith("isolated") else scene
@@ -172,8 +172,8 @@ def landings(times: np.ndarray, tilt: np.ndarray) -> tuple[Impact, ...]:
     side = np.sign(tilt) * (np.abs(tilt) > LEAST_SWING)
     last = np.flatnonzero((side[1:-1] != 0) & (side[2:] != side[1:-1]) & (side[:-2] == side[1:-1])) + 1
     rates = (tilt[last] - tilt[last - 1]) / (times[last] - times[last - 1])
-    ends = zip((times[last] - tilt[last] / rates).tolist(), rates.tolist(), strict=True)
-    return tuple(Impact(when, rate, math.nan, math.nan) for when, rate in ends)
+    ends = (times[last] - tilt[last] / rates).tolist(), rates.tolist()
+    return tuple(Impact(when, rate, math.nan, math.nan) for when, rate in zip(*ends, strict=True))
 
 
 def measured(case: Case, response: Response) -> dict[str, Any]:
@@ -243,8 +243,8 @@ def run_row(row: Row, model: Row, comparable: str) -> dict[str, Any]:
         "outcome": own["outcome"],
     }
     if row.failed or model.failed:
-        missing = {"failure": row.failure} if row.failed else {**dict.fromkeys(ERRORS), "quantities": []}
-        return {**about, "class": class_of(comparable, None), **missing}
+        about |= {"failure": row.failure} if row.failed else {**dict.fromkeys(ERRORS), "quantities": []}
+        return {**about, "class": class_of(comparable, None)}
     errors = np.abs(np.subtract(own["tilts"], expected["tilts"]))
     upright = not {own["outcome"], expected["outcome"]} & {*FALLS}
     off = upright and (errors > PEAK * np.maximum(expected["tilts"], LEAST_TILT)).any()
@@ -278,10 +278,10 @@ def answers(index: int, kind: str) -> tuple[bool, bool]:
     model, sides, frequency = StackModel.of(scene), rng.choice([-1, 1], 2) * opened, scene.rocking_frequency
     tilts, rates = (rng.uniform(0, 1, (2, 2)) * [[0.9], [frequency]]) * [slab.slenderness for slab in model.slabs]
     turns = np.where(shut, -sides, rng.choice([-1, 1], 2))  # what lands closes
-    v = 0.0 if scene.base is None else float(rng.normal(0, 0.3))
     tilts, rates = np.cumsum(sides * tilts * np.logical_not(shut)), np.cumsum(turns * rates)
+    v = float(rng.normal(0, 0.3)) if scene.base else 0.0
     jumps = {None in answer.sides for answer in model.impact(sides.tolist(), tilts.tolist(), rates.tolist(), v, shut)}
-    return jumps == {True}, jumps == {True, False}
+    return False not in jumps, jumps == {True, False}
 
 
 def shaken(scene: Scene, hertz: float, peak: float) -> Scene:
@@ -293,8 +293,8 @@ def edge_of(scene: Scene, hertz: float, peak: float) -> Edge:
     """Return a boundary of the model at a peak [g], as the searches of `metrics.boundaries` take it."""
     amplitude, frequency = peak / math.tan(scene.block.slenderness), 2 * math.pi * hertz / scene.rocking_frequency
     beside = simulate(shaken(scene, hertz, peak * (1 + BESIDE)), history=False)
-    numbers = len(beside.impacts), 0.5 * amplitude, 2 * amplitude, beside.min_normal_ratio  # no other one is known
-    return Edge(FREE, SINE, frequency, amplitude, True, *numbers)
+    room = 0.5 * amplitude, 2 * amplitude  # no other boundary is known
+    return Edge(FREE, SINE, frequency, amplitude, True, len(beside.impacts), *room, beside.min_normal_ratio)
 
 
 # Long, because a plan is best read in one piece, from the first run to the last row.
@@ -320,8 +320,8 @@ def plan(request: Request, size: tuple[int, Sequence[float], float, int] | None 
     engine_runs = yield Batch(
         [Case(scene, *solver, {"index": k}) for solver in solvers for k, scene in scenes], measured, "engines"
     )
-    places = [row.case.tag["index"] for row in engine_runs]
-    rows += [run_row(row, model[3 * k], rows[k]["comparable"]) for k, row in zip(places, engine_runs, strict=True)]
+    runs = [(row.case.tag["index"], row) for row in engine_runs]
+    rows += [run_row(row, model[3 * k], rows[k]["comparable"]) for k, row in runs]
     mountings = [*itertools.product(WAYS, PULSES, [WIDTH]), *itertools.product(WAYS[:3], [WIDE], WIDTHS)]
     mountings += [("free", hertz, WIDTH) for hertz in hertzes if hertz not in PULSES]
     peaks, stack = [round(step * k, 12) for k in range(1, round(MOST / step) + 1)], bust("free")
