@@ -97,8 +97,8 @@ class Pair:
     def trace(self, rows: np.ndarray, traced: Callable[[np.ndarray], Trace]) -> StackTrace:
         """The `StackTrace` of the rows of `march`; traced: from such rows of one block to its `Trace`.
 
-        What the block's traces take as contact holds of the pedestal, too: it is as wide, so that a penetration tilts
-        it by less.
+        What the block's traces take as contact holds of the pedestal, too: it is at least as wide, so that a
+        penetration tilts it by less.
         """
         states = np.hsplit(np.frombuffer(self.states).reshape(-1, 12), 2)
         states[UPPER] = states[UPPER] - states[LOWER] * [1, 1, 0, 0, 0, 0]
@@ -254,9 +254,8 @@ def _checked(scene: Scene, trace: StackTrace, falls: bool) -> Failure | None:
     for slab, part in zip(slabs, parts, strict=True):
         moved += slab.mass * part.centre.T[[0, 2, 1, 3]]
     kinetic, gravity = _energy(scene, trace)
-    balance = kinetic + gravity + trapezoid(trace.bearing_force, x) - work(motion, time, *moved[:2])
-    if motion:
-        balance = balance - work(motion.vertical, time, *moved[2:])
+    gained = work(motion, time, *moved[:2]) + work(motion and motion.vertical, time, *moved[2:])
+    balance = kinetic + gravity + trapezoid(trace.bearing_force, x) - gained
     gain = (balance - np.minimum.accumulate(balance)).max() / max(StackModel.of(scene).barrier[0], kinetic.max())
     if not gain <= GAIN_LIMIT:
         return Failure("the run gained energy", f"{gain:.3g} of its energy scale; at most {GAIN_LIMIT} can be error")
