@@ -64,7 +64,10 @@ def near_copies(scene: Scene) -> Iterator[Scene]:
 
 
 def changed_copies(scene: Scene, change: float) -> dict[str, Scene]:
-    """Copies {name: scene} with restitution (or a given friction), motion or start changed by +-change, relative."""
+    """Copies {name: scene} with restitution (or a given friction), motion or start changed by +-change, relative.
+
+    A stack keeps its restitution.
+    """
     copies = {}
     e, start = restitution(scene), scene.start
     for sign, word in ((1, "up"), (-1, "down")):

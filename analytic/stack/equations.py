@@ -101,10 +101,6 @@ class Answer(NamedTuple):
     sides: list[int | None]
     impulses: tuple[complex, complex]
 
-    @property
-    def jumps(self) -> bool:
-        return None in self.sides
-
 
 @dataclass(frozen=True)
 class StackModel:
@@ -290,15 +286,15 @@ class StackModel:
                     slab.mass * complex(*jump) for slab, jump in zip(self.slabs, (after - u)[PLACES], strict=True)
                 )
                 impulses = gain1 + gain2, gain2 * cmath.exp(1j * tilts[0])
-                answers.append(Answer((after[2], after[5]), float(after[6]), [*map(_side, chosen)], impulses))
-        return sorted(answers, key=lambda answer: answer.jumps)
+                carrying = [sum(2 * corner - 1 for corner in each) if each else None for each in chosen]
+                answers.append(Answer((after[2], after[5]), float(after[6]), carrying, impulses))
+        return sorted(answers, key=lambda answer: None in answer.sides)
 
     # energy
 
     def kinetic_energy(self, sides: Sequence[int], tilts: Sequence[float], rates: Sequence[float], v: float) -> float:
         """Return the kinetic energy [J] in the ground's frame; v : of the base [m/s]."""
-        _, _, _, A11, A12, A22, c1, c2 = self.geometry(sides, tilts)
-        w1, w2 = rates
+        (_, _, _, A11, A12, A22, c1, c2), (w1, w2) = self.geometry(sides, tilts), rates
         turning = A11 * w1 * w1 + 2 * A12 * w1 * w2 + A22 * w2 * w2
         return 0.5 * (turning + (self.mass * v * v + 2 * v * (c1 * w1 + c2 * w2) if v else 0.0))
 
@@ -309,7 +305,7 @@ class StackModel:
         m_1 g (R_1z - h_1) + m_2 g (R_dz + R_2z - H_1 - h_2).
         """
         one, two = self.slabs
-        R1, Rd, R2, *_ = self.geometry([_sign(first), _sign(second)], [first, first + second])
+        R1, Rd, R2, *_ = self.geometry(np.sign([first, second]).astype(int).tolist(), [first, first + second])
         return self.g * (one.mass * (R1.imag - one.h) + two.mass * (Rd.imag + R2.imag - 2 * one.h - two.h))
 
     def rim(self, first: float, second: float) -> float:
@@ -331,12 +327,3 @@ class StackModel:
 def _subsets(corners: Sequence[int]) -> list[tuple[int, ...]]:
     """Return the corners of an interface that may carry, the largest set first."""
     return [each for count in range(len(corners), -1, -1) for each in combinations(corners, count)]
-
-
-def _side(corners: Sequence[int]) -> int | None:
-    """Return the side of the corners that carry: 0 for both, None for none."""
-    return sum(2 * corner - 1 for corner in corners) if corners else None
-
-
-def _sign(tilt: float) -> int:
-    return (tilt > 0) - (tilt < 0)

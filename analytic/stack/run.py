@@ -1,4 +1,4 @@
-"""A run of a statue on a free pedestal: `simulate_stack`, by scipy's DOP853 between events.
+"""A run of a statue on a free pedestal, by scipy's DOP853 between events; `solver.simulate_stack` starts it.
 
 One integration covers an interval of smooth motion. It ends at the next corner of the ground motion, or at an event:
 an uplift, a landing, a reversal or a corner of the bearings, the largest tilt of a swing, the passage of a slenderness,
@@ -15,8 +15,8 @@ by pi/2.
 
 from __future__ import annotations
 
+import itertools
 import math
-import time
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -25,7 +25,6 @@ import scipy
 from scipy.integrate import DOP853
 from scipy.optimize import brentq, minimize_scalar
 
-from ..checks.twin import shared_segments
 from ..kernel.compiled import entry
 from ..kernel.decision import (
     longest_duration,
@@ -36,13 +35,14 @@ from ..kernel.decision import (
     shortest_duration,
     will_not_overturn,
 )
-from ..kernel.layout import Base, Body, Parameters
+from ..kernel.layout import Base, Body
+from ..motion import shared_segments
 from ..response import Failure, History, Impact, Response, Stack, State
 from ..rocking import uplift_of_both
-from ..solver import compile_kernels, parameters, too_long, versions
 from .equations import LOWER, UPPER, Instant, StackModel
 
 if TYPE_CHECKING:
+    from ..kernel.layout import Parameters
     from ..scene import Scene
 
 RTOL, ATOL = 3e-14, 1e-15  # of a step; ATOL in rad, m, s and limit forces of the bearings
@@ -53,11 +53,11 @@ TOGETHER = 1e-12  # rad: a corner that is closer to what carries it at an impact
 SIZABLE = 0.01  # omega_r slenderness: slower landings, as at the end of an accumulation, have no part in `closest`
 STEPS = 200_000  # of a run, a minute or two; the longest seen took some thousands
 NAMES, FALLS = ("pedestal", "statue"), ("pedestal overturns", "overturns")
-LOST = "contact is lost"
+LOST, JUMPS = "outside the model: contact is lost", "outside the model: the pivot would jump"
 
 
-class _Outside(Exception):
-    """The run has left the model."""
+class _Ended(Exception):
+    """The run cannot go on; says why."""
 
 
 @entry
@@ -65,52 +65,16 @@ def _recoverable(law, constants, z):
     return recoverable_energy(law, constants, z)
 
 
-def simulate_stack(scene: Scene, *, history: bool = True, pedestal_tilt: float = 0.0) -> Response:
-    """Simulate a statue on a free pedestal.
-
-    Without a duration the run ends when, after the motion, the energy suffices for no fall and no larger peak, or at
-    `longest_duration`.
-
-    Parameters
-    ----------
-    scene : Scene
-        With a free pedestal. The tilt at the start is that of the statue from the pedestal.
-    history : bool
-        Keep the history, at the points where events were looked for.
-    pedestal_tilt : float
-        Tilt of the pedestal at the start [rad].
-
-    Returns
-    -------
-    Response
-        Tilts, impacts, friction demand and normal force are those of the statue on the pedestal; `Response.stack` has
-        those of the pedestal. A run that has left the model has failed, for a reason "outside the model: ...".
-
-    Raises
-    ------
-    SceneError
-        The run has too many steps; the message names the cause in the scene.
-    """
-    compile_kernels()
-    run, begin, failure = _Run(scene, history, pedestal_tilt), time.process_time(), None
-    try:
-        run.go()
-    except _Outside as cause:
-        failure = Failure(f"outside the model: {cause}", f"at {run.t:.6g} s", run.state())
-    return run.response(time.process_time() - begin, failure)
-
-
-class _Run:
+class Run:
     """The state of a run: time, sides of the pivots, y = [phi_1, phi_1', psi, psi', x, x', z]; and its results.
 
     psi = phi_2 - phi_1 is the tilt of the statue from the pedestal, which is thus known to its own last digit. z [N] of
-    one bearing is there where its law is a rate.
+    one bearing is there where its law is a rate. par : of the same scene with a fixed pedestal.
     """
 
-    def __init__(self, scene: Scene, history: bool, pedestal_tilt: float) -> None:
+    def __init__(self, scene: Scene, par: Parameters, history: bool, pedestal_tilt: float) -> None:
         self.scene, self.model, start = scene, StackModel.of(scene), scene.start
         self.law, self.frequency = self.model.bearing, scene.rocking_frequency
-        par = parameters(scene.with_(pedestal={"free": False}))
         first_uplift = min(par.slope, uplift_of_both(scene) / scene.gravity)
         self.par = par._replace(slope=first_uplift)  # of the blocks in full contact
         lower, upper = (scene.gravity * slab.mass for slab in self.model.slabs)
@@ -134,7 +98,7 @@ class _Run:
         self.impacts: tuple[list[Impact], list[Impact]] = ([], [])
         self.uplifts: tuple[list[float], list[float]] = ([], [])
         self.rests: tuple[list[float], list[float]] = ([], [])
-        self.ratios, self.closest, self.last = [0.0, 0.0], math.inf, (-1, 0.0)
+        self.ratios = [0.0, 0.0]
         self.rows: list[Sequence[float]] | None = [] if history else None
 
     # equations
@@ -166,22 +130,20 @@ class _Run:
 
     # one interval
 
-    def go(self) -> None:
-        """Run to the end.
-
-        Raises
-        ------
-        _Outside
-            The model ends before.
-        """
+    def go(self) -> Failure | None:
+        """Run to the end; return a `Failure` where the model ends before."""
         scene, self.shortest = self.scene, math.inf
         end = scene.duration
         if end is None:
             end, self.shortest = longest_duration(scene), shortest_duration(scene)
-        for _, until, self.ground, self.vertical in shared_segments(scene.motion, end):
-            for stop in (min(self.shortest, until), until):  # from `shortest` on the run may end
-                while self.t < stop and self.fallen < 0 and not self.finished():
-                    self.stretch(stop)
+        try:
+            for _, until, self.ground, self.vertical in shared_segments(scene.motion, end):
+                for stop in (min(self.shortest, until), until):  # from `shortest` on the run may end
+                    while self.t < stop and self.fallen < 0 and not self.finished():
+                        self.stretch(stop)
+        except _Ended as cause:
+            return Failure(str(cause), f"at {self.t:.6g} s", self.state())
+        return None
 
     def stretch(self, end: float) -> None:
         """Integrate to `end` or to the first event, and apply that."""
@@ -198,7 +160,7 @@ class _Run:
         while solver.status == "running":
             message, self.steps = solver.step(), self.steps + 1
             if solver.status == "failed" or self.steps > STEPS:
-                raise too_long(self.scene, message or f"{self.steps} steps reach only {self.t:.3g} s")
+                raise _Ended(message or "too many steps")
             self.step = solver.h_abs
             if self.followed(solver.t, solver.dense_output()):
                 return
@@ -216,15 +178,19 @@ class _Run:
         self.corner = self.law.unit.begin.py_func(self.travel, z, 1.0, self.law.constants)[2]
 
     def settle(self) -> None:
-        """Let interfaces in full contact open where their centres of pressure are beyond a corner, as after a jump."""
+        """Let interfaces in full contact open where their centres of pressure are beyond a corner, as after a jump.
+
+        After one a normal force may be negative, too.
+        """
         shut = [side == 0 for side in self.sides]
         loads = self.ground(self.t), self.force(self.y), self.vertical(self.t)
         sides = self.model.opened(self.sides, shut, *self.absolute(self.y), *loads)
-        if sides is None:
-            raise _Outside(LOST)
         for k in (LOWER, UPPER):
-            if sides[k] != self.sides[k]:
+            if sides and sides[k] != self.sides[k]:
                 self.open(k, sides[k])
+        if not sides or (np.abs(self.y[:4:2]) < FALLING).all() and min(self.instant(self.t, self.y).normal) <= 0:
+            self.keep(self.t, self.y)
+            raise _Ended(LOST)
 
     def open(self, k: int, side: int) -> None:
         self.sides[k], self.lifted[k] = side, self.t
@@ -258,12 +224,12 @@ class _Run:
         times = np.array([times[0] - width, *times, end + width])  # beyond both ends: minima there
         states = dense(times).T
         rows = [self.watch(t, y) for t, y in zip(times.tolist(), states, strict=True)]
-        keys, table, until, event = list(rows[0]), np.array([[*row.values()] for row in rows]), end, None
+        keys, table, until, event = list(rows[0]), np.array([[*row.values()] for row in rows]), math.inf, None
         for i, j in zip(*np.nonzero(suspect(table)), strict=True):
             if times[i] <= until and (root := self.root(keys[j], times, table[:, j], i, dense)) < until:
                 until, event = root, keys[j]
         for t, y in zip(times[1:-1].tolist(), states[1:-1], strict=True):
-            if t < until or event is None:
+            if t < until:
                 self.keep(t, y)
         if event:
             self.t, self.y = until, dense(until).ravel()
@@ -272,21 +238,24 @@ class _Run:
         return event is not None
 
     def root(self, key: tuple[str, int], times: np.ndarray, values: np.ndarray, i: int, dense: Callable) -> float:
-        """Return the time [s] of an event after point i, or at a minimum beside it; inf where that is above 0."""
+        """Return the time [s] of an event after point i, or at a minimum beside it; inf where that is above 0.
+
+        At it the function is 0 or less, so that the event is not found again.
+        """
 
         def value(t: float) -> float:
             return self.watch(t, dense(t).ravel())[key]
 
-        low, high = float(times[i]), float(times[i + 1])
-        if values[i + 1] > 0 or i > POINTS:
+        low, high, crosses = float(times[i]), float(times[i + 1]), values[i + 1] <= 0 and i <= POINTS
+        if not crosses:
             low, high = float(times[max(i - 1, 1)]), float(times[min(i + 1, POINTS + 1)])
             high = float(minimize_scalar(value, bounds=(low, high), method="bounded", options={"xatol": 1e-9}).x)
-            if not value(low) > 0 >= value(high):
-                return math.inf
-        root = brentq(value, low, high, xtol=1e-16, rtol=1e-15)
-        while value(root) > 0:  # beyond the event, so that it is not found again
+        if not value(low) > 0 >= value(high):  # at a crossing by rounding alone, as many points are read at once
+            return (low if value(low) <= 0 else high) if crosses else math.inf
+        root = float(brentq(value, low, high, xtol=1e-16, rtol=1e-15))
+        while value(root) > 0:
             root = min(root + 4 * math.ulp(root), high)
-        return float(root)
+        return root
 
     def keep(self, t: float, y: np.ndarray) -> None:
         """Include a state in the extremes and the history."""
@@ -295,8 +264,9 @@ class _Run:
         demands = [abs(along) / normal if normal > 0 else math.inf for along, normal in zip(*now[2:4], strict=True)]
         least = [-normal / weight for normal, weight in zip(now.normal, self.weights, strict=True)]
         self.most = np.maximum(self.most, [abs(x), abs(now.a), *demands, *least])
-        if self.rows is not None:
-            self.rows.append((t, psi, turn, x, v, self.force(y), self.ground(t), tilt))
+        row = t, psi, turn, x, v, self.force(y), self.ground(t), tilt
+        if self.rows is not None and row not in self.rows[-1:]:  # two rows of a time are before and after an impact
+            self.rows.append(row)
 
     def apply(self, event: str, k: int) -> None:
         """Apply an event at interface k; the largest tilt of a swing, "turn", needs nothing more."""
@@ -306,7 +276,7 @@ class _Run:
             case "uplift":
                 self.open(k, int(np.sign(self.instant(self.t, self.y).pressure[k])))
             case "loss":
-                raise _Outside(LOST)
+                raise _Ended(LOST)
             case "fall":
                 self.fallen = k
             case "passage":
@@ -329,12 +299,8 @@ class _Run:
         before = self.y.tolist()
         self.strike(shut, (False, False))
         for j in landing:
-            rate = before[2 * j + 1]
-            self.impacts[j].append(Impact(self.t, rate, float(self.y[2 * j + 1]), float(self.y[5]) - before[5]))
-            if abs(rate) > SIZABLE * self.frequency * self.gammas[j]:
-                if self.last[0] == 1 - j:
-                    self.closest = min(self.closest, self.t - self.last[1])
-                self.last = j, self.t
+            rates = before[2 * j + 1], float(self.y[2 * j + 1])
+            self.impacts[j].append(Impact(self.t, *rates, float(self.y[5]) - before[5]))
         for over in ((True, True), (False, True), (True, False)):  # interfaces that may rest at once
             resting = [j for j in (LOWER, UPPER) if over[j]]
             if any(self.sides[j] for j in resting) and all(shut[j] and self.rests_at(j, over) for j in resting):
@@ -348,9 +314,9 @@ class _Run:
         """Take the velocities and sides after an impact; see `StackModel.impact`. Nothing rests that cannot."""
         answers = self.model.impact(self.sides, *self.absolute(self.y), float(self.y[5]), shut, forced)
         if any(forced):
-            answers = [answer for answer in answers if not answer.jumps][:1]
-        elif not answers or answers[-1].jumps:
-            raise _Outside("the pivot would jump")
+            answers = [answer for answer in answers if None not in answer.sides][:1]
+        elif not answers or None in answers[-1].sides:
+            raise _Ended(JUMPS)
         for answer in answers[:1]:
             for k, impulse in enumerate(answer.impulses):
                 if shut[k]:
@@ -415,12 +381,20 @@ class _Run:
 
     def response(self, cpu_seconds: float, failure: Failure | None) -> Response:
         """Return the `Response` of the run."""
-        scene, gamma, fell = self.scene, self.gammas[UPPER], self.fallen >= 0
+        scene, fell = self.scene, self.fallen >= 0
         fall_time, most = self.held[self.fallen] if fell else (None, self.most)
         rocked = tuple(name for name, peak in zip(NAMES, self.peaks, strict=False) if peak > 0)
         outcome = FALLS[self.fallen] if fell else "failed" if failure else "rocks" if rocked else "stands"
         x, acceleration, lower_demand, demand, lower_least, least = most.tolist()
         (tilt, psi, absolute), columns = self.peaks.tolist(), np.array(self.rows).T
+        period, least_rate = 2 * math.pi / self.frequency, SIZABLE * self.frequency
+        sizable = [
+            (impact.time / period, k)
+            for k, impacts in enumerate(self.impacts)
+            for impact in impacts
+            if abs(impact.rate_before) > least_rate * self.gammas[k]
+        ]
+        pairs = itertools.pairwise(sorted(sizable))
         stack = Stack(
             rocked=rocked,
             peak_tilt=tilt,
@@ -431,7 +405,7 @@ class _Run:
             friction_demand=lower_demand,
             min_normal_ratio=-lower_least,
             impulses=(self.ratios[LOWER], self.ratios[UPPER]),
-            closest=None if self.closest == math.inf else self.closest * self.frequency / (2 * math.pi),
+            closest=min((later[0] - sooner[0] for sooner, later in pairs if sooner[1] != later[1]), default=None),
         )
         return Response(
             engine="analytic",
@@ -441,7 +415,7 @@ class _Run:
             unstable_time=self.unstable,
             fall_time=fall_time,
             peak_tilt=psi,
-            peak_tilt_ratio=psi / gamma,
+            peak_tilt_ratio=psi / self.gammas[UPPER],
             peak_base_displacement=x,
             peak_base_acceleration=acceleration,
             impacts=tuple(self.impacts[UPPER]),
@@ -453,7 +427,7 @@ class _Run:
             cpu_seconds=cpu_seconds,
             steps=self.steps,
             settings={"method": "DOP853", "rtol": RTOL},
-            versions={**versions(), "scipy": scipy.__version__},
+            versions={"numpy": np.__version__, "scipy": scipy.__version__},
             scene=scene.name,
             decided=failure is None and self.certain(),
             warnings=run_warnings(scene, demand, -least, x, float(self.y[5])),

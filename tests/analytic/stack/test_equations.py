@@ -5,9 +5,8 @@ from itertools import product
 
 import numpy as np
 import pytest
-from stack_scenes import FIGURE, GRAVITY, PLINTH, STACK, random_stack, rectangle
+from stack_scenes import FIGURE, GRAVITY, STACK, random_stack
 
-from analytic import Base, Scene
 from analytic.rocking import RockingModel, momentum_restitution, uplift_of_both
 from analytic.stack.equations import LOWER, UPPER, StackModel
 
@@ -136,7 +135,7 @@ def test_it_keeps_the_momenta_of_the_published_impact_formulas(landing, base):
         before, absolute, v = np.cumsum(rates).tolist(), np.cumsum(tilts).tolist(), 0.4 * (base is not None)
         answers = model.impact(sides, absolute, before, v, shut)
         for answer in answers:
-            if answer.jumps or 0 in answer.sides:
+            if None in answer.sides or 0 in answer.sides:
                 continue
             found, used = [], used + 1
             for corners, ws, x in ((sides, before, v), (answer.sides, answer.rates, answer.v)):
@@ -161,14 +160,6 @@ def test_an_impact_has_at_most_one_answer_that_keeps_all_interfaces():
         tilt, w = s1 * rng.uniform(0.005, 0.3), -s2 * rng.uniform(0, 1)
         w1 = rng.uniform(-1, 1)
         answers = model.impact((s1, s2), (tilt, tilt), (w1, w1 + w), 0.0, (False, True))
-        assert sum(not answer.jumps for answer in answers) <= 1
-        jumping += any(answer.jumps for answer in answers)
+        assert sum(None not in answer.sides for answer in answers) <= 1
+        jumping += any(None in answer.sides for answer in answers)
     assert 0 < jumping < 60
-
-
-def test_under_a_light_statue_the_pedestal_lands_by_eq_7():
-    base, light = Base(mass=100.0), FIGURE.model_copy(update={"mass": 1e-9})
-    alone = Scene(block=rectangle(PLINTH.width, PLINTH.height, PLINTH.mass), base=base)
-    model = StackModel.of(Scene(block=light, pedestal=PLINTH, base=base))
-    answer, *others = model.impact((1, 1), (0.0, 0.1), (-0.7, -0.7), 0.0, (True, False))
-    assert not others and answer.rates[0] / -0.7 == pytest.approx(momentum_restitution(alone), abs=1e-8)

@@ -15,7 +15,7 @@ from analytic.checks.time_stepping import simulate_time_stepping
 from analytic.checks.twin import simulate_twin
 from analytic.checks.two_bodies import simulate_two_bodies
 from analytic.scene import BASE, BEARINGS, problem_a, problem_b
-from analytic.stack.run import simulate_stack
+from analytic.solver import parameters, simulate_stack
 from engines import ENGINES
 
 ANSWERS = json.loads((Path(__file__).parent / "answers.json").read_text(encoding="utf-8"))
@@ -93,21 +93,21 @@ def test_halves_that_stay_together_are_one_block():
     before = two.history.time < one.impacts[0].time
     assert two.stack.impacts[0].time == pytest.approx(one.impacts[0].time, abs=1e-12)
     assert two.stack.impacts[0].rate_before == pytest.approx(one.impacts[0].rate_before, abs=1e-12)
-    assert not two.history.tilt[before].any() and before.sum() > 50
+    assert not two.history.tilt[before].any() and before.sum() > 20
 
 
 @pytest.mark.parametrize("name", ("leaning", "opposite", "joined"))
 def test_free_it_loses_energy_at_impacts_alone(name, monkeypatch):
-    energies, land = [], run._Run.land
+    energies, land = [], run.Run.land
 
     def watched(self, k):
         energies.append(self.remaining_energy())
         land(self, k)
         energies.append(self.remaining_energy())
 
-    monkeypatch.setattr(run._Run, "land", watched)
+    monkeypatch.setattr(run.Run, "land", watched)
     scene, tilt = SIX[name]
-    first = run._Run(scene, False, tilt).remaining_energy()
+    first = run.Run(scene, parameters(fixed(scene)), False, tilt).remaining_energy()
     simulate_stack(scene, pedestal_tilt=tilt)
     before, after = np.array([first, *energies[:-1]]).reshape(-1, 2).T, np.array(energies).reshape(-1, 2)
     assert np.abs(before[1] - before[0]).max() < 1e-12 * first and (after[:, 1] < after[:, 0]).all()
@@ -117,13 +117,10 @@ def test_free_it_loses_energy_at_impacts_alone(name, monkeypatch):
 @pytest.mark.parametrize("name", ("jolt", "soft base", "record"))
 def test_mirrored_it_is_the_same(name):
     scene, _ = SIX[name]
-    one, two = simulate(scene), simulate(scene.with_(motion=_mirrored(scene.motion)))
+    mirrored = replace(scene.motion.scaled(-1.0), vertical=scene.motion.vertical)
+    one, two = simulate(scene), simulate(scene.with_(motion=mirrored))
     assert np.array(landings(one)) == pytest.approx(np.array(landings(two)), abs=1e-10)
     assert [one.end.tilt, one.peak_tilt] == pytest.approx([-two.end.tilt, two.peak_tilt], abs=1e-11)
-
-
-def _mirrored(motion):
-    return replace(motion.scaled(-1.0), vertical=motion.vertical)
 
 
 def test_where_bounces_end_does_not_matter(monkeypatch):
@@ -150,6 +147,14 @@ def test_without_a_duration_it_ends_when_nothing_can_grow():
         assert longer.stack.peak_tilt == open_end.stack.peak_tilt
 
 
+FLAT = Scene(  # a flat, light pedestal under a heavy statue
+    block=rectangle(0.58, 1.47, 747.0),
+    pedestal=Pedestal(width=0.6875854, mass=513.617937, height=0.40236768, free=True),
+    motion=sine(3.1433, 1.2867),
+    **SOFT,
+)
+
+
 @pytest.mark.parametrize(
     "scene, outcome, reason",
     [
@@ -157,6 +162,7 @@ def test_without_a_duration_it_ends_when_nothing_can_grow():
         (STACK.with_(motion=sine(0.7, 1.2)), "overturns", None),
         (STACK.with_(motion=sine(0.7, 1.2), pedestal={"width": 0.3, "height": 2.0}), "pedestal overturns", None),
         (STACK.with_(motion=sine(2.5, 1.2)), "failed", "outside the model: contact is lost"),
+        (FLAT, "failed", "outside the model: the pivot would jump"),
     ],
 )
 def test_what_came_of_it(scene, outcome, reason):
@@ -164,15 +170,8 @@ def test_what_came_of_it(scene, outcome, reason):
     assert response.outcome == outcome and (response.failure and response.failure.reason) == reason
     fallen = {"overturns": abs(response.end.tilt), "pedestal overturns": response.stack.peak_tilt}.get(outcome)
     assert fallen is None or fallen == pytest.approx(math.pi / 2, abs=1e-12)
-    assert (response.overturning_time is None) == (fallen is None) or response.fall_time < response.overturning_time
-
-
-def test_it_stops_where_a_pivot_would_jump():
-    """A flat, light pedestal on soft bearings under a heavy statue."""
-    block = rectangle(0.58, 1.47, 747.0)
-    pedestal = Pedestal(width=0.6875854, mass=513.617937, height=0.40236768, free=True)
-    scene = Scene(block=block, pedestal=pedestal, motion=sine(3.1433, 1.2867), duration=1.0, **SOFT)
-    assert simulate(scene).failure.reason == "outside the model: the pivot would jump"
+    assert (response.overturning_time is None) == (response.fall_time is None) == (fallen is None)
+    assert fallen is None or response.fall_time < response.overturning_time == response.end.time
 
 
 def test_its_response_is_one_like_any_other():
@@ -194,11 +193,8 @@ def test_what_does_not_know_a_free_pedestal_refuses_it():
     for other in others:
         with pytest.raises(SceneError, match=r"pedestal\.free = True: not known to"):
             other(STACK)
-    assert (
-        fixed(STACK).digest()
-        == Scene(**{**dict(STACK), "pedestal": Pedestal(width=0.5, mass=380.0, height=0.8)}).digest()
-    )
-    assert STACK.digest() != fixed(STACK).digest()
+    # a fixed pedestal has the digest that stored results have
+    assert fixed(STACK).digest()[:16] == "efe0bce57c2485ee" != STACK.digest()[:16]
 
 
 @pytest.mark.parametrize(
