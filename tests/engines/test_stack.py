@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from analytic import Base, Bearings, Block, Pedestal, PulseMotion, Scene, SceneError, Start, simulate
-from analytic.stack.run import simulate_stack
+from analytic.solver import simulate_stack
 from engines import ENGINES, get_engine, installed_engines
 from engines.comparison import Reference
 from engines.contract import Run
