@@ -467,7 +467,7 @@ def run_of(
     except Mismatch as error:
         return Run(None, 0, math.nan, Failure("the engine does not hold the scene", str(error)))
     if scene.is_stack:
-        from .stack import Pair  # slow to load
+        from .stack import Pair  # which needs this module
 
         bodies = pair = Pair(bodies, scene, pedestal_tilt)
     clock = time.process_time()

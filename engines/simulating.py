@@ -308,7 +308,7 @@ class Simulator(Engine):
             failure = run.failure or Failure("the run ended before its first step")
             return failed_response(scene, failure, **labels), None
         if scene.is_stack:
-            from .stack import observe_stack  # slow to load
+            from .stack import observe_stack  # which needs this module
 
             return observe_stack(scene, run, history=history, **labels), run.trace
         response = observe(

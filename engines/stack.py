@@ -19,13 +19,11 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from analytic.kernel.decision import motion_end, will_not_overturn
-from analytic.kernel.layout import Base, Body
 from analytic.response import Failure, Impact, Response, Stack, limit_warnings
-from analytic.rocking import BearingLaw, uplift_of_both
 from analytic.solver import parameters
 from analytic.stack.equations import LOWER, UPPER, StackModel
 from analytic.stack.run import FALLS, NAMES
+from analytic.stack.run import Run as StackRun
 
 from .contract import Run
 from .events import STILL, ended_early, finite_part, last_state
@@ -97,8 +95,8 @@ class Pair:
     def trace(self, rows: np.ndarray, traced: Callable[[np.ndarray], Trace]) -> StackTrace:
         """The `StackTrace` of the rows of `march`; traced: from such rows of one block to its `Trace`.
 
-        What the block's traces take as contact holds of the pedestal, too: it is as wide, so that a penetration tilts
-        it by less.
+        What the block's traces take as contact holds of the pedestal, too: it is at least as wide, so that a
+        penetration tilts it by less.
         """
         states = np.hsplit(np.frombuffer(self.states).reshape(-1, 12), 2)
         states[UPPER] = states[UPPER] - states[LOWER] * [1, 1, 0, 0, 0, 0]
@@ -229,17 +227,6 @@ def _at_contact(trace: Trace, step: int, way: int) -> tuple[float, float]:
     return float(t + ahead), float(rate + spin * ahead)
 
 
-def _energy(scene: Scene, trace: StackTrace) -> tuple[np.ndarray, np.ndarray]:
-    """(Kinetic energy, that of gravity) [J] of both blocks and the base, shapes (n,), in the ground's frame."""
-    kinetic, gravity = 0.5 * moving_mass(scene) * trace.base_velocity**2, np.zeros(len(trace.time))
-    rates = trace.pedestal.tilt_rate, trace.pedestal.tilt_rate + trace.tilt_rate
-    for slab, part, rate in zip(slabs_of(scene), (trace.pedestal, trace), rates, strict=True):
-        _, z, vx, vz = part.centre.T
-        kinetic = kinetic + 0.5 * (slab.mass * (vx**2 + vz**2) + slab.inertia * rate**2)
-        gravity += slab.mass * scene.gravity * z
-    return kinetic, gravity
-
-
 def _checked(scene: Scene, trace: StackTrace, falls: bool) -> Failure | None:
     """A `Failure` if the run ends early, gains energy, or ends with a block that has left its place, else None.
 
@@ -251,12 +238,14 @@ def _checked(scene: Scene, trace: StackTrace, falls: bool) -> Failure | None:
     motion, time, x = scene.motion, trace.time, trace.base_displacement
     slabs, parts = slabs_of(scene), (trace.pedestal, trace)
     moved = moving_mass(scene) * np.array([x, trace.base_velocity, 0 * x, 0 * x])
+    kinetic, rate = 0.5 * moving_mass(scene) * trace.base_velocity**2, np.zeros(len(time))
     for slab, part in zip(slabs, parts, strict=True):
-        moved += slab.mass * part.centre.T[[0, 2, 1, 3]]
-    kinetic, gravity = _energy(scene, trace)
-    balance = kinetic + gravity + trapezoid(trace.bearing_force, x) - work(motion, time, *moved[:2])
-    if motion:
-        balance = balance - work(motion.vertical, time, *moved[2:])
+        across, up, *speeds = part.centre.T
+        rate = rate + part.tilt_rate
+        moved += slab.mass * np.array([across, speeds[0], up, speeds[1]])
+        kinetic = kinetic + 0.5 * (slab.mass * np.square(speeds).sum(axis=0) + slab.inertia * rate**2)
+    gained = work(motion, time, *moved[:2]) + work(motion and motion.vertical, time, *moved[2:])
+    balance = kinetic + scene.gravity * moved[2] + trapezoid(trace.bearing_force, x) - gained
     gain = (balance - np.minimum.accumulate(balance)).max() / max(StackModel.of(scene).barrier[0], kinetic.max())
     if not gain <= GAIN_LIMIT:
         return Failure("the run gained energy", f"{gain:.3g} of its energy scale; at most {GAIN_LIMIT} can be error")
@@ -271,21 +260,14 @@ def _checked(scene: Scene, trace: StackTrace, falls: bool) -> Failure | None:
 
 
 def _decided(scene: Scene, trace: StackTrace) -> bool:
-    """Whether, after the motion, energy, or force in full contact, suffices for no fall, as in `analytic.stack.run`."""
-    if trace.time[-1] < motion_end(scene) * (1 - 1e-9):
-        return False
-    law, model, z = BearingLaw.of(scene.bearings), StackModel.of(scene), float(trace.hysteretic[-1])
-    x, v = float(trace.base_displacement[-1]), float(trace.base_velocity[-1])
-    ends = np.abs([trace.pedestal.tilt[-1], trace.tilt[-1]])
-    if ends.max() < trace.contact_tilt:
-        par = parameters(scene.with_(pedestal={"free": False}))
-        par = par._replace(slope=min(par.slope, uplift_of_both(scene) / scene.gravity))
-        if will_not_overturn(par, Body(0.0, 0.0, 0.0), Base(x, v, z), False):
-            return True
-    back = max(0.5 * z * z / law.constants.dk, law.unit.recoverable.py_func(abs(z), law.constants)) if z else 0.0  # type: ignore[attr-defined]  # compiled
-    most, *rim = model.barrier
-    energy = sum(each[-1] for each in _energy(scene, trace)) + law.count * (0.5 * law.kb * x * x + back)
-    return bool((ends < rim).all() and energy < most)
+    """Whether the analytic model's outcome is certain from the state at the end on; a tilt in contact is none."""
+    run, parts = StackRun(scene, parameters(scene.with_(pedestal={"free": False})), False, 0.0), (trace.pedestal, trace)
+    state = np.array([[part.tilt[-1], part.tilt_rate[-1]] for part in parts])
+    state[[abs(tilt) < part.contact_tilt for tilt, part in zip(state[:, 0], parts, strict=True)]] = 0.0
+    run.t, run.sides = float(trace.time[-1]), np.sign(state[:, 0]).astype(int).tolist()
+    run.fixed = x, z = float(trace.base_displacement[-1]), float(trace.hysteretic[-1])
+    run.y[:] = [*state.ravel(), x, trace.base_velocity[-1], z][: len(run.y)]
+    return run.certain()
 
 
 def release(
