@@ -11,8 +11,8 @@ from analytic.solver import simulate_stack
 from engines import ENGINES, get_engine, installed_engines
 from engines.comparison import Reference
 from engines.contract import Run
-from engines.loop import FixedStep, run_of
-from engines.stack import Pair, observe_stack, release
+from engines.loop import FixedStep, Pair, run_of
+from engines.stack import observe_stack, release
 
 BUST = Block(mass=120.0, radius=math.hypot(0.125, 0.35), slenderness=math.atan2(0.125, 0.35))
 STACK = Scene(block=BUST, pedestal=Pedestal(width=0.4, mass=430.0, height=1.0, free=True), duration=1.0)
@@ -141,7 +141,7 @@ def test_a_run_that_ends_early_has_failed_and_one_that_is_no_stack_is_an_error()
     run = run_of_lies(STILL)
     assert observe_stack(STACK, run, **FAKE).outcome == "stands"
     assert observe_stack(STACK.with_(duration=2.0), run, **FAKE).failure.reason == "the run ended early"
-    with pytest.raises(TypeError, match="no engines.stack.StackTrace"):
+    with pytest.raises(TypeError, match="no engines.swings.StackTrace"):
         observe_stack(STACK, Run(run.trace.pedestal, 1, 0.0), **FAKE)
 
 
