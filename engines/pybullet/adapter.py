@@ -502,7 +502,7 @@ def run(scene: Scene, variant: str, settings: Settings, pedestal_tilt: float = 0
     return result
 
 
-run_stack = run
+run_stack = run  # the same calls build one block and a stack
 
 
 def _fail_if_limited(result: Run) -> Run:
