@@ -268,10 +268,10 @@ def moving_mass(scene: Scene) -> float:
     return scene.base.mass if scene.base and scene.is_stack else scene.base_mass
 
 
-Start = tuple[tuple[float, float], tuple[float, float], tuple[float, float]]
+Places = tuple[tuple[float, float], tuple[float, float], tuple[float, float]]
 
 
-def placements(scene: Scene, pedestal_tilt: float = 0.0) -> list[Start]:
+def placements(scene: Scene, pedestal_tilt: float = 0.0) -> list[Places]:
     """Start of each of `slabs_of`: (x, x'), (z, z') as in `placement`, (tilt, its rate), all absolute.
 
     A stack starts without a velocity, the pedestal on its lower corner, and the block on its own, tilted by the scene's

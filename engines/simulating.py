@@ -11,7 +11,7 @@ import math
 import traceback
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, fields, replace
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
@@ -149,7 +149,9 @@ SLIPS = "with less the block slips under the couple before each landing"
 
 
 class Simulator(Engine):
-    """An `Engine` that simulates scenes."""
+    """An `Engine` that simulates scenes; known: all of them, by name."""
+
+    known: ClassVar[Mapping[str, Simulator]] = {}
 
     @classmethod
     def of(cls, engine: Engine) -> Self:
@@ -184,9 +186,7 @@ class Simulator(Engine):
             return adapter.run
         if hasattr(adapter, "run_stack"):
             return adapter.run_stack
-        from . import ENGINES
-
-        able = [name for name, other in ENGINES.items() if other.installed and hasattr(other.load(), "run_stack")]
+        able = [name for name, other in self.known.items() if other.installed and hasattr(other.load(), "run_stack")]
         raise SceneError(
             "pedestal.free",
             True,

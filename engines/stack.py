@@ -1,9 +1,8 @@
-"""A statue on a free pedestal in an engine: its corners for the step rule, what is read from its steps, its checks.
+"""The `Response` of a statue on a free pedestal in an engine: what is read from its steps, and its checks.
 
 An adapter that builds a stack has a function ``run_stack(scene, variant, settings, pedestal_tilt=0.0)``: a `Run` with a
-`StackTrace`, of `engines.loop.run_of`. Its bodies are those of `engines.loop.Bodies`, whose states have the six numbers
-of the pedestal before those of the block. All tilts of an engine are absolute; in a `StackTrace` and in a `Response`
-those of the block are from the pedestal.
+`StackTrace`, of `engines.loop.run_of`, whose `Pair` gives the corners to the step rule. In traces and responses, the
+tilt of the block is from the pedestal.
 
 The forces on contacts are not read, so that friction demands, normal forces, impulses and the acceleration of the base
 are NaN.
@@ -12,26 +11,23 @@ are NaN.
 from __future__ import annotations
 
 import math
-from array import array
-from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, field, replace
-from typing import TYPE_CHECKING, Any, cast
+from dataclasses import asdict, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from analytic.response import Failure, Impact, Response, Stack, limit_warnings
 from analytic.solver import parameters
-from analytic.stack.equations import LOWER, UPPER, StackModel
+from analytic.stack.equations import UPPER, StackModel
 from analytic.stack.run import FALLS, NAMES
 from analytic.stack.run import Run as StackRun
 
 from .contract import Run
 from .events import STILL, ended_early, finite_part, last_state
-from .loads import centres, moving_mass, placements, slabs_of
-from .loop import SMEARED, Bodies, Rule
+from .loads import centres, moving_mass, slabs_of
+from .loop import SMEARED
 from .observe import cautions, failed_response, run_history
-from .simulating import choose
-from .swings import Trace, find_swings
+from .swings import StackTrace, Trace, find_swings
 from .trace_checks import GAIN_LIMIT, HEIGHT_TOLERANCE, SLIDING_TOLERANCE, trapezoid, work
 
 if TYPE_CHECKING:
@@ -40,79 +36,6 @@ if TYPE_CHECKING:
     from .contract import Engine
 
 FALLEN = 0.5 * math.pi
-
-
-@dataclass(frozen=True)
-class StackTrace(Trace):
-    """The `Trace` of the block, its tilt from the pedestal, its centre absolute; pedestal: the trace of that.
-
-    hysteretic: force of one bearing [N], shape (n,).
-    """
-
-    pedestal: Trace = field(kw_only=True)
-    hysteretic: np.ndarray = field(kw_only=True)
-
-    def at(self, steps: slice | np.ndarray) -> StackTrace:
-        """The steps of a slice or of an array of indices."""
-        parts: dict[str, Any] = {"pedestal": self.pedestal.at(steps), "hysteretic": self.hysteretic[steps]}
-        return cast(StackTrace, replace(super().at(steps), **parts))
-
-
-class Pair:
-    """An engine's two bodies as the `Bodies` of `march`, which sees the one that is tilted more; keeps their states."""
-
-    def __init__(self, bodies: Bodies, scene: Scene, pedestal_tilt: float) -> None:
-        self.bodies, self.slabs, self.weigh = bodies, slabs_of(scene), bodies.weigh
-        self.now: list[float] = []
-        for (x, vx), (z, vz), (tilt, rate) in placements(scene, pedestal_tilt):
-            self.now += [tilt, rate, x, z, vx, vz]
-        self.states = array("d", self.now)
-
-    def step(self, *loads: float) -> Sequence[float]:
-        """A step: see `engines.loop.Bodies`."""
-        *self.now, base, v = self.bodies.step(*loads)
-        self.states.extend(self.now)
-        first, w1, _, _, vx1, vz1, second, w2, x, z, vx2, vz2 = self.now
-        tilt = second - first if abs(second - first) > abs(first) else first  # a NaN in any is one here
-        return tilt, w1 + w2, x, z, vx1 + vx2, vz1 + vz2, base, v
-
-    def ruled(self, rule: Rule) -> Rule:
-        """The `Rule` of the four corners: two of the pedestal, two of the block over the pedestal's top."""
-        return lambda _: rule(self.corners())
-
-    def corners(self) -> tuple[tuple[float, float], ...]:
-        """(Gap [m], closing speed [m/s]) of each corner."""
-        first, w1, x1, z1, vx1, vz1, second, w2, x2, z2, vx2, vz2 = self.now
-        (one, two), c, s = self.slabs, math.cos(first), math.sin(first)
-        # of the block's centre from the pedestal's, along the pedestal's axes
-        x, z, vx, vz = x2 - x1, z2 - z1 + one.h + two.h, vx2 - vx1, vz2 - vz1
-        high, rising = x * s + z * c - one.h, vx * s + vz * c + w1 * (x * c - z * s)
-        return (
-            *_corners(z1 + one.h, vz1, first, w1, one.b, one.h),
-            *_corners(high, rising, second - first, w2 - w1, two.b, two.h),
-        )
-
-    def trace(self, rows: np.ndarray, traced: Callable[[np.ndarray], Trace]) -> StackTrace:
-        """The `StackTrace` of the rows of `march`; traced: from such rows of one block to its `Trace`.
-
-        What the block's traces take as contact holds of the pedestal, too: it is at least as wide, so that a
-        penetration tilts it by less.
-        """
-        states = np.hsplit(np.frombuffer(self.states).reshape(-1, 12), 2)
-        states[UPPER] = states[UPPER] - states[LOWER] * [1, 1, 0, 0, 0, 0]
-        lower, upper = (
-            traced(np.column_stack([rows[:, :2], state[:, :2], rows[:, 4:8], state[:, 2:]])) for state in states
-        )
-        return StackTrace(**vars(upper), pedestal=lower, hysteretic=rows[:, 6])
-
-
-def _corners(
-    high: float, rising: float, tilt: float, rate: float, b: float, h: float
-) -> tuple[tuple[float, float], tuple[float, float]]:
-    """(Gap, closing speed) of both corners of a block whose centre is `high` over its support; all relative to that."""
-    c, s = math.cos(tilt), math.sin(tilt)
-    mean, lower, sinking, turning = high - h * c, b * s, -rising - h * s * rate, b * c * rate
-    return (mean - lower, sinking + turning), (mean + lower, sinking - turning)
 
 
 def observe_stack(scene: Scene, run: Run, *, history: bool = True, **labels: Any) -> Response:
@@ -126,7 +49,7 @@ def observe_stack(scene: Scene, run: Run, *, history: bool = True, **labels: Any
     if run.trace is None:
         return failed_response(scene, run.failure, **labels)
     if not isinstance(run.trace, StackTrace):
-        raise TypeError(f"run_stack returned a {type(run.trace).__name__}, no engines.stack.StackTrace")
+        raise TypeError(f"run_stack returned a {type(run.trace).__name__}, no engines.swings.StackTrace")
     trace, failure = finite_part(run.trace, run.failure)
     if not isinstance(trace, StackTrace):
         return failed_response(scene, failure, **labels)
@@ -274,7 +197,8 @@ def release(
     engine: Engine, scene: Scene, pedestal_tilt: float, *, variant: str | None = None, **settings: float
 ) -> Response:
     """The response of a stack with a duration whose pedestal is tilted at the start, too [rad]."""
-    name, chosen = choose(engine, variant, settings)
+    name = variant or engine.default_variant
+    chosen = replace(engine.variants[name].settings, **settings)
     run = engine.load().run_stack(scene, name, chosen, pedestal_tilt)
     labels: dict[str, Any] = dict(engine=engine.name, variant=name, settings=asdict(chosen), versions=engine.versions())
     return observe_stack(scene, run, cpu_seconds=run.cpu_seconds, steps=run.steps, warnings=run.warnings, **labels)

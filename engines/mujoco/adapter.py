@@ -298,4 +298,4 @@ def run(scene: Scene, variant: str, settings: Settings, pedestal_tilt: float = 0
     return replace(result, failure=Failure(result.failure.reason if result.failure else "MuJoCo warned", message))
 
 
-run_stack = run
+run_stack = run  # the same calls build one block and a stack

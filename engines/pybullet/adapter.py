@@ -228,7 +228,7 @@ class BulletBodies:
                 ("friction", [row[1] for row in dynamics], rough),
                 ("restitution", [row[5] for row in dynamics], 0.0),
                 (
-                    "inertia",
+                    "block: inertia",
                     [dynamics[link + 1][2] for link in self.turning],
                     [[slab.inertia] * 3 for slab in slabs_of(scene)],
                 ),
@@ -502,7 +502,7 @@ def run(scene: Scene, variant: str, settings: Settings, pedestal_tilt: float = 0
     return result
 
 
-run_stack = run
+run_stack = run  # the same calls build one block and a stack
 
 
 def _fail_if_limited(result: Run) -> Run:

@@ -11,8 +11,8 @@ from analytic.solver import simulate_stack
 from engines import ENGINES, get_engine, installed_engines
 from engines.comparison import Reference
 from engines.contract import Run
-from engines.loop import FixedStep, run_of
-from engines.stack import Pair, observe_stack, release
+from engines.loop import FixedStep, Pair, run_of
+from engines.stack import observe_stack, release
 
 BUST = Block(mass=120.0, radius=math.hypot(0.125, 0.35), slenderness=math.atan2(0.125, 0.35))
 STACK = Scene(block=BUST, pedestal=Pedestal(width=0.4, mass=430.0, height=1.0, free=True), duration=1.0)
@@ -38,24 +38,22 @@ ERRORS = {
     ("pybullet", "impact-aware"): (2.3e-5, 3.1e-5, 1.6e-4),
     ("pybullet", "fixed-step"): (6.3e-4, 4e-4, 1.4e-3),
 }
-TUNED = pytest.mark.parametrize("engine, variant", ERRORS)
 BOTH = pytest.mark.parametrize("engine", ["mujoco", "pybullet"])
 
 
 def landings(response):
-    """Return (time, block) in order of time."""
-    each = enumerate([response.stack.impacts, response.impacts])
-    return np.array(sorted((impact.time, k) for k, impacts in each for impact in impacts))
+    """Return (time, block, rates before and after) in order of time."""
+    each = ((k, impact) for k, impacts in enumerate([response.stack.impacts, response.impacts]) for impact in impacts)
+    return np.array(sorted((impact.time, k, impact.rate_before, impact.rate_after) for k, impact in each))
 
 
 def tilts(response, times):
     """Return the absolute tilts of pedestal and statue at these times, shape (2, n)."""
-    history = response.history
-    both = history.pedestal_tilt, history.pedestal_tilt + history.tilt
-    return np.array([np.interp(times, history.time, tilt) for tilt in both])
+    time, pedestal, block = (getattr(response.history, name) for name in ("time", "pedestal_tilt", "tilt"))
+    return np.array([np.interp(times, time, tilt) for tilt in (pedestal, pedestal + block)])
 
 
-@TUNED
+@pytest.mark.parametrize("engine, variant", ERRORS)
 @pytest.mark.parametrize("name", SCENES)
 def test_three_impacts_and_the_tilts_up_to_them_are_the_models(engine, variant, name):
     scene, tilt = SCENES[name]
@@ -64,6 +62,7 @@ def test_three_impacts_and_the_tilts_up_to_them_are_the_models(engine, variant, 
     times = np.linspace(0.0, expected[-1, 0], 400)
     time, *tilted = ERRORS[engine, variant]
     assert found[:, 0] == pytest.approx(expected[:, 0], abs=time) and (found[:, 1] == expected[:, 1]).all()
+    assert variant == "fixed-step" or found[:, 2:] == pytest.approx(expected[:, 2:], abs=2.4e-4)  # rad/s, likewise
     assert (np.abs(tilts(run, times) - tilts(model, times)).max(axis=1) <= tilted).all()
     assert run.outcome == model.outcome == "rocks" and run.stack.rocked == model.stack.rocked
 
@@ -75,7 +74,6 @@ def test_the_mirrored_scene_has_the_mirrored_run(engine):
     other = release(get_engine(engine), scene.with_(start=Start(tilt=-scene.start.tilt)), -tilt)
     times = run.history.time
     assert tilts(other, times) == pytest.approx(-tilts(run, times), abs=1e-8)  # the contact solver's residual
-    assert other.impact_count == run.impact_count and other.stack.peak_tilt == pytest.approx(run.stack.peak_tilt)
 
 
 @BOTH
@@ -97,9 +95,8 @@ def test_who_falls_and_all_that_is_compared_are_the_models(engine, scene, outcom
 
 @BOTH
 def test_a_run_without_a_duration_goes_on_until_its_outcome_is_decided(engine):
-    scene = shaken(0.34, 1.5).with_(duration=None)
-    run = get_engine(engine).simulate(scene, compare=False)
-    assert run.outcome == "rocks" and run.decided and run.end.time >= simulate(scene, history=False).end.time
+    run = get_engine(engine).simulate(shaken(0.34, 1.5).with_(duration=None), compare=False)
+    assert run.outcome == "rocks" and run.decided and run.end.time > 4.0
 
 
 def test_a_run_near_a_boundary_or_beyond_the_model_says_so_and_defaults_differ():
@@ -141,7 +138,7 @@ def test_a_run_that_ends_early_has_failed_and_one_that_is_no_stack_is_an_error()
     run = run_of_lies(STILL)
     assert observe_stack(STACK, run, **FAKE).outcome == "stands"
     assert observe_stack(STACK.with_(duration=2.0), run, **FAKE).failure.reason == "the run ended early"
-    with pytest.raises(TypeError, match="no engines.stack.StackTrace"):
+    with pytest.raises(TypeError, match="no engines.swings.StackTrace"):
         observe_stack(STACK, Run(run.trace.pedestal, 1, 0.0), **FAKE)
 
 
@@ -162,10 +159,10 @@ def test_gaps_and_closing_speeds_are_those_of_the_corners(scene, tilt):
     widths = [2 * slab.b * math.sin(abs(each)) for slab, each in zip(pair.slabs, (tilt, scene.start.tilt), strict=True)]
     assert np.sort(gaps) == pytest.approx(np.column_stack([[0.0, 0.0], widths]), abs=1e-15)
     state, speeds = np.array(pair.now).reshape(2, 6), np.random.default_rng(1).normal(size=(2, 3))
-    state[:, [1, 4, 5]], corners = speeds, []
-    for shift in (-1e-6, 0.0, 1e-6):
-        moved = state.copy()
-        moved[:, [0, 2, 3]] += shift * speeds
-        pair.now = moved.ravel().tolist()
-        corners.append(np.array(pair.corners()))
-    assert -corners[1][:, 1] == pytest.approx((corners[2] - corners[0])[:, 0] / 2e-6, abs=1e-8)
+    state[:, [1, 4, 5]] = speeds
+
+    def moved(time):
+        pair.now = (state + time * np.insert(speeds, [1, 3, 3], 0.0, axis=1)).ravel().tolist()
+        return np.array(pair.corners()).T
+
+    assert -moved(0.0)[1] == pytest.approx((moved(1e-6) - moved(-1e-6))[0] / 2e-6, abs=1e-8)
