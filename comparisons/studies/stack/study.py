@@ -193,7 +193,9 @@ def measured(case: Case, response: Response) -> dict[str, Any]:
         "demand": demand,
         "impulse": impulse,
         "closest": stack.closest,
-        "held": "" if pressed and max(demand, impulse) <= FRICTION else "a contact pulls, or slips at any friction",
+        "held": ""
+        if pressed and max(demand, impulse) <= FRICTION
+        else f"a contact pulls, or needs a friction above {FRICTION:g}",
         "simulated": response.end.time,
     }
 
