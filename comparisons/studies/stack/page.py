@@ -11,7 +11,7 @@ from analytic.response import COMPARED, JUDGED
 from engines.comparison import CHANGE, PEAK
 
 from ...execution.results import Result
-from ...plotting.figures import Series, beside, failures, lines, listing, missing, strip
+from ...plotting.figures import Series, beside, failures, lines, missing, strip
 from ...plotting.glance import Glance, counted
 from ...plotting.parts import Head, Page, Table, grouped, table, where
 from ...plotting.wording import NOT_COMPARED, ends, ends_in_words, tally
@@ -139,6 +139,11 @@ def _details(result: Result, counts: Sequence[Row], mountings: Sequence[Row]) ->
     compared = where(scenes, comparable=COMPARED)
     changes = [row["change"] for row in compared if row["change"] is not None] or [math.nan]
     costs = [row["cpu_per_second"] for row in compared] or [math.nan]
+    shifts = where(result.rows, part={"check", "shift"})
+    edges = [
+        edge | {NAME.of(row): row["shift"] and 100 * row["shift"] for row in where(shifts, frequency=edge["frequency"])}
+        for edge in sorted(where(result.rows, part="edge"), key=lambda row: row["frequency"])
+    ]
     causes = [
         {"why": NOT_COMPARED.get(why, why), "share": len(rows) / len(scenes), "which": [row["index"] for row in rows]}
         for (why,), rows in grouped(scenes, "comparable").items() if why != COMPARED
@@ -160,12 +165,12 @@ def _details(result: Result, counts: Sequence[Row], mountings: Sequence[Row]) ->
             where(mountings, way={*WAYS[3:]}),
             *(COLUMNS[name] for name in ("way", "hertz", "fall", "displacement", "outside")),
         ),
-        listing(
+        table(
             "The first fall of the bust on the free pedestal, and its shift in other solvers",
-            sorted(where(result.rows, part="edge"), key=lambda row: row["frequency"]),
-            where(result.rows, part={"shift", "check"}),
-            Column(HERTZ.head, lambda row: row["frequency"] * settings["omega_r"] / (2 * math.pi)),
+            edges,
+            Column(HERTZ.head, lambda row: row["frequency"] * settings["omega_r"] / (2 * math.pi), None),
             Column("peak [g]", lambda row: row["amplitude"] * settings["unit"], 6),
+            *(Column(f"{name} [%]", name) for name in dict.fromkeys(map(NAME.of, shifts))),
         ),
         missing(result),
         Head("Where runs are not compared"),
