@@ -37,7 +37,7 @@ def level_tables(result: Result) -> tuple[Table, ...]:
             NAME,
             LEVEL,
             Column("passes", lambda row: row["verdict"]),
-            Column("missed (at most, 95 %)", lambda row: _missed_in_words(row, bound=True)),
+            Column("missed (at most, 95 %), of these near a boundary", lambda row: _missed_in_words(row, bound=True)),
             OTHER,
             Column("overturning boundaries within it", lambda row: row["edges"]),
             COST,
@@ -140,7 +140,7 @@ def _missed_in_words(counts, bound=False):
     if not upright:
         return "–"
     words = f"{missed} of {upright} ({percent(missed / upright)}"
-    return f"{words}; {percent(wilson(missed, upright)[1])})" if bound else f"{words})"
+    return f"{words}; {percent(wilson(missed, upright)[1])}), {counts['missed_near']}" if bound else f"{words})"
 
 
 def _cost_in_words(cpu):

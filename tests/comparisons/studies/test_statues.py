@@ -263,11 +263,12 @@ def test_the_second_draw_says_whether_an_advised_level_passes():
         for index in range(40)
     ]
     rows[-1] |= {"warned": True}
+    rows[40] |= {"comparable": "on an edge"}  # the first of the three that miss
     made = SimpleNamespace(rows=rows, settings=settings)
     first, second = level_tables(made)
     assert [row[0] for row in first.rows] == ["1 %", "0.1 %", "0.01 %"]
     coarse, unreached, _ = first.rows
-    assert coarse[2:6] == ["stiffness = 10⁹ N/m", "no", "3 of 40 (7.5 %; 20 %)", "0 of 40 (0)"]
+    assert coarse[2:6] == ["stiffness = 10⁹ N/m", "no", "3 of 40 (7.5 %; 20 %), 1", "0 of 40 (0)"]
     assert coarse[-1].endswith("--engine exudyn --set stiffness=1e+09")
     assert unreached[3].startswith("no level held") and unreached[3].endswith("no")
     assert [row[2] for row in second.rows] == ["3 of 40 (7.5 %)", "0 of 40 (0 %)"]
