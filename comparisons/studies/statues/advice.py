@@ -1,4 +1,4 @@
-"""The page's part on levels: which one is advised for an accuracy, and what all levels do on the second draw."""
+"""Which level is advised for an accuracy, in short and in full, and what all levels do on the second draw."""
 
 from collections.abc import Mapping
 from functools import partial
@@ -12,9 +12,38 @@ from ...plotting.parts import Table, grouped, setting_of, table, where
 from ...schemas.columns import NAME, Column, number, percent
 from .levels import ACCURACIES, FALLS, FIRST, SECOND, advised, changed, holds, misses, tally
 
+EXAMPLE = "caryatid-isolated"  # a shipped scene
 LEVEL = Column("level", setting_of)
 COST = Column("CPU time per simulated second: median (range) [ms]", lambda row: _cost_in_words(row["cpu"]))
 OTHER = Column("other outcomes or failed: all (away from a boundary)", "{changed} of {statues} ({away})")
+
+
+def advised_levels(result: Result) -> tuple[Table, ...]:
+    """Return the first screen's table of the levels to use; none without rows of levels."""
+    if not where(result.rows, part="level"):
+        return ()
+    statues = len({row["index"] for row in where(result.rows, part="level", draw=2)})
+    return (
+        table(
+            f"Which level to use, of tuned variants, by {statues} drawn statues. A run keeps an accuracy if its "
+            "outcome is the model's, and peak tilt (over the slenderness) and peak base displacement are within it. ✓: "
+            f"at most {percent(SECOND, 1)} of the statues that stay upright miss it, and no outcome changes away from "
+            "an outcome boundary of the model. ✗: more, at the finest level that was run. CPU time per simulated "
+            "second: median (range)",
+            [row for accuracy in ACCURACIES for row in _advised_rows(result, accuracy)],
+            Column("accuracy, kept in", _kept_in_words),
+            NAME,
+            LEVEL,
+            Column("CPU time [ms]", lambda row: _cost_in_words(row["cpu"])),
+            Column("command, for example", lambda row: row["command"].replace("SCENE", EXAMPLE)),
+        ),
+    )
+
+
+def _kept_in_words(row):
+    """Return an accuracy, how many of the statues that stay upright keep it, and a mark of whether that passes."""
+    kept = f"{row['upright'] - row['missed']} of {row['upright']}"
+    return f"{percent(row['accuracy'], 1)}: {kept} {'✓' if holds(row, SECOND) else '✗'}"
 
 
 def level_tables(result: Result) -> tuple[Table, ...]:
