@@ -9,6 +9,7 @@ import numpy as np
 from ...execution.results import Result
 from ...metrics.statistics import wilson
 from ...plotting.parts import Table, grouped, setting_of, table, where
+from ...plotting.wording import listed
 from ...schemas.columns import NAME, Column, number, percent
 from .levels import ACCURACIES, FALLS, FIRST, SECOND, advised, changed, holds, misses, tally
 
@@ -31,7 +32,7 @@ def advised_levels(result: Result) -> tuple[Table, ...]:
             "an outcome boundary of the model. ✗: more, at the finest level that was run. CPU time per simulated "
             "second: median (range)",
             [row for accuracy in ACCURACIES for row in _advised_rows(result, accuracy)],
-            Column("accuracy, kept in", _kept_in_words),
+            Column("accuracy, kept on", lambda row: f"{percent(row['accuracy'], 1)}: {_kept(row)}"),
             NAME,
             LEVEL,
             Column("CPU time [ms]", lambda row: _cost_in_words(row["cpu"])),
@@ -40,10 +41,23 @@ def advised_levels(result: Result) -> tuple[Table, ...]:
     )
 
 
-def _kept_in_words(row):
-    """Return an accuracy, how many of the statues that stay upright keep it, and a mark of whether that passes."""
-    kept = f"{row['upright'] - row['missed']} of {row['upright']}"
-    return f"{percent(row['accuracy'], 1)}: {kept} {'✓' if holds(row, SECOND) else '✗'}"
+def at_a_glance(result: Result) -> str:
+    """Return sentences on how often the levels to use keep the two coarser accuracies; "" without rows of levels."""
+    if not where(result.rows, part="level"):
+        return ""
+    sentences = []
+    for accuracy in ACCURACIES[:2]:
+        rows = [*_advised_rows(result, accuracy)]
+        kept = listed([f"{_kept(row)} ({row['engine']}, {setting_of(row)})" for row in rows])
+        near = listed([str(row["missed_near"]) for row in rows])
+        others = f"of the others, {near} are near an outcome boundary"
+        sentences.append(f"{percent(accuracy, 1)} is kept on {kept} drawn statues; {others}.")
+    return " ".join(sentences)
+
+
+def _kept(row):
+    """Return on how many of the statues that stay upright an accuracy is kept, and a mark of whether that passes."""
+    return f"{row['upright'] - row['missed']} of {row['upright']} {'✓' if holds(row, SECOND) else '✗'}"
 
 
 def level_tables(result: Result) -> tuple[Table, ...]:
