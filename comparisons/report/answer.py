@@ -273,6 +273,7 @@ def not_to_do(setups: Sequence[Setup]) -> list[str]:
 
 QUESTION = "How far can a multibody engine be trusted with a rocking body, and at what cost?"
 TUNED, DEFAULTS = "tuned", "defaults"
+LEVEL = "Level"  # a line of the first screen
 
 
 def screen(setups: Sequence[Setup], judgements: Sequence[Judgement], glances: Iterable[Glance]) -> dict[str, Any]:
@@ -329,7 +330,7 @@ def lines(
     pairs = [
         ("Restitution (0 to 1)", _restitution(setups, judgements)),
         ("Outcomes", " ".join(filter(None, (_outcomes(shares), _left_out(shares))))),
-        ("Level", says.get("level", "")),
+        (LEVEL, says.get("level", "")),
         ("Cost", says.get("cost", "")),
         ("Real blocks", says.get("real", "")),
     ]
@@ -374,11 +375,7 @@ def _outcomes(shares):
     first = [share for share in shares if share.motions == motions]
     groups = (
         (f"under {motions}, {{0}} end otherwise than the model, or fail, in {{1}}", _changed_by_engine, first),
-        (
-            "In {1} more runs, {0} fall as the model does, but at another time",
-            _late_by_engine,
-            first if any(share.late for share in first) else [],
-        ),
+        ("{0} fall at another time in {1} more", _late_by_engine, first if any(share.late for share in first) else []),
         (
             "Under all other motions, {0} end otherwise in {1}",
             _all_motions,
@@ -390,7 +387,10 @@ def _outcomes(shares):
         kinds = ((who, _of_kind(chosen, kind)) for kind, who in ((TUNED, "tuned engines"), (DEFAULTS, "with defaults")))
         counts = [(who, count(members)) for who, members in kinds if members]
         if counts:
-            sentences.append(f"{words.format(*counts[0])}{''.join(f'; {who}, in {runs}' for who, runs in counts[1:])}.")
+            first_words = words.format(*counts[0])
+            sentences.append(
+                f"{first_words[:1].upper() if sentences else first_words[:1]}{first_words[1:]}{''.join(f'; {who}, in {runs}' for who, runs in counts[1:])}."
+            )
     return " ".join(sentences)
 
 
@@ -418,7 +418,7 @@ def _left_out(shares):
     for (motions,), members in grouped(_of_kind(shares, TUNED), lambda share: share.motions).items():
         counts = dict.fromkeys(f"{share.left_out} of {share.runs + share.left_out}" for share in members)
         parts.append(f"{' or '.join(counts)} ({motions})")
-    return f"Left out are runs near an outcome boundary: of each tuned engine, {listed(parts)}." if parts else ""
+    return f"Left out, near an outcome boundary: of each tuned engine {listed(parts)}." if parts else ""
 
 
 MOST_WARNINGS = 3  # of a scene, at the top of the page

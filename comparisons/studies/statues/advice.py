@@ -13,6 +13,7 @@ from ...plotting.wording import listed
 from ...schemas.columns import NAME, Column, number, percent
 from .levels import ACCURACIES, FALLS, FIRST, SECOND, advised, changed, holds, misses, tally
 
+ASKED = ACCURACIES[:2]  # on the first screen
 EXAMPLE = "caryatid-isolated"  # a shipped scene
 LEVEL = Column("level", setting_of)
 COST = Column("CPU time per simulated second: median (range) [ms]", lambda row: _cost_in_words(row["cpu"]))
@@ -26,12 +27,11 @@ def advised_levels(result: Result) -> tuple[Table, ...]:
     statues = len({row["index"] for row in where(result.rows, part="level", draw=2)})
     return (
         table(
-            f"Which level to use, of tuned variants, by {statues} drawn statues. A run keeps an accuracy if its "
-            "outcome is the model's, and peak tilt (over the slenderness) and peak base displacement are within it. ✓: "
-            f"at most {percent(SECOND, 1)} of the statues that stay upright miss it, and no outcome changes away from "
-            "an outcome boundary of the model. ✗: more, at the finest level that was run. CPU time per simulated "
-            "second: median (range)",
-            [row for accuracy in ACCURACIES for row in _advised_rows(result, accuracy)],
+            f"Level to use, by {statues} drawn statues. Kept: the outcome is the model's, and peak tilt (over the "
+            "slenderness) and base displacement are within the accuracy. ✓: at most "
+            f"{percent(SECOND, 1)} of those that stay upright miss it, and no outcome changes away from a boundary. ✗: "
+            "more, at the finest level. CPU time per simulated second: median (range)",
+            [row for accuracy in ASKED for row in _advised_rows(result, accuracy)],
             Column("accuracy, kept on", lambda row: f"{percent(row['accuracy'], 1)}: {_kept(row)}"),
             NAME,
             LEVEL,
@@ -42,16 +42,17 @@ def advised_levels(result: Result) -> tuple[Table, ...]:
 
 
 def at_a_glance(result: Result) -> str:
-    """Return sentences on how often the levels to use keep the two coarser accuracies; "" without rows of levels."""
+    """Return sentences on how often the levels to use keep `ASKED`; "" without rows of levels."""
     if not where(result.rows, part="level"):
         return ""
     sentences = []
-    for accuracy in ACCURACIES[:2]:
+    for accuracy in ASKED:
         rows = [*_advised_rows(result, accuracy)]
         kept = listed([f"{_kept(row)} ({row['engine']}, {setting_of(row)})" for row in rows])
         near = listed([str(row["missed_near"]) for row in rows])
-        others = f"of the others, {near} are near an outcome boundary"
-        sentences.append(f"{percent(accuracy, 1)} is kept on {kept} drawn statues; {others}.")
+        sentences.append(
+            f"{percent(accuracy, 1)} is kept on {kept} drawn statues ({near} of the others: near a boundary)."
+        )
     return " ".join(sentences)
 
 

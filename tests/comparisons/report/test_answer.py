@@ -127,7 +127,7 @@ def test_the_first_screen_counts_outcomes_that_are_changed_of_subject_engines():
     sentences = dict(lines(SETUPS, (JUDGED,), kept, {}))
     counts = (
         "in 1 of 170 (exudyn) runs; with defaults, in 10 of 50 (exudyn) runs.",
-        "In 2 (exudyn) more runs, tuned engines fall",
+        "Tuned engines fall at another time in 2 (exudyn) more",
         "7 of 80 runs (7 under",
         "30 of 200 (recorded motions) and 20 of 100 (a table)",
     )
