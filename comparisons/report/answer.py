@@ -388,9 +388,9 @@ def _outcomes(shares):
         counts = [(who, count(members)) for who, members in kinds if members]
         if counts:
             first_words = words.format(*counts[0])
-            sentences.append(
-                f"{first_words[:1].upper() if sentences else first_words[:1]}{first_words[1:]}{''.join(f'; {who}, in {runs}' for who, runs in counts[1:])}."
-            )
+            begin = first_words[:1].upper() if sentences else first_words[:1]
+            others = "".join(f"; {who}, in {runs}" for who, runs in counts[1:])
+            sentences.append(f"{begin}{first_words[1:]}{others}.")
     return " ".join(sentences)
 
 
