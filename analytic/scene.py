@@ -461,7 +461,7 @@ class Scene(Part):
 def refuse_free(scene: Scene, what: str) -> None:
     """Raise `SceneError` where the pedestal is free; what : that does not know it, in words."""
     if scene.is_stack:
-        remedy = "remove it: the pedestal is then fixed to what carries it"
+        remedy = "leave the line free = true out: the pedestal is then fixed"
         raise SceneError("pedestal.free", True, f"not supported by {what}", remedy, scene.name or None)
 
 

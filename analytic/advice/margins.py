@@ -11,8 +11,8 @@ step is always found. Where narrow bands of outcomes alternate, the boundary is 
 about the scene is then scanned again in steps `FINER` times smaller, and the margin says so, as the gap may contain
 still narrower bands.
 
-With a free pedestal only the motion is changed, in steps of `STACK_STEP` at least and without the second scan, as a run
-takes a thousand times as long.
+With a free pedestal only motion or start is changed, in steps of `STACK_STEP` at least and without the second scan, as
+a run takes a thousand times as long.
 """
 
 from __future__ import annotations
@@ -44,6 +44,7 @@ SPAN, STEP = 0.2, 5e-4
 LARGEST_SPAN = 9.0  # ten times the motion: a record of 0.1 g then has 1 g
 MOST_STEPS = 2e9  # of all runs, some twenty minutes on two cores
 BISECTIONS = 14  # boundaries are located to 6e-5 of a step
+STACK_QUANTITIES = ("motion", "start")
 STACK_STEP, STACK_BISECTIONS = 0.01, 7  # of a scene with a free pedestal: boundaries to 1e-4 of the motion
 _outcome = attrgetter("outcome")
 FINER = 20  # factor between the steps of the two scans of an interleaved margin
@@ -307,7 +308,7 @@ def margins(
         f"step = {step!r}: give the relative distance of two changes, from 1e-6 to the span {span:g}",
     )
     scene = scene.with_(duration=None)
-    step, only = (max(step, min(STACK_STEP, span)), ("motion",)) if scene.is_stack else (step, only)
+    step, only = (max(step, min(STACK_STEP, span)), STACK_QUANTITIES) if scene.is_stack else (step, only)
     count = math.floor(span / step * (1 + 1e-12))
     changes = step * np.arange(-count, count + 1)
     changes = changes[1 + changes > 0.5 * step]  # closer to -1 the quantity almost vanishes
@@ -436,7 +437,7 @@ def _states(scene, name, changes, scenes, tilt, workers):
     states : array (changes, LIMIT_STATES and one more): those reached, and whether the model is valid.
     """
     if scene.is_stack:
-        return _stack_states(scene, changes, tilt)
+        return _stack_states(scene, name, changes, tilt)
     if scenes is None:
         scenes = [QUANTITIES[name].changed(scene, 1 + change) for change in changes]
     scales = 1 + changes if name == "motion" else None
@@ -458,12 +459,15 @@ def _states(scene, name, changes, scenes, tilt, workers):
     return reached, outcomes.failed
 
 
-def _stack_states(scene, changes, tilt):
-    """Return what `_states` does, of a scene with a free pedestal under its motion times 1 + each change."""
+def _stack_states(scene, name, changes, tilt):
+    """Return what `_states` does, of a scene with a free pedestal."""
     farthest = scene.bearings.x_max if "stroke" in limit_states(scene) else math.inf
     rows = []
-    for change in changes.tolist():
-        run = simulate(scene.with_(motion=scene.motion.scaled(1 + change)), history=False)
+    for factor in (1 + changes).tolist():
+        changed = QUANTITIES[name].changed(scene, factor)
+        run = simulate(
+            changed.with_(motion=scene.motion.scaled(factor)) if name == "motion" else changed, history=False
+        )
         reached = {
             "lifts": run.stack is not None and bool(run.stack.rocked),
             "tilt": run.peak_tilt_ratio > tilt or run.outcome == FALLS[1],

@@ -178,15 +178,19 @@ class Run:
         self.corner = self.law.unit.begin.py_func(self.travel, z, 1.0, self.law.constants)[2]
 
     def settle(self) -> None:
-        """Let interfaces in full contact open where their centres of pressure are beyond a corner, as after a jump."""
+        """Let interfaces in full contact open where their centres of pressure are beyond a corner, as after a jump.
+
+        After one a normal force may be negative, too.
+        """
         shut = [side == 0 for side in self.sides]
         loads = self.ground(self.t), self.force(self.y), self.vertical(self.t)
         sides = self.model.opened(self.sides, shut, *self.absolute(self.y), *loads)
-        if sides is None:
-            raise _Ended(LOST)
         for k in (LOWER, UPPER):
-            if sides[k] != self.sides[k]:
+            if sides and sides[k] != self.sides[k]:
                 self.open(k, sides[k])
+        if not sides or (np.abs(self.y[:4:2]) < FALLING).all() and min(self.instant(self.t, self.y).normal) <= 0:
+            self.keep(self.t, self.y)
+            raise _Ended(LOST)
 
     def open(self, k: int, side: int) -> None:
         self.sides[k], self.lifted[k] = side, self.t
@@ -220,12 +224,12 @@ class Run:
         times = np.array([times[0] - width, *times, end + width])  # beyond both ends: minima there
         states = dense(times).T
         rows = [self.watch(t, y) for t, y in zip(times.tolist(), states, strict=True)]
-        keys, table, until, event = list(rows[0]), np.array([[*row.values()] for row in rows]), end, None
+        keys, table, until, event = list(rows[0]), np.array([[*row.values()] for row in rows]), math.inf, None
         for i, j in zip(*np.nonzero(suspect(table)), strict=True):
             if times[i] <= until and (root := self.root(keys[j], times, table[:, j], i, dense)) < until:
                 until, event = root, keys[j]
         for t, y in zip(times[1:-1].tolist(), states[1:-1], strict=True):
-            if t < until or event is None:
+            if t < until:
                 self.keep(t, y)
         if event:
             self.t, self.y = until, dense(until).ravel()
@@ -234,21 +238,24 @@ class Run:
         return event is not None
 
     def root(self, key: tuple[str, int], times: np.ndarray, values: np.ndarray, i: int, dense: Callable) -> float:
-        """Return the time [s] of an event after point i, or at a minimum beside it; inf where that is above 0."""
+        """Return the time [s] of an event after point i, or at a minimum beside it; inf where that is above 0.
+
+        At it the function is 0 or less, so that the event is not found again.
+        """
 
         def value(t: float) -> float:
             return self.watch(t, dense(t).ravel())[key]
 
-        low, high = float(times[i]), float(times[i + 1])
-        if values[i + 1] > 0 or i > POINTS:
+        low, high, crosses = float(times[i]), float(times[i + 1]), values[i + 1] <= 0 and i <= POINTS
+        if not crosses:
             low, high = float(times[max(i - 1, 1)]), float(times[min(i + 1, POINTS + 1)])
             high = float(minimize_scalar(value, bounds=(low, high), method="bounded", options={"xatol": 1e-9}).x)
-            if not value(low) > 0 >= value(high):
-                return math.inf
-        root = brentq(value, low, high, xtol=1e-16, rtol=1e-15)
-        while value(root) > 0:  # beyond the event, so that it is not found again
+        if not value(low) > 0 >= value(high):  # at a crossing by rounding alone, as many points are read at once
+            return (low if value(low) <= 0 else high) if crosses else math.inf
+        root = float(brentq(value, low, high, xtol=1e-16, rtol=1e-15))
+        while value(root) > 0:
             root = min(root + 4 * math.ulp(root), high)
-        return float(root)
+        return root
 
     def keep(self, t: float, y: np.ndarray) -> None:
         """Include a state in the extremes and the history."""
@@ -257,8 +264,9 @@ class Run:
         demands = [abs(along) / normal if normal > 0 else math.inf for along, normal in zip(*now[2:4], strict=True)]
         least = [-normal / weight for normal, weight in zip(now.normal, self.weights, strict=True)]
         self.most = np.maximum(self.most, [abs(x), abs(now.a), *demands, *least])
-        if self.rows is not None:
-            self.rows.append((t, psi, turn, x, v, self.force(y), self.ground(t), tilt))
+        row = t, psi, turn, x, v, self.force(y), self.ground(t), tilt
+        if self.rows is not None and row not in self.rows[-1:]:  # two rows of a time are before and after an impact
+            self.rows.append(row)
 
     def apply(self, event: str, k: int) -> None:
         """Apply an event at interface k; the largest tilt of a swing, "turn", needs nothing more."""

@@ -93,7 +93,7 @@ def test_halves_that_stay_together_are_one_block():
     before = two.history.time < one.impacts[0].time
     assert two.stack.impacts[0].time == pytest.approx(one.impacts[0].time, abs=1e-12)
     assert two.stack.impacts[0].rate_before == pytest.approx(one.impacts[0].rate_before, abs=1e-12)
-    assert not two.history.tilt[before].any() and before.sum() > 50
+    assert not two.history.tilt[before].any() and before.sum() > 20
 
 
 @pytest.mark.parametrize("name", ("leaning", "opposite", "joined"))
