@@ -367,8 +367,7 @@ def _for_scene(place, base_mass, stroke, tilt, options, many, write, plot, json_
     options |= {"gravity": scene.gravity} if "designer" in options else {}
     with bar(f"{scene.name}: bearings") as progress, named_by_options(OF_SCENE), in_file(place):
         scan = scan_bearings(scene, motions, stroke, tilt=tilt, **options, progress=progress)
-        if "designer" in options:
-            scan = scan.among(lambda pendula: not bearing_sizes(pendula, scene.total_mass, scene.gravity).reasons)  # type: ignore[union-attr]  # pendula have sizes
+        scan = scan.among(lambda bearings: not bearing_sizes(bearings, scene.total_mass, scene.gravity).reasons)  # type: ignore[union-attr]  # with x_max they have sizes
     points = {LEAST: scan.least_stroke, SOFTEST: scan.softest}  # (period, damping), None without any
     chosen = {name: _chosen(scene, scan, point, groups, left) for name, point in points.items() if point is not None}
     nothing = "" if chosen else nothing_holds(scene, scan, stroke, tilt, motions)

@@ -356,9 +356,11 @@ def odds(rows: Sequence[Mapping[str, Any]], outcomes: Sequence[str], word: str) 
     known = [hit for hit in hits.values() if not math.isnan(hit)]
     if not known:
         return f"{word} under no {unit_of(rows)} that could be run"
+    told = f"{word} under {sum(known):.0f} of {counted(rows, len(known))}"
+    if len(known) == 1:  # no sample
+        return told
     low, high = wilson(int(sum(known)), len(known))
-    interval = f"({number(100 * low, 2)} to {percent(high)} at 95 %)"
-    return f"{word} under {sum(known):.0f} of {counted(rows, len(known))} {interval}"
+    return f"{told} ({number(100 * low, 2)} to {percent(high)} at 95 %)"
 
 
 HELD = "#009E73"  # Okabe and Ito
@@ -397,6 +399,10 @@ def print_bearings(
     if len({(design["period"], design["damping"]) for design in chosen.values()}) == 1:
         chosen = {" and ".join(chosen): next(iter(chosen.values()))}
     swings = any(design["sizes"] and design["sizes"].kind == "pendulum" for design in chosen.values())
+    unmade = [name for name, design in chosen.items() if design["sizes"] and design["sizes"].reasons]
+    held = "hold" if unmade else "hold and are made"
+    if unmade:
+        echo(f"Warning: no such bearings are made: {' and '.join(unmade)}; the reasons are below the table.", wrap=True)
     rows = {
         "secant period at the stroke [s]": "{period:.3g}",
         "equivalent damping at the stroke": "{damping:.3g}",
@@ -409,7 +415,7 @@ def print_bearings(
     cells = [[label, *(form.format(**design) for design in chosen.values())] for label, form in rows.items()]
     echo(
         grid(["bearings", *chosen], cells, wraps=["bearings", *chosen]),
-        f"Of bearings {_scan_words(scan)}, {percent(float(np.mean(scan.demand <= 1)))} hold.",
+        f"Of bearings {_scan_words(scan)}, {percent(float(np.mean(scan.demand <= 1)))} {held}.",
         *(words for design in chosen.values() for words in motion_warnings(design["motions"])),
         *(
             f"{'On the ' + name + ' bearings: ' if len(chosen) > 1 else ''}{sentence}"

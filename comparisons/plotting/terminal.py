@@ -29,6 +29,7 @@ from engines.simulating import in_words
 from ..execution.progress import stdout_to_stderr
 from ..execution.writing import readable
 from ..metrics.errors import Horizon
+from ..schemas.columns import percent
 from .parts import grouped
 from .wording import MOST_NAMED, differing, listed, outcomes
 
@@ -144,7 +145,7 @@ def summary(scene: Scene, response: Response) -> Grid:
         **({"falls off at [s]": digits(response.end.time, ".6g")} if response.outcome == FALLS[0] else {}),
         "peak tilt [rad]": digits(response.peak_tilt),
         "peak tilt / slenderness": digits(response.peak_tilt_ratio),
-        "peak base displacement [m]": digits(response.peak_base_displacement),
+        "peak base displacement [m]": digits(response.peak_base_displacement) + _travel(scene, response),
         "peak base acceleration [m/s2]": digits(response.peak_base_acceleration),
         "impacts": str(response.impact_count),
         **_slip(response),
@@ -155,6 +156,12 @@ def summary(scene: Scene, response: Response) -> Grid:
         "steps": str(response.steps),
     }
     return named_values(rows, title)
+
+
+def _travel(scene, response):
+    """Return in words which share of x_max the base has used, if it is known."""
+    limit, peak = scene.bearings and scene.bearings.x_max, response.peak_base_displacement
+    return "" if limit is None or math.isnan(peak) else f", {percent(peak / limit)} of x_max"
 
 
 def _slip(response):

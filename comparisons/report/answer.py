@@ -326,11 +326,10 @@ def lines(
     setups: Sequence[Setup], judgements: Sequence[Judgement], shares: Sequence[Endings], says: Mapping[str, str]
 ) -> list[tuple[str, str]]:
     """Return up to five lines, (subject, sentences); those without a result are left out."""
-    near = " ".join(filter(None, (_left_out(shares), says.get("near", ""))))
     pairs = [
-        ("Restitution", _restitution(setups, judgements)),
-        ("Outcomes", _outcomes(shares)),
-        ("Near outcome boundaries", near),
+        ("Restitution (0 to 1)", _restitution(setups, judgements)),
+        ("Outcomes", " ".join(filter(None, (_outcomes(shares), _left_out(shares))))),
+        ("Level", says.get("level", "")),
         ("Cost", says.get("cost", "")),
         ("Real blocks", says.get("real", "")),
     ]
@@ -356,19 +355,15 @@ def _restitution(setups, judgements):
     head = next((judgement.heading for judgement in judgements if judgement.key == RESTITUTION), None)
     columns = [setup for setup in setups if setup.in_first_table and head]
     parts = []
-    for tier, how, begin in (
-        (TUNED, "Tuned", "tuned engines reproduce it to within"),
-        (DEFAULTS, "With defaults", "With defaults the error is"),
-    ):
+    for tier, begin in ((TUNED, "tuned engines are off by"), (DEFAULTS, "With defaults, engines are off by")):
         marks = {setup.engine: setup.marks[head] for setup in columns if setup.tier == tier}
         known = {engine: mark for engine, mark in marks.items() if mark.value is not None}
         if known:
-            parts.append(f"{begin} {_by_engine({engine: number(mark.value, 2) for engine, mark in known.items()})}.")
-        deaf = [engine for engine, mark in known.items() if "missed" in mark.words]
-        if deaf:
+            deaf = [engine for engine, mark in known.items() if "missed" in mark.words]
             who = "both" if len(deaf) == len(known) == 2 else listed(deaf)
-            parts.append(f"{how}, {who} miss{'es' * (len(deaf) == 1)} impacts.")
-    return f"{' '.join(parts)} Measured is the {head}. Restitution lies between 0 and 1." if parts else ""
+            missing = f", and {who} miss{'es' * (len(deaf) == 1)} impacts" if deaf else ""
+            parts.append(f"{begin} {_by_engine({who: number(mark.value, 2) for who, mark in known.items()})}{missing}.")
+    return f"{' '.join(parts)} This is the {head}." if parts else ""
 
 
 def _outcomes(shares):
@@ -378,33 +373,33 @@ def _outcomes(shares):
     )
     first = [share for share in shares if share.motions == motions]
     groups = (
-        (f"under {motions}, {{}} end otherwise than the model, or fail, in {{}}.", _changed_by_engine, first),
+        (f"under {motions}, {{0}} end otherwise than the model, or fail, in {{1}}", _changed_by_engine, first),
         (
-            "In {1}, {0} overturn as the model does, but at another time.",
+            "In {1} more runs, {0} fall as the model does, but at another time",
             _late_by_engine,
             first if any(share.late for share in first) else [],
         ),
         (
-            "Under all other motions, {} end otherwise than the model, or fail, in {}.",
+            "Under all other motions, {0} end otherwise in {1}",
             _all_motions,
             [share for share in shares if share.motions != motions],
         ),
     )
     sentences = []
     for words, count, chosen in groups:
-        kinds = ((who, _of_kind(chosen, kind)) for kind, who in ((TUNED, "tuned engines"), (DEFAULTS, "defaults")))
+        kinds = ((who, _of_kind(chosen, kind)) for kind, who in ((TUNED, "tuned engines"), (DEFAULTS, "with defaults")))
         counts = [(who, count(members)) for who, members in kinds if members]
-        sentences += [words.format(*counts[0])] if counts else []
-        sentences += [f"With {who}, this happens in {runs}." for who, runs in counts[1:]]
+        if counts:
+            sentences.append(f"{words.format(*counts[0])}{''.join(f'; {who}, in {runs}' for who, runs in counts[1:])}.")
     return " ".join(sentences)
 
 
 def _changed_by_engine(shares):
-    return _by_engine({share.engine: f"{share.changed} of {share.runs}" for share in shares}) + " runs"
+    return f"{_by_engine({share.engine: f'{share.changed} of {share.runs}' for share in shares})} runs"
 
 
 def _late_by_engine(shares):
-    return _by_engine({share.engine: str(share.late or 0) for share in shares}) + " more runs"
+    return _by_engine({share.engine: str(share.late or 0) for share in shares})
 
 
 def _all_motions(shares):
@@ -423,7 +418,7 @@ def _left_out(shares):
     for (motions,), members in grouped(_of_kind(shares, TUNED), lambda share: share.motions).items():
         counts = dict.fromkeys(f"{share.left_out} of {share.runs + share.left_out}" for share in members)
         parts.append(f"{' or '.join(counts)} ({motions})")
-    return f"these counts leave out runs near a boundary: of each tuned engine, {listed(parts)}." if parts else ""
+    return f"Left out are runs near an outcome boundary: of each tuned engine, {listed(parts)}." if parts else ""
 
 
 MOST_WARNINGS = 3  # of a scene, at the top of the page
