@@ -21,7 +21,7 @@ from .kernel.compiled import inner
 from .kernel.polynomial import INVERSE
 
 if TYPE_CHECKING:
-    from .errors import Values
+    from .errors import GroundFunction, Values
 
 # A Ricker wavelet is unbounded; cut to four periods around its centre it has a jump below 1e-15 of the amplitude.
 RICKER_PERIODS = 4.0
@@ -403,3 +403,50 @@ def _padded(samples: np.ndarray, count: int, step: float, label: str, notes: lis
     if missing:
         notes.append(f"{label}: {missing * step:.6g} s of zeros put at its end, as the other component is longer")
     return np.append(samples, np.zeros(missing))
+
+
+def shared_segments(
+    motion: Motion | None, duration: float
+) -> list[tuple[float, float, GroundFunction, GroundFunction]]:
+    """Return [(start, end, a_g(t), a_v(t)), ...] as `segments` does: both are smooth and monotone on each."""
+    level = segments(motion, duration)
+    if motion is None or motion.vertical is None:
+        return [(*piece, _line(0.0, 0.0, 0.0)) for piece in level]
+    upright = segments(motion.vertical, duration)
+    cuts = sorted({end for pieces in (level, upright) for _, end, _ in pieces})
+    shared, start, i, j = [], 0.0, 0, 0
+    for end in cuts:
+        shared.append((start, end, level[i][2], upright[j][2]))
+        start, i, j = end, i + (level[i][1] == end), j + (upright[j][1] == end)
+    return shared
+
+
+def segments(motion: Motion | None, duration: float) -> list[tuple[float, float, GroundFunction]]:
+    """Return [(start, end, a_g(t)), ...] from 0 to duration [s]: on each, a_g is smooth, and monotone inside.
+
+    A record has one per interval; pulses are cut at their zeros and extremes. a_g takes floats.
+    """
+    if isinstance(motion, SampledMotion):
+        dt, samples = motion.dt, motion.samples.tolist()
+        pieces = [
+            (i * dt, (i + 1) * dt, _line(i * dt, a, (b - a) / dt))
+            for i, (a, b) in enumerate(zip(samples[:-1], samples[1:], strict=True))
+        ]
+    elif motion is not None:
+        turns = motion.form.turns(motion.form.length, motion.phase)
+        cuts = [motion.start + u / motion.frequency for u in turns[:-1]] + [motion.end]
+        pieces = [(0.0, motion.start, _line(0.0, 0.0, 0.0))]
+        pieces += [(a, b, _pulse(motion)) for a, b in zip(cuts[:-1], cuts[1:], strict=True)]
+    else:
+        pieces = []
+    pieces.append((pieces[-1][1] if pieces else 0.0, math.inf, _line(0.0, 0.0, 0.0)))
+    return [(a, min(b, duration), ground) for a, b, ground in pieces if a < min(b, duration)]
+
+
+def _line(start: float, value: float, slope: float) -> GroundFunction:
+    return lambda t: value + slope * (t - start)
+
+
+def _pulse(motion: PulseMotion) -> GroundFunction:
+    a, w, start, phase, value = motion.amplitude, motion.frequency, motion.start, motion.phase, motion.form.value
+    return lambda t: a * value(math, w * (t - start) + phase)

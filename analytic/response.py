@@ -1,13 +1,13 @@
 """The response of a simulation, the same for every solver.
 
 An outcome is “stands” (never lifted), “slides” (slid on its support, never lifted), “rocks” (lifted, stayed upright),
-“falls off”, “overturns” or “failed” (with the reason). A block that slides falls off its pedestal when its centre of
-pressure leaves the width or, where it is tilted, its pivot corner does; the run ends there. A block past its balance
-overturns wherever its corner is. A run continues until its outcome is *decided*: the remaining energy can no
-longer overturn the block, or the block is certain to overturn (``analytic/kernel/decision.py`` says when), and the
-peaks are final. A run that a ``duration`` ends earlier is **undecided**: tables say “undecided (rocks so far)”, JSON
-has ``"decided": false``. A longer duration would not change a decided outcome. A base that oscillates below a block
-that will not lift again is followed for a hundred periods.
+“falls off”, “overturns”, “pedestal overturns” (a free one) or “failed” (with the reason). A block that slides falls off
+its pedestal when its centre of pressure leaves the width or, where it is tilted, its pivot corner does; the run ends
+there. A block past its balance overturns wherever its corner is. A run continues until its outcome is *decided*: the
+remaining energy can no longer overturn the block, or the block is certain to overturn
+(``analytic/kernel/decision.py`` says when), and the peaks are final. A run that a ``duration`` ends earlier is
+**undecided**: tables say “undecided (rocks so far)”, JSON has ``"decided": false``. A longer duration would not change
+a decided outcome. A base that oscillates below a block that will not lift again is followed for a hundred periods.
 
 If the block overturns, base peaks and contact forces are those up to the last passage of |tilt| = slenderness. During
 the fall that follows a real block slides.
@@ -44,9 +44,10 @@ import numpy as np
 if TYPE_CHECKING:
     from .scene import Scene
 
-OUTCOMES = ("stands", "slides", "rocks", "falls off", "overturns", "failed")  # the worse, the later
+# the worse, the later
+OUTCOMES = ("stands", "slides", "rocks", "falls off", "overturns", "pedestal overturns", "failed")
 LEVEL = OUTCOMES[:2]  # of a block that never lifted
-FALLS = OUTCOMES[3:5]
+FALLS = OUTCOMES[3:6]
 # Quantities of a `Difference`, in words. Restitution: at the matched impact with the largest error. Missing and extra
 # impacts: numbers of impacts that count, with and without a match. Loss: 1 - e^2. Times: of a block that overturns; a
 # fall begins at the last passage of the slenderness.
@@ -107,13 +108,14 @@ class History:
     bearing_force: np.ndarray
     ground_acceleration: np.ndarray
     slip: np.ndarray | None = None  # m, of the block on its support; None of a block that does not slide
+    pedestal_tilt: np.ndarray | None = None  # rad, of a free pedestal; the block's tilt is that from the pedestal
 
     COLUMNS = (*(column.name for column in dataclasses.fields(State)), "ground_acceleration")
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Return the names of its columns: `COLUMNS`, and the slip where the block slides."""
-        return self.COLUMNS if self.slip is None else (*self.COLUMNS, "slip")
+        """Return the names of its columns: `COLUMNS`, the slip where the block slides, the tilt of a free pedestal."""
+        return (*self.COLUMNS, *(name for name in ("slip", "pedestal_tilt") if getattr(self, name) is not None))
 
     def to_csv(self, path: str | PathLike[str] | TextIO) -> None:
         """Write the columns with a header line; `path` is a file name or an open text file."""
@@ -159,6 +161,31 @@ class Sliding:
     modes: tuple[tuple[float, str], ...]
 
 
+@dataclass(frozen=True)
+class Stack:
+    """The free pedestal under a block, whose own tilts, impacts and forces are then those on the pedestal.
+
+    rocked: which of "pedestal" and "statue" lifted. peak_tilt, statue_tilt: largest absolute tilts of pedestal and
+    block [rad]. impacts, uplifts, rests: of the pedestal on its support. friction_demand, min_normal_ratio: largest
+    |H|/N, and least N over the weight of both, of the support on the pedestal, up to a fall. impulses: largest ratio of
+    the impulses along and off the contact at an impact, of pedestal and block. closest: least time between two landings
+    in a row, one of each, as a share of the block's rocking period: the order of landings at once is undetermined; None
+    without such landings.
+    """
+
+    rocked: tuple[str, ...]
+    peak_tilt: float
+    statue_tilt: float
+    impacts: tuple[Impact, ...]
+    uplifts: tuple[float, ...]
+    rests: tuple[float, ...]
+    friction_demand: float
+    min_normal_ratio: float
+    impulses: tuple[float, float]
+    closest: float | None
+
+
+STACKED = ("rocked", "uplifts", "rests", "impulses")  # fields that are tuples of words or numbers
 ROUNDING, NO_EDGE = 1e-6, "Without a friction the block does not slide: the edge of its pedestal plays no part."
 KINDS = ("record", "model", "limit", "motion", "engine")
 
@@ -263,6 +290,7 @@ class Response:
     failure: Failure | None = None
     energy: Energy | None = None
     sliding: Sliding | None = None  # of a block that slides, or may: the scene gives a friction that is exhausted
+    stack: Stack | None = None  # of a block on a free pedestal
     history: History | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
@@ -309,7 +337,7 @@ class Response:
         values may lack cpu_seconds. history: the `History` of the response.
         """
         values = {name: value for name, value in values.items() if name != "impact_count"}
-        failure, energy, sliding = (values.get(name) for name in ("failure", "energy", "sliding"))
+        failure, energy, sliding, stack = (values.get(name) for name in ("failure", "energy", "sliding", "stack"))
         if failure is not None:
             failure = Failure(**{**failure, "last_state": failure["last_state"] and _of(State, failure["last_state"])})
         numbers = {part.name: _number(values.get(part.name)) for part in dataclasses.fields(cls) if part.type is float}
@@ -318,6 +346,7 @@ class Response:
             name: tuple(kind(**entry) for entry in values.get(name, ()))
             for name, kind in (("warnings", Caution), ("differences", Difference))
         }
+        landings = tuple(_of(Impact, impact) for impact in (stack or values)["impacts"])
         return cls(
             **{
                 **values,
@@ -329,6 +358,8 @@ class Response:
                 "energy": energy and Energy(**energy),
                 "sliding": sliding
                 and Sliding(**{**sliding, "modes": tuple((t, mode) for t, mode in sliding["modes"])}),
+                "stack": stack
+                and Stack(**{**stack, **{name: tuple(stack[name]) for name in STACKED}, "impacts": landings}),
                 "history": history,
             }
         )

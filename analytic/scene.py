@@ -240,7 +240,8 @@ class Pedestal(Part):
     """The pedestal that the block stands on, centred at the start.
 
     width [m], along the motion: a block that slides beyond it falls off. mass [kg] and height [m], of a homogeneous
-    rectangle: with both, `analytic.advice.pedestal` says whether the pedestal stays on what carries it.
+    rectangle: with both, `analytic.advice.pedestal` says whether the pedestal stays on what carries it. free: it is not
+    fixed to what carries it, and may lift and rock (`analytic.stack`).
     """
 
     table: ClassVar[str] = "pedestal"
@@ -248,9 +249,12 @@ class Pedestal(Part):
     width: Positive
     mass: Positive | None = None
     height: Positive | None = None
+    free: bool = False
 
     @model_validator(mode="after")
     def _is_whole(self) -> Self:
+        if self.free and self.mass is None and self.height is None:
+            raise SceneError("pedestal.mass", None, "missing", "a free pedestal needs a mass and a height")
         if (self.mass is None) != (self.height is None):
             name = "mass" if self.mass is None else "height"
             raise SceneError(f"pedestal.{name}", None, "missing", "give mass and height, or neither")
@@ -368,6 +372,14 @@ class Scene(Part):
             raise SceneError(
                 "pedestal.width", self.pedestal.width, "narrower than the block", f"give at least {wide:.6g} m"
             )
+        for key, value, problem in (
+            ("friction", self.friction, "on a free pedestal nothing slides"),
+            ("block.restitution", self.block.restitution, "on a free pedestal the law of impact gives it"),
+            ("start.tilt_rate", self.start.tilt_rate or None, "a stack starts without a velocity"),
+            ("start.base_velocity", self.start.base_velocity or None, "a stack starts without a velocity"),
+        ):
+            if self.is_stack and value is not None:
+                raise SceneError(key, value, problem, "remove it, or the line free = true")
         return self
 
     @model_validator(mode="after")
@@ -397,6 +409,11 @@ class Scene(Part):
     def base_mass(self) -> float:
         """Return m_b [kg], the mass of the base and of a pedestal on it; 0 on rigid ground."""
         return 0.0 if self.base is None else self.base.mass + ((self.pedestal and self.pedestal.mass) or 0.0)
+
+    @property
+    def is_stack(self) -> bool:
+        """Return whether the pedestal is free, so that there are two blocks on each other."""
+        return self.pedestal is not None and self.pedestal.free
 
     @property
     def edge(self) -> float:
@@ -430,6 +447,8 @@ class Scene(Part):
         content["motion"] = self.motion.digest() if self.motion else None
         if self.pedestal is None:  # keeps the digests in stored results
             del content["pedestal"]
+        elif not self.pedestal.free:  # as above
+            del content["pedestal"]["free"]
         if self.bearings:  # keeps the digests in stored results
             content["bearings"] = {
                 name: value
@@ -437,6 +456,13 @@ class Scene(Part):
                 if value is not None or name in ("kb", "alpha")
             }
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def refuse_free(scene: Scene, what: str) -> None:
+    """Raise `SceneError` where the pedestal is free; what : that does not know it, in words."""
+    if scene.is_stack:
+        remedy = "leave the line free = true out: the pedestal is then fixed"
+        raise SceneError("pedestal.free", True, f"not supported by {what}", remedy, scene.name or None)
 
 
 MASS, RADIUS = 3172.05, 1.0884  # kg, m

@@ -18,6 +18,7 @@ SI units. Only ``[block]`` is needed; a part that is left out is not modelled::
     width = 0.8               # m: a block that slides beyond it falls off
     # mass = 430.0            # kg, and height = 1.0 [m]: whether the pedestal stays where it is; on a base the mass
                               # moves with it
+    # free = true             # with mass and height: it is not fixed, and may lift and rock
 
     [bearings]                # without them the base slides without friction; values per bearing
     law = "algebraic"         # or "bouc-wen", "bilinear", "linear"
@@ -455,8 +456,13 @@ def scene_text(
     if base is not None:
         lines += ["", *_base(base)]
     if pedestal is not None:
-        sizes = pedestal.model_dump(exclude_none=True)
-        lines += ["", "[pedestal]", *_rows({name: (sizes[name], SCENE_UNITS[f"pedestal.{name}"]) for name in sizes})]
+        sizes = pedestal.model_dump(exclude_defaults=True)
+        lines += [
+            "",
+            "[pedestal]",
+            *_rows({name: (sizes[name], SCENE_UNITS.get(f"pedestal.{name}", "")) for name in sizes}),
+            *(["# free = true  # not fixed: it may lift and rock"] if pedestal.mass and not pedestal.free else ()),
+        ]
     if bearings is not None:
         lines += ["", *_bearings(bearings, note)]
     if motion:

@@ -36,8 +36,10 @@ from .kernel.steps import LINEAR_GROUND, PULSE, QUIET, SHORT_ORDER
 from .motion import SERIES, SampledMotion, slowest_key
 from .response import FALLS, Energy, Failure, History, Impact, Response, State
 from .rocking import BearingLaw, RockingModel
+from .scene import refuse_free
 from .sliding.run import contact_of, is_needed
 from .sliding.run import slid as march
+from .stack import run as stack
 
 if TYPE_CHECKING:
     from .motion import Motion
@@ -123,6 +125,7 @@ _NO_SAMPLES.flags.writeable = False  # the same compiled type as the samples of 
 
 def parameters(scene: Scene) -> Parameters:
     """Return the scene as the kernel's `Parameters`."""
+    refuse_free(scene, "the model of one block")
     model, law, start = RockingModel.of(scene), BearingLaw.of(scene.bearings), scene.start
     return Parameters(
         m=model.m,
@@ -202,7 +205,7 @@ def simulate(
     rest_rate: float = REST_RATE,
     output_step: float | None = None,
 ) -> Response:
-    """Simulate a scene with the analytic rocking model.
+    """Simulate a scene with the analytic rocking model; one with a free pedestal by `simulate_stack`.
 
     Without a duration the run ends when its outcome is decided and its peaks are final (`decision`). With one, a base
     that oscillates under a block which will not lift again is followed up to `longest_duration`. If the duration ends
@@ -228,6 +231,8 @@ def simulate(
     SceneError
         The run needs too many steps (`most_steps`) or has too many impacts; the message names the cause in the scene.
     """
+    if scene.is_stack:
+        return simulate_stack(scene, history=history)
     output_step = _output_step(scene, output_step, history)
     settings = {"tolerance": tolerance, "rest_rate": rest_rate, "order": ORDER, "short_order": SHORT_ORDER}
     chosen = options(
@@ -254,6 +259,34 @@ def simulate(
         further, *_ = kernel.run(later, shaking, options(tolerance, rest_rate=rest_rate))
         totals[[layout.OVER_TIME, layout.FALL_TIME]] = further[[layout.TIME, layout.FALL_TIME]]
     return _response(scene, totals, result, energies, sliding, settings, cpu, history)
+
+
+def simulate_stack(scene: Scene, *, history: bool = True, pedestal_tilt: float = 0.0) -> Response:
+    """Simulate a statue on a free pedestal.
+
+    Without a duration the run ends when, after the motion, the energy suffices for no fall and no larger peak, or at
+    `longest_duration`.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a free pedestal. The tilt at the start is that of the statue from the pedestal.
+    history : bool
+        Keep the history, at several points of each step.
+    pedestal_tilt : float
+        Tilt of the pedestal at the start [rad].
+
+    Returns
+    -------
+    Response
+        Tilts, impacts, friction demand and normal force are those of the statue on the pedestal; `Response.stack` has
+        those of the pedestal. A run that has left the model has failed, for a reason "outside the model: ...".
+    """
+    compile_kernels()
+    begin, par = time.process_time(), parameters(scene.with_(pedestal={"free": False}))
+    run = stack.Run(scene, par, history, pedestal_tilt)
+    failure = run.go()
+    return run.response(time.process_time() - begin, failure)
 
 
 def _kernel_run(scene, par, shaking, chosen):

@@ -64,14 +64,17 @@ def near_copies(scene: Scene) -> Iterator[Scene]:
 
 
 def changed_copies(scene: Scene, change: float) -> dict[str, Scene]:
-    """Copies {name: scene} with restitution (or a given friction), motion or start changed by +-change, relative."""
+    """Copies {name: scene} with restitution (or a given friction), motion or start changed by +-change, relative.
+
+    A stack keeps its restitution.
+    """
     copies = {}
     e, start = restitution(scene), scene.start
     for sign, word in ((1, "up"), (-1, "down")):
         factor = 1 + sign * change
         if scene.friction is not None:  # a restitution that is given needs a corner that sticks
             copies[f"friction {word}"] = scene.with_(friction=scene.friction * factor)
-        elif 0 < e * factor <= 1:
+        elif 0 < e * factor <= 1 and not scene.is_stack:
             copies[f"restitution {word}"] = scene.with_(block={"restitution": e * factor})
         if scene.motion is not None:
             copies[f"motion {word}"] = scene.with_(motion=scene.motion.scaled(factor))

@@ -20,6 +20,7 @@ from analytic import solver as termination
 from analytic.errors import SceneError, SettingError
 from analytic.response import LEVEL, Caution, Failure
 from analytic.rocking import BearingLaw
+from analytic.scene import refuse_free
 from analytic.solver import compile_kernels
 
 from .comparison import Reference, too_coarse
@@ -252,6 +253,7 @@ class Simulator(Engine):
 
     def _as_run(self, scene: Scene, variant: str) -> Scene:
         """The scene as it is run: with more friction where a couple needs it."""
+        refuse_free(scene, self.name)
         return scene if self.variants[variant].applies_impact else holding(scene)
 
     def _restitution_warning(self, scene: Scene, response: Response) -> tuple[Caution, ...]:

@@ -22,7 +22,7 @@ KEYS = {
         "restitution": (float, 0, 1),
     },
     "base": {"mass": POSITIVE},
-    "pedestal": dict.fromkeys(("width", "mass", "height"), POSITIVE),
+    "pedestal": {**dict.fromkeys(("width", "mass", "height"), POSITIVE), "free": bool},
     "bearings": {
         "law": ("algebraic", "linear", "bouc-wen", "bilinear"),
         "count": (int, 1, 10**6),
@@ -82,8 +82,8 @@ def _fits(table, part):
 
 
 def _may_be(rule, value):
-    if rule is None:
-        return isinstance(value, str)
+    if rule is None or rule is bool:
+        return isinstance(value, rule or str)
     if isinstance(rule[0], str):
         return value in rule
     return type(value) in (int, rule[0]) and rule[1] <= value <= rule[2]
@@ -96,6 +96,12 @@ def _stands(tables):
     room = 0 if stiff else bearings["ka"] - bearings["kb"]
     moved = bearings or start.get("base_displacement") or start.get("base_velocity")
     pedestal = tables.get("pedestal", {})
+    rubs = (
+        "friction" in tables.get("", {})
+        or "restitution" in block
+        or start.get("tilt_rate")
+        or start.get("base_velocity")
+    )
     wide = 2 * block["radius"] * math.sin(block["slenderness"])
     phased = motion.get("vertical_ratio") and motion.get("vertical_phase")
     return (
@@ -103,6 +109,7 @@ def _stands(tables):
         and (stiff or room > (0 if bearings.get("law") == "bilinear" else bearings.get("delta_k", 1e-20)))
         and ("base" in tables or not moved)
         and ("mass" in pedestal) == ("height" in pedestal)
+        and not (pedestal.get("free") and (rubs or "mass" not in pedestal))
         and pedestal.get("width", math.inf) >= wide * (1 - 1e-4)
         and ("vertical_ratio" in motion or not {"vertical_phase", "vertical_seed"} & set(motion))
         and not (phased and motion["pulse"] in PULSES[3:])

@@ -73,8 +73,8 @@ class PedestalCheck:
 
 
 def check_pedestal(scene: Scene) -> PedestalCheck | None:
-    """Return the check of the scene's pedestal; None without its mass and height, or where the model has no run."""
-    if scene.pedestal is None or scene.pedestal.mass is None or (reached := _reached(scene)) is None:
+    """Return the check of a fixed pedestal; None without its mass and height, or where the model has no run."""
+    if scene.pedestal is None or scene.pedestal.mass is None or scene.is_stack or (reached := _reached(scene)) is None:
         return None
     half, width = 0.5 * scene.pedestal.width, max(scene.pedestal.width, math.ceil(200 * max(reached)) / 100)
     again = reached if width == scene.pedestal.width else _reached(scene.with_(pedestal={"width": width}))

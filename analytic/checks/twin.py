@@ -23,14 +23,14 @@ from scipy.optimize import brentq
 
 from ..errors import SettingError, require
 from ..kernel.decision import model_warnings
-from ..motion import PulseMotion, SampledMotion
+from ..motion import PulseMotion, SampledMotion, shared_segments
 from ..response import Energy, Failure, History, Impact, Response, State, limit_warnings
 from ..rocking import RockingModel
+from ..scene import refuse_free
 from ..solver import is_decided, most_steps, too_long, until_decided
 
 if TYPE_CHECKING:
     from ..errors import GroundFunction
-    from ..motion import Motion
     from ..scene import Scene
 
 METHODS = ("DOP853", "RK45", "LSODA", "Radau")
@@ -92,6 +92,7 @@ def simulate_twin(
         "rest_rate": rest_rate,
     }
     _check(settings)
+    refuse_free(scene, "the second implementation")
     if scene.duration is None:
         return until_decided(functools.partial(simulate_twin, history=history, energy=energy, **settings), scene)
     run = Run(scene, {**settings, "atol": rtol if atol is None else atol}, history, energy)
@@ -121,53 +122,6 @@ def _check(settings: Mapping[str, Any]) -> None:
     for name, value in settings.items():
         positive = name == "method" or value is None or (value > 0 and math.isfinite(value))
         require(positive, f"{name} = {value!r} is not positive: give a finite value above 0")
-
-
-def shared_segments(
-    motion: Motion | None, duration: float
-) -> list[tuple[float, float, GroundFunction, GroundFunction]]:
-    """Return [(start, end, a_g(t), a_v(t)), ...] as `segments` does: both are smooth and monotone on each."""
-    level = segments(motion, duration)
-    if motion is None or motion.vertical is None:
-        return [(*piece, _line(0.0, 0.0, 0.0)) for piece in level]
-    upright = segments(motion.vertical, duration)
-    cuts = sorted({end for pieces in (level, upright) for _, end, _ in pieces})
-    shared, start, i, j = [], 0.0, 0, 0
-    for end in cuts:
-        shared.append((start, end, level[i][2], upright[j][2]))
-        start, i, j = end, i + (level[i][1] == end), j + (upright[j][1] == end)
-    return shared
-
-
-def segments(motion: Motion | None, duration: float) -> list[tuple[float, float, GroundFunction]]:
-    """Return [(start, end, a_g(t)), ...] from 0 to duration [s]: on each, a_g is smooth, and monotone inside.
-
-    A record has one per interval; pulses are cut at their zeros and extremes. a_g takes floats.
-    """
-    if isinstance(motion, SampledMotion):
-        dt, samples = motion.dt, motion.samples.tolist()
-        pieces = [
-            (i * dt, (i + 1) * dt, _line(i * dt, a, (b - a) / dt))
-            for i, (a, b) in enumerate(zip(samples[:-1], samples[1:], strict=True))
-        ]
-    elif motion is not None:
-        turns = motion.form.turns(motion.form.length, motion.phase)
-        cuts = [motion.start + u / motion.frequency for u in turns[:-1]] + [motion.end]
-        pieces = [(0.0, motion.start, _line(0.0, 0.0, 0.0))]
-        pieces += [(a, b, _pulse(motion)) for a, b in zip(cuts[:-1], cuts[1:], strict=True)]
-    else:
-        pieces = []
-    pieces.append((pieces[-1][1] if pieces else 0.0, math.inf, _line(0.0, 0.0, 0.0)))
-    return [(a, min(b, duration), ground) for a, b, ground in pieces if a < min(b, duration)]
-
-
-def _line(start: float, value: float, slope: float) -> GroundFunction:
-    return lambda t: value + slope * (t - start)
-
-
-def _pulse(motion: PulseMotion) -> GroundFunction:
-    a, w, start, phase, value = motion.amplitude, motion.frequency, motion.start, motion.phase, motion.form.value
-    return lambda t: a * value(math, w * (t - start) + phase)
 
 
 class Extremes:

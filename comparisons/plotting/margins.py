@@ -11,7 +11,7 @@ from matplotlib.patches import Patch
 
 from analytic import Caution, Scene
 from analytic.advice.bearing_scan import BearingScan, hardest
-from analytic.advice.margins import Contact, Margin, limit_states
+from analytic.advice.margins import LIMIT_STATES, Contact, Margin, limit_states
 from analytic.motion import Motion
 from analytic.response import FALLS, KINDS
 
@@ -31,6 +31,7 @@ COLOURS = {
     "rocks": ("#F0E442", ".."),
     "falls off": ("#882255", "xx"),
     "overturns": ("#D55E00", "//"),
+    "pedestal overturns": ("#CC79A7", "\\\\"),
     "failed": ("0.4", ""),
 }
 
@@ -101,7 +102,7 @@ def print_margins(
 def _names(tilt):
     """Return {limit state: its name in tables}."""
     beyond = {"tilt": f"tilt > {tilt:g} γ", "stroke": "base > x_max"}
-    return {"slides": "slides", "lifts": "lifts", **beyond, **dict(zip(FALLS, FALLS, strict=True))}
+    return {"slides": "slides", "lifts": "lifts", **beyond, **{fall: fall for fall in FALLS if fall in LIMIT_STATES}}
 
 
 def _range_ends(margin):

@@ -149,6 +149,7 @@ def summary(scene: Scene, response: Response) -> Grid:
         "peak base acceleration [m/s2]": digits(response.peak_base_acceleration),
         "impacts": str(response.impact_count),
         **_slip(response),
+        **_pedestal(response),
         "friction demand |H|/N": digits(response.friction_demand),
         "least normal force N/(m g)": digits(response.min_normal_ratio),
         "CPU time [s]": digits(response.cpu_seconds, ".3g"),
@@ -177,6 +178,18 @@ def _slip(response):
     }
 
 
+def _pedestal(response):
+    """Return the rows of a free pedestal under the block."""
+    if (stack := response.stack) is None:
+        return {}
+    return {
+        "what rocks": " and ".join(stack.rocked) or "nothing",
+        "peak tilt of the pedestal [rad]": digits(stack.peak_tilt),
+        "impacts of the pedestal": str(len(stack.impacts)),
+        "friction demand of the pedestal": digits(stack.friction_demand),
+    }
+
+
 def mode_words(modes: Sequence[tuple[float, str]], most: int = MOST_MODES) -> str:
     """Return modes of contact and their begins, at most `most`: "stick, from 0.0614 s rock"; impacts end no mode."""
     changes = [change for k, change in enumerate(modes) if k == 0 or change[1] != modes[k - 1][1]]
@@ -193,15 +206,17 @@ def named_values(rows: Mapping[str, str], title: str) -> Grid:
 
 def comparison(scene: Scene, responses: Sequence[Response], horizons: Mapping[str, Horizon]) -> Grid:
     """Return a table of responses of several solvers, the first being the reference; horizons: {solver: `Horizon`}."""
-    limit = _limit(horizons) if horizons else "No sensitivity horizon known."
+    limit = _limit(horizons) if horizons else "" if scene.is_stack else "No sensitivity horizon known."
     slides = any(response.sliding and response.sliding.peak for response in responses)
+    stacked = any(response.stack for response in responses)
     slip = "; slip: largest slip of the block" if slides else ""
+    pedestal = ";\nlower: peak tilt of the pedestal, from which the block's is measured" if stacked else ""
     caption = (
         "over: time of overturning; tilt: peak tilt over slenderness;\n"
-        f"base: peak base displacement{slip}; d: difference from the first row.\n" + limit
+        f"base: peak base displacement{slip}{pedestal}; d: difference from the first row.\n" + limit
     )
     heads = ["solver", "outcome", "over\n[s]", "tilt\n[-]", "d\n[-]", "base\n[m]", "d\n[%]", "im-\npacts", "CPU\n[ms]"]
-    heads[5:5] = ["slip\n[m]", "d\n[%]"] * slides
+    heads[5:5] = [*["slip\n[m]", "d\n[%]"] * slides, *["lower\n[rad]"] * stacked]
     reference, rows = responses[0], []
     for response in responses:
         tilt, displacement = "", ""
@@ -218,6 +233,7 @@ def comparison(scene: Scene, responses: Sequence[Response], horizons: Mapping[st
                 digits(response.peak_tilt_ratio, ".4f"),
                 tilt,
                 *(_slipped(response, reference) if slides else ()),
+                *([digits(response.stack.peak_tilt if response.stack else None, ".4f")] if stacked else ()),
                 digits(response.peak_base_displacement, ".4f"),
                 displacement,
                 str(response.impact_count),

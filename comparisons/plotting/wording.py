@@ -28,6 +28,7 @@ OUTCOMES = {
     "rocks": "rocks and stays upright",
     "falls off": "falls off its pedestal",
     "overturns": "overturns",
+    "pedestal overturns": "stands on a pedestal that overturns",
 }
 MOST_NAMED = 3  # more solvers with the commonest outcome are counted, not named
 

@@ -170,6 +170,7 @@ WORDS = {
     "rocks": "rocks and stays upright",
     "falls off": "slides off its pedestal",
     "overturns": "overturns",
+    "pedestal overturns": "stands on a pedestal that overturns",
     "failed": "leaves the model",
 }
 BEYOND = ("limit", "model")  # kinds of warnings that stand in the title

@@ -47,6 +47,24 @@ class Energy(Part):
     friction: float | None = 0.0
 
 
+class Stack(Part):
+    """A free pedestal under the block: which of both lifted ("pedestal", "statue"), largest absolute tilts of pedestal
+    and block [rad], impacts, uplifts and rests [s], friction demand and least normal force over the weight of both, on
+    its support. impulses: largest ratio along and off the contact, of pedestal and block. closest: time between two
+    landings in a row, one of each, over the block's rocking period."""
+
+    rocked: list[str]
+    peak_tilt: float | None
+    statue_tilt: float | None
+    impacts: list[Impact]
+    uplifts: list[float]
+    rests: list[float]
+    friction_demand: float | None
+    min_normal_ratio: float | None
+    impulses: list[float]
+    closest: float | None
+
+
 class Sliding(Part):
     """Slip of a block that slides: largest and last [m], whole way [m] and friction work [J].
 
@@ -190,6 +208,7 @@ class _Values(Form):
         default=None,
         description="if the scene gives a friction that is exhausted; all 0 for an engine that does not slip",
     )
+    stack: Stack | None = Field(default=None, description="if the pedestal is free")
 
 
 class Run(_Values):

@@ -26,7 +26,7 @@ from fake_study import MADE, STARTS
 from lying_engine import Liar, liars, noise
 from made_up_records import knet_csv
 from pytest import approx
-from roads import BASE, BEARINGS, KINDS, LINEAR, G, pulse, scene, start
+from roads import BASE, BEARINGS, KINDS, LINEAR, TALL, G, pulse, scene, start
 from scipy.optimize import brentq
 from scipy.stats import norm
 from scipy.stats import t as student
@@ -66,6 +66,7 @@ SCENES = {
     "creeps.toml": scene(motion=pulse(1.6, 30.0), friction=0.15),
     "rocks.toml": KINDS["rocks"][0],
     "tall.toml": KINDS["pedestal that may lift"][0],
+    "free.toml": scene(TALL.replace("0.5", "0.6") + "free = true\n", pulse(3.6, 8.0)),
     "falls.toml": KINDS["overturns after an impact"][0],
     "flies.toml": scene(motion=pulse(0.5, 9.0, vertical=18 * 0.981)),
     "refused.toml": scene(motion=pulse(1.0, 8.0), block="restitution = 0.5\n", friction=0.3),
@@ -301,6 +302,10 @@ def runs(ask):
     known = {"outcome": "overturns", "peak_tilt": math.pi / 2, "uplifts": [math.asin(G * TAN / 4.0) / 6.0]}
     yield "Run", documents["falls"], known
     yield "Run", ask("run", "tall.toml"), {"outcome": "rocks", "pedestal": tall()}
+    stack = {"rocked": ["pedestal", "statue"]}
+    free = ask("run", "free.toml")
+    yield "Run", free, {"variant": "stack", "outcome": "overturns", "stack": stack}
+    yield "Run", free, {"stack": model("free")[1].stack, "impacts": model("free")[1].impacts}
     blown = {"outcome": "failed", "failure": "it blew up: 12 J at .5 s"}
     yield "Run", ask("run", "rocks.toml", "--engine", "fails", *MANY), {"motions": [blown] * 3}
 

@@ -24,7 +24,8 @@ from analytic import (
 )
 from analytic.checks import closed_form
 from analytic.checks.time_stepping import simulate_time_stepping
-from analytic.checks.twin import segments, simulate_twin
+from analytic.checks.twin import simulate_twin
+from analytic.motion import segments
 from analytic.records import read_record
 from analytic.rocking import momentum_restitution
 from analytic.scene import BASE, caryatid_block, problem_a, problem_b
