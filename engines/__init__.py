@@ -39,6 +39,7 @@ _declared = {engine.name: engine for engine in sorted(_records, key=lambda engin
 BUILT_IN = tuple(_declared)
 _found, BROKEN = find_engines(_declared)  # BROKEN: the errors of entries that hold no engine, by name
 ENGINES = {name: Simulator.of(engine) for name, engine in (_declared | _found).items()}
+Simulator.known = ENGINES
 
 
 def get_engine(name: str) -> Simulator:

@@ -97,7 +97,8 @@ LEAST_DISPLACEMENT = 1e-5
 LEAST_LOSS = 0.02  # smallest of the statue range by eq. (7): slenderness .1, J_O = 2 m R^2, rigid ground
 OUT_OF_PHASE = 0.1  # share of a swing by which an impact is early or late; no later impact counts as missing
 LAST = 0.01  # share of a rocking period before the end in which an impact may occur in one run only
-FALLS = "overturns"
+FALLS = ("overturns", "pedestal overturns")  # one that falls off is compared as one that is upright
+PEDESTAL = "pedestal_tilt"  # the peak tilt of a free pedestal, a difference in "peak_tilt"
 END = {"outcome", "fall_time", "overturning_time", "impacts_before_fall"}  # quantities of the block's end
 FALL_POINTS, MOST_POINTS = 200, 100_000  # samples of the last fall, and at most of the run up to its end
 
@@ -136,6 +137,10 @@ class Reference:
         near = frozenset(
             difference.quantity for copy in copies for difference in _number_differences(scene, (model,), copy)
         )
+        if failed := next((copy.failure for copy in copies if copy.failure), None):
+            return cls(model, comparable=f"the analytic model fails within {CHANGE:g} of it: {failed.reason}")
+        if scene.is_stack:
+            return cls(model, copies, EDGE if near else COMPARED, near)
         until = min((parting(scene, model, copy) for copy in copies), default=math.inf)
         return cls(model, copies, EDGE if near else COMPARED, near, until)
 
@@ -161,10 +166,10 @@ def differences(scene: Scene, reference: Reference, run: Response) -> tuple[Diff
     if reference.model is None or reference.comparable not in JUDGED:
         return ()
     models = (reference.model, *reference.copies)
-    return (
-        *_number_differences(scene, models, run),
-        *_impact_differences(scene, reference.model, run, reference.until),
-    )
+    numbers = _number_differences(scene, models, run)
+    if scene.is_stack:
+        return tuple(numbers)
+    return (*numbers, *_impact_differences(scene, reference.model, run, reference.until))
 
 
 def _number_differences(scene: Scene, models: Sequence[Response], run: Response) -> list[Difference]:
@@ -174,20 +179,22 @@ def _number_differences(scene: Scene, models: Sequence[Response], run: Response)
     differs = run.outcome != model.outcome and not _possible_outcomes(scene, run) & outcomes
     if run.decided and model.decided and differs:  # two outcomes of one word are compared by the peak tilt
         beyond.append(Difference("outcome", run.outcome, model.outcome, None))
-    alike = [response for response in models if (response.outcome == FALLS) == (run.outcome == FALLS)]
+    falls = run.outcome in FALLS
+    ends = run.outcome if falls else None
+    alike = [response for response in models if (response.outcome if response.outcome in FALLS else None) == ends]
     if not alike:
         return beyond
-    falls = run.outcome == FALLS
     slips = ["peak_slip"] if run.sliding and scene.friction is not None else []  # where it was read
-    upright = ("peak_tilt", "peak_base_displacement", *slips)
+    upright = ("peak_tilt", "peak_base_displacement", *slips, *([PEDESTAL] if scene.is_stack else []))
     for name in ("peak_base_displacement", "fall_time") if falls else upright:
         values = [_value(response, name) for response in alike]
         low, high, value = min(values), max(values), _value(run, name)
         if not low - _limit(scene, name, low) <= value <= high + _limit(scene, name, high):  # not: NaN
             limit = PEAK if name.startswith("peak") else _limit(scene, name, values[0])
             expected = _model_value(models, alike, values)
-            beyond.append(Difference(name, value, expected, limit, _range(models, low, high)))
-    if falls:
+            quantity = "peak_tilt" if name == PEDESTAL else name
+            beyond.append(Difference(quantity, value, expected, limit, _range(models, low, high)))
+    if falls and not scene.is_stack:
         beyond += [*_before_fall(scene, models, alike, run), *_overturning(scene, models, alike, run, beyond)]
     return beyond
 
@@ -196,6 +203,8 @@ def _value(response: Response, name: str) -> float:
     """A number of a response by its name, one of `response.DIFFERENCES`."""
     if name == "peak_slip":
         return response.sliding.peak if response.sliding else 0.0
+    if name == PEDESTAL:
+        return response.stack.peak_tilt
     return getattr(response, name)
 
 
@@ -212,7 +221,7 @@ def _range(models: Sequence[Response], low: float, high: float) -> tuple[float, 
 def _limit(scene: Scene, name: str, value: float) -> float:
     """Limit of the difference of a number from the model's `value`, in its unit."""
     gamma = scene.block.slenderness
-    if name == "peak_tilt":
+    if name in ("peak_tilt", PEDESTAL):
         return PEAK * max(value, LEAST_TILT * gamma)
     if name == "peak_slip":
         return max(PEAK * value, LEAST_SLIP * scene.block.radius)
@@ -225,7 +234,7 @@ def _overturning(
     scene: Scene, models: Sequence[Response], alike: Sequence[Response], run: Response, beyond: Sequence[Difference]
 ) -> list[Difference]:
     """The difference in the time of overturning, for runs whose fall begins as the model's does."""
-    if any(difference.quantity == "fall_time" for difference in beyond) or models[0].outcome != FALLS:
+    if any(difference.quantity == "fall_time" for difference in beyond) or models[0].outcome not in FALLS:
         return []
     time, limit = run.overturning_time, _limit(scene, "fall_time", 0.0)
     times = [response.overturning_time for response in alike]
@@ -325,7 +334,7 @@ def too_coarse(scene: Scene, run: Response, variant: Variant) -> tuple[Caution, 
     the next free swing changes by more than `KICK`. Nothing is known of a block that slides, as an impact turns the
     energy of the slip into rotation. The level is the next finer one of the variant's levels.
     """
-    if variant.kind != "tuned" or not run.impacts or (run.sliding and run.sliding.peak):
+    if variant.kind != "tuned" or not run.impacts or scene.is_stack or (run.sliding and run.sliding.peak):
         return ()
     time, before, after = impacts_of(run).T
     model, expected = RockingModel.of(scene), restitution(scene)
@@ -348,7 +357,7 @@ def too_coarse(scene: Scene, run: Response, variant: Variant) -> tuple[Caution, 
 
 def outcome_of(scene: Scene, response: Response) -> str:
     """The outcome; "stands" where the peak tilt is too small to count."""
-    still = response.peak_tilt < STILL * scene.block.slenderness
+    still = response.peak_tilt < STILL * scene.block.slenderness and not (response.stack and response.stack.rocked)
     if response.outcome not in ("rocks", "slides") or not still:
         return response.outcome
     return "slides" if _value(response, "peak_slip") > LEAST_SLIP * scene.block.radius else "stands"
@@ -373,6 +382,11 @@ def _why_incomparable(scene: Scene, model: Response) -> str | None:
         return f"the analytic model fails: {model.failure.reason}"
     if scene.friction is not None:
         return None
+    if scene.is_stack:
+        asked = max(model.friction_demand, model.stack.friction_demand, *model.stack.impulses)
+        if min(model.min_normal_ratio, model.stack.min_normal_ratio) > 0 and asked <= FRICTION:
+            return None
+        return f"a normal force falls to 0 in the analytic model, or it asks for a friction of {asked:.3g}"
     if not model.min_normal_ratio > 0:
         return f"the normal force falls to 0 in the analytic model; {_with_friction('flies')}"
     if not model.friction_demand <= FRICTION:

@@ -26,7 +26,7 @@ from __future__ import annotations
 
 import math
 from array import array
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Self
 
@@ -35,6 +35,7 @@ import numpy as np
 from analytic.errors import SceneError
 from analytic.motion import SampledMotion
 from analytic.rocking import BearingLaw, RockingModel, momentum_restitution
+from analytic.stack.equations import LOWER, Slab, StackModel
 
 if TYPE_CHECKING:
     from analytic import PulseMotion, Scene
@@ -254,6 +255,48 @@ def placement(scene: Scene) -> tuple[float, float, float, float]:
     )
 
 
+def slabs_of(scene: Scene) -> tuple[Slab, ...]:
+    """The blocks of a scene from below: the block itself, or a free pedestal and the block on it."""
+    block = scene.block
+    if scene.is_stack:
+        return StackModel.of(scene).slabs
+    return (Slab(block.mass, block.centre_inertia, block.half_width, block.half_height),)
+
+
+def moving_mass(scene: Scene) -> float:
+    """Mass of the base, with a pedestal that is fixed to it [kg]; 0 on rigid ground."""
+    return scene.base.mass if scene.base and scene.is_stack else scene.base_mass
+
+
+Places = tuple[tuple[float, float], tuple[float, float], tuple[float, float]]
+
+
+def placements(scene: Scene, pedestal_tilt: float = 0.0) -> list[Places]:
+    """Start of each of `slabs_of`: (x, x'), (z, z') as in `placement`, (tilt, its rate), all absolute.
+
+    A stack starts without a velocity, the pedestal on its lower corner, and the block on its own, tilted by the scene's
+    start from the pedestal.
+    """
+    start = scene.start
+    if not scene.is_stack:
+        x, z, vx, vz = placement(scene)
+        return [((x, vx), (z, vz), (start.tilt, start.tilt_rate))]
+    tilts = pedestal_tilt, pedestal_tilt + start.tilt
+    return [
+        ((start.base_displacement + centre.real, 0.0), (centre.imag, 0.0), (tilt, 0.0))
+        for centre, tilt in zip(centres(StackModel.of(scene), tilts), tilts, strict=True)
+    ]
+
+
+def centres(model: StackModel, tilts: Sequence[float]) -> tuple[complex, complex]:
+    """Centres x + 1j z [m] of pedestal and block at these absolute tilts [rad], from where they stand on the base."""
+    (one, two), (first, second) = model.slabs, tilts
+    sides = [int(np.sign(first)), int(np.sign(second - first))]
+    R1, Rd, R2, *_ = model.geometry(sides, tilts)
+    pivot = sides[LOWER] * one.b
+    return pivot + R1 - 1j * one.h, pivot + Rd + R2 - 1j * (2 * one.h + two.h)
+
+
 UNIT_RADIUS = 1.0884  # m, of the Caryatid, for which the variants' times are given
 
 
@@ -282,7 +325,11 @@ def longest_step(scene: Scene, largest: float) -> float:
 
 
 def driven_mass(model: RockingModel) -> float:
-    """Effective mass of the base while the block pivots through tilt 0 [kg], least for J_O = m R^2."""
+    """Effective mass of the base while the block pivots through tilt 0 [kg], least for J_O = m R^2.
+
+    A free pedestal counts as fixed: steps are a tenth of the longest stable one, and what is added for the viscous
+    force depends on this mass in the second order only.
+    """
     return model.M - (model.m * model.R * math.cos(model.gamma)) ** 2 / model.J
 
 

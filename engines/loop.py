@@ -27,6 +27,7 @@ import time
 from array import array
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -34,6 +35,7 @@ import numpy as np
 from analytic.motion import vertical_acceleration
 from analytic.response import Failure
 from analytic.rocking import BearingLaw, RockingModel
+from analytic.stack.equations import LOWER, UPPER
 
 from .contract import Mismatch, Run
 from .loads import (
@@ -44,9 +46,11 @@ from .loads import (
     leapfrog_stiffness,
     longest_step,
     placement,
+    placements,
     size_scale,
+    slabs_of,
 )
-from .swings import Trace
+from .swings import StackTrace, Trace
 
 # Insensitive: a share of .1 to .45, growth of .2 to 1 and hold of 1 to 10 change the error of e by factors of .9 to 1.5
 # in four engines. With a share of .7 or more, points land in steps that are too long.
@@ -209,10 +213,13 @@ def _synchronised(value: np.ndarray, h: np.ndarray, from_before: np.ndarray, fro
 
 
 def raw_trace_of(rows: Sequence[Sequence[float]] | np.ndarray, scene: Scene, contact_tilt: float) -> Trace:
-    """The `Trace` of uncorrected rows, as in a first script; the block's position is read only where it may slide."""
+    """The `Trace` of uncorrected rows, as in a first script.
+
+    The block's position is read only in a stack, and where it may slide.
+    """
     t, _, tilt, rate, x, v, _, force, *centre = np.array(rows).T
     law = RockingModel.of(scene).bearing
-    place = np.column_stack(centre) if centre and scene.friction is not None else None
+    place = np.column_stack(centre) if centre and (scene.is_stack or scene.friction is not None) else None
     total = force + law.count * law.damping * v
     return Trace(t, tilt, rate, x, v, total, contact_tilt, centre=place, first_script=True)
 
@@ -268,8 +275,10 @@ class Bodies(Protocol):
     block in the next step, and is called before every one.
     """
 
-    def step(self, step: float, before: float, across: float, up: float, impulse: float) -> State:
-        """Advance the engine by one step and return the state of its bodies.
+    def step(self, step: float, before: float, across: float, up: float, impulse: float) -> Sequence[float]:
+        """Advance the engine by one step and return the `State` of its bodies.
+
+        That of a stack begins with the tilt, rate, x, z, x', z' of the pedestal.
 
         Parameters
         ----------
@@ -397,6 +406,63 @@ def sampled_loads(scene: Scene) -> Loads:
     return loads
 
 
+class Pair:
+    """An engine's two bodies as the `Bodies` of `march`, which sees the one that is tilted more; keeps their states."""
+
+    def __init__(self, bodies: Bodies, scene: Scene, pedestal_tilt: float) -> None:
+        self.bodies, self.slabs, self.weigh = bodies, slabs_of(scene), bodies.weigh
+        self.now: list[float] = []
+        for (x, vx), (z, vz), (tilt, rate) in placements(scene, pedestal_tilt):
+            self.now += [tilt, rate, x, z, vx, vz]
+        self.states = array("d", self.now)
+
+    def step(self, *loads: float) -> Sequence[float]:
+        """A step: see `engines.loop.Bodies`."""
+        *self.now, base, v = self.bodies.step(*loads)
+        self.states.extend(self.now)
+        first, w1, _, _, vx1, vz1, second, w2, x, z, vx2, vz2 = self.now
+        tilt = second - first if abs(second - first) > abs(first) else first  # a NaN in any is one here
+        return tilt, w1 + w2, x, z, vx1 + vx2, vz1 + vz2, base, v
+
+    def ruled(self, rule: Rule) -> Rule:
+        """The `Rule` of the four corners: two of the pedestal, two of the block over the pedestal's top."""
+        return lambda _: rule(self.corners())
+
+    def corners(self) -> tuple[tuple[float, float], ...]:
+        """(Gap [m], closing speed [m/s]) of each corner."""
+        first, w1, x1, z1, vx1, vz1, second, w2, x2, z2, vx2, vz2 = self.now
+        (one, two), c, s = self.slabs, math.cos(first), math.sin(first)
+        # of the block's centre from the pedestal's, along the pedestal's axes
+        x, z, vx, vz = x2 - x1, z2 - z1 + one.h + two.h, vx2 - vx1, vz2 - vz1
+        high, rising = x * s + z * c - one.h, vx * s + vz * c + w1 * (x * c - z * s)
+        return (
+            *_corners(z1 + one.h, vz1, first, w1, one.b, one.h),
+            *_corners(high, rising, second - first, w2 - w1, two.b, two.h),
+        )
+
+    def trace(self, rows: np.ndarray, traced: Callable[[np.ndarray], Trace]) -> StackTrace:
+        """The `StackTrace` of the rows of `march`; traced: from such rows of one block to its `Trace`.
+
+        What the block's traces take as contact holds of the pedestal, too: it is at least as wide, so that a
+        penetration tilts it by less.
+        """
+        states = np.hsplit(np.frombuffer(self.states).reshape(-1, 12), 2)
+        states[UPPER] = states[UPPER] - states[LOWER] * [1, 1, 0, 0, 0, 0]
+        lower, upper = (
+            traced(np.column_stack([rows[:, :2], state[:, :2], rows[:, 4:8], state[:, 2:]])) for state in states
+        )
+        return StackTrace(**vars(upper), pedestal=lower, hysteretic=rows[:, 6])
+
+
+def _corners(
+    high: float, rising: float, tilt: float, rate: float, b: float, h: float
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """(Gap, closing speed) of both corners of a block whose centre is `high` over its support; all relative to that."""
+    c, s = math.cos(tilt), math.sin(tilt)
+    mean, lower, sinking, turning = high - h * c, b * s, -rising - h * s * rate, b * c * rate
+    return (mean - lower, sinking + turning), (mean + lower, sinking - turning)
+
+
 @dataclass(frozen=True)
 class ImpactAware:
     """Steps by gaps and closing speeds: small where a corner lands, at most `largest_step` [s] elsewhere.
@@ -434,6 +500,7 @@ def run_of(
     bodies_of: Callable[[float], Bodies],
     raw: Callable[[np.ndarray], Trace],
     depth: float = SLOW,
+    pedestal_tilt: float = 0.0,
 ) -> Run:
     """The `Run` of a scene.
 
@@ -447,6 +514,8 @@ def run_of(
         From rows to the trace of a first script.
     depth : float
         Largest penetration of a corner that closes too slowly for the rule, over g h^2.
+    pedestal_tilt : float
+        Tilt of a free pedestal at the start [rad].
     """
     largest, smallest = step_limits(scene, settings)
     duration = scene.duration or 0.0  # never None in a run
@@ -457,9 +526,13 @@ def run_of(
         bodies = bodies_of(largest)
     except Mismatch as error:
         return Run(None, 0, math.nan, Failure("the engine does not hold the scene", str(error)))
+    if scene.is_stack:
+        bodies = pair = Pair(bodies, scene, pedestal_tilt)
     clock = time.process_time()
     if isinstance(settings, ImpactAware):
         rule, jumps = gap_rule(largest, smallest, scene.gravity), scene.motion.jumps if scene.motion else ()
+        if scene.is_stack:
+            rule = pair.ruled(rule)
     else:
         rule, jumps = fixed_rule(largest), ()
     if isinstance(settings, FirstScript):  # all steps are the same
@@ -467,12 +540,13 @@ def run_of(
     loads = sampled_loads(scene) if isinstance(settings, FirstScript) else mean_loads(scene, bodies, largest)
     rows, ended = march(bodies, scene, duration, rule, loads, largest, jumps)
     cpu = time.process_time() - clock
-    if isinstance(settings, FirstScript):
-        trace = raw(rows)
-    else:
-        trace = trace_of(rows, scene, contact_tilt(scene, largest, smallest, depth), smeared=SMEARED)
-        if couple := couple_of(scene):
-            trace = replace(trace, early=couple.lasts)
+    traced = raw
+    if not isinstance(settings, FirstScript):
+        contact = contact_tilt(scene, largest, smallest, depth)
+        traced = partial(trace_of, scene=scene, contact_tilt=contact, smeared=SMEARED)
+    trace = pair.trace(rows, traced) if scene.is_stack else traced(rows)
+    if couple := couple_of(scene):
+        trace = replace(trace, early=couple.lasts)
     failure = failure_of(scene, rows, ended)
     if ended not in ENDS:
         reason, _, why = ended.partition(": ")

@@ -102,8 +102,8 @@ def observe(
         outcome="failed" if failure else falls or upright,
         end=end,
         failure=failure and replace(failure, last_state=failure.last_state or end),
-        warnings=_warnings(scene, warnings),
-        history=_history(scene, trace) if history else None,
+        warnings=cautions(scene, warnings),
+        history=run_history(scene, trace) if history else None,
         scene=scene.name,
         sliding=sliding,
         **measured,
@@ -186,16 +186,16 @@ def failed_response(
 
     run: as in `observe`; cpu_seconds and steps may be left out.
     """
-    cautions = _warnings(scene, warnings)
+    known = cautions(scene, warnings)
     return Response.unmeasured(
-        outcome="failed", decided=False, scene=scene.name, failure=failure, warnings=cautions, **run
+        outcome="failed", decided=False, scene=scene.name, failure=failure, warnings=known, **run
     )
 
 
-def _warnings(scene: Scene, warnings: Iterable[Caution | str]) -> tuple[Caution, ...]:
+def cautions(scene: Scene, warnings: Iterable[Caution | str]) -> tuple[Caution, ...]:
     """The engine's warnings, sentences as `Caution`, and those about the motion's record, without repetition."""
-    cautions = (Caution("engine", warning) if isinstance(warning, str) else warning for warning in warnings)
-    return tuple(dict.fromkeys((*about_record(scene.motion), *cautions)))
+    each = (Caution("engine", warning) if isinstance(warning, str) else warning for warning in warnings)
+    return tuple(dict.fromkeys((*about_record(scene.motion), *each)))
 
 
 def _check_finite(measured: Mapping[str, Any]) -> Failure | None:
@@ -224,7 +224,7 @@ def _peak(time: np.ndarray, value: np.ndarray, rate: np.ndarray) -> float:
     return float(best)
 
 
-def _history(scene: Scene, trace: Trace) -> History:
+def run_history(scene: Scene, trace: Trace) -> History:
     """The trace on an equidistant grid: tilt and displacement by cubic, the others by linear interpolation."""
     end = trace.time[-1]
     dt = scene.motion.dt if isinstance(scene.motion, SampledMotion) else scene.end / HISTORY_POINTS

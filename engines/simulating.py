@@ -9,9 +9,9 @@ from __future__ import annotations
 import dataclasses
 import math
 import traceback
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, fields, replace
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
@@ -20,7 +20,6 @@ from analytic import solver as termination
 from analytic.errors import SceneError, SettingError
 from analytic.response import LEVEL, Caution, Failure
 from analytic.rocking import BearingLaw
-from analytic.scene import refuse_free
 from analytic.solver import compile_kernels
 
 from .comparison import Reference, too_coarse
@@ -150,7 +149,9 @@ SLIPS = "with less the block slips under the couple before each landing"
 
 
 class Simulator(Engine):
-    """An `Engine` that simulates scenes."""
+    """An `Engine` that simulates scenes; known: all of them, by name."""
+
+    known: ClassVar[Mapping[str, Simulator]] = {}
 
     @classmethod
     def of(cls, engine: Engine) -> Self:
@@ -164,13 +165,34 @@ class Simulator(Engine):
         """
         adapter = self.load()
         try:
-            result = adapter.run(self._as_run(scene, variant), variant, settings)
+            result = self._builder(scene)(self._as_run(scene, variant), variant, settings)
             if not isinstance(result, Run):
                 raise TypeError(f"{self.adapter}.run returned a {type(result).__name__}, no engines.contract.Run")
         except Exception as error:
             error.add_note(f"in {_place(error, adapter)}")
             raise
         return result
+
+    def _builder(self, scene: Scene) -> Callable[..., Run]:
+        """The adapter's function that runs such a scene.
+
+        Raises
+        ------
+        SceneError
+            The pedestal is free, and the adapter does not build it; the message names engines that do.
+        """
+        adapter = self.load()
+        if not scene.is_stack:
+            return adapter.run
+        if hasattr(adapter, "run_stack"):
+            return adapter.run_stack
+        able = [name for name, other in self.known.items() if other.installed and hasattr(other.load(), "run_stack")]
+        raise SceneError(
+            "pedestal.free",
+            True,
+            f"not known to {self.name}{getattr(adapter, 'NO_STACK', '')}",
+            f"remove it, or run it without an engine{' or with ' if able else ''}{', '.join(able)}",
+        )
 
     def simulate(
         self, scene: Scene, *, variant: str | None = None, history: bool = True, compare: bool = True, **settings: float
@@ -196,7 +218,8 @@ class Simulator(Engine):
         SettingError
             The variant or the setting is unknown, or a setting is not a positive number.
         SceneError
-            The scene gives the restitution, but the variant computes it.
+            The scene gives the restitution, but the variant computes it, or a free pedestal, which the adapter does not
+            build.
         Mismatch
             Of exudyn only: it holds other values than the scene asks for; nothing was run.
         """
@@ -232,6 +255,7 @@ class Simulator(Engine):
         self, scene: Scene, variant: str | None, history: bool, settings: Mapping[str, float], model: Response | None
     ) -> tuple[Response, Trace | None]:
         """Do `traced`, given the analytic model's run."""
+        self._builder(scene)
         name, chosen = choose(self, variant, settings)
         if not self.variants[name].takes_restitution:
             refuse_restitution(self, scene)
@@ -253,7 +277,6 @@ class Simulator(Engine):
 
     def _as_run(self, scene: Scene, variant: str) -> Scene:
         """The scene as it is run: with more friction where a couple needs it."""
-        refuse_free(scene, self.name)
         return scene if self.variants[variant].applies_impact else holding(scene)
 
     def _restitution_warning(self, scene: Scene, response: Response) -> tuple[Caution, ...]:
@@ -284,6 +307,10 @@ class Simulator(Engine):
         if run.trace is None:
             failure = run.failure or Failure("the run ended before its first step")
             return failed_response(scene, failure, **labels), None
+        if scene.is_stack:
+            from .stack import observe_stack  # which needs this module
+
+            return observe_stack(scene, run, history=history, **labels), run.trace
         response = observe(
             scene, run.trace, beyond=beyond, history=history, failure=run.failure, ended=run.ended, **labels
         )
@@ -291,7 +318,7 @@ class Simulator(Engine):
 
     def _longer_run(self, scene: Scene, name: str, chosen: Any, run: Run) -> Run | None:
         """The same run of a longer scene, if the scene ends during a change of contact; else None."""
-        if run.trace is None or run.failure or run.ended:
+        if run.trace is None or run.failure or run.ended or scene.is_stack:
             return None
         time, swings = run.trace.time, find_swings(run.trace)
         changes = np.append(swings.first[1:], swings.last)

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -130,6 +130,22 @@ class Trace:
     def upto(self, count: int) -> Trace:
         """The first `count` steps."""
         return self.at(slice(count))
+
+
+@dataclass(frozen=True)
+class StackTrace(Trace):
+    """The `Trace` of the block, its tilt from the pedestal, its centre absolute; pedestal: the trace of that.
+
+    hysteretic: force of one bearing [N], shape (n,).
+    """
+
+    pedestal: Trace = field(kw_only=True)
+    hysteretic: np.ndarray = field(kw_only=True)
+
+    def at(self, steps: slice | np.ndarray) -> StackTrace:
+        """The steps of a slice or of an array of indices."""
+        parts: dict[str, Any] = {"pedestal": self.pedestal.at(steps), "hysteretic": self.hysteretic[steps]}
+        return cast(StackTrace, replace(super().at(steps), **parts))
 
 
 @dataclass(frozen=True)

@@ -73,11 +73,11 @@ def energy_balance(scene: Scene, trace: Trace) -> tuple[np.ndarray, np.ndarray]:
         base * v**2 + m * (centre[:, 2] ** 2 + centre[:, 3] ** 2) + scene.block.centre_inertia * trace.tilt_rate**2
     )
     potential = m * model.g * z + 0.5 * law.count * law.kb * x**2
-    lost = _trapezoid(trace.bearing_force - law.count * law.kb * x, x)
+    lost = trapezoid(trace.bearing_force - law.count * law.kb * x, x)
     moved = base * x + m * centre[:, 0], base * v + m * centre[:, 2]
-    balance = kinetic + potential + lost - _work(scene.motion, trace.time, *moved)
+    balance = kinetic + potential + lost - work(scene.motion, trace.time, *moved)
     if scene.motion is not None:
-        balance = balance - _work(scene.motion.vertical, trace.time, m * z, m * centre[:, 3])
+        balance = balance - work(scene.motion.vertical, trace.time, m * z, m * centre[:, 3])
     return balance - balance[0], kinetic
 
 
@@ -141,7 +141,7 @@ def check_place(scene: Scene, trace: Trace, overturned: bool) -> Failure | None:
     return None
 
 
-def _work(motion: Motion | None, time: np.ndarray, moved: np.ndarray, rate: np.ndarray) -> np.ndarray:
+def work(motion: Motion | None, time: np.ndarray, moved: np.ndarray, rate: np.ndarray) -> np.ndarray:
     """Work [J] of the inertial load up to each step; moved: sum of mass times displacement [kg m]; rate: its rate."""
     if motion is None:
         return np.zeros_like(time)
@@ -150,10 +150,10 @@ def _work(motion: Motion | None, time: np.ndarray, moved: np.ndarray, rate: np.n
         samples = motion.dt * np.arange(len(motion.samples))
         fine = np.union1d(time, samples[(samples > time[0]) & (samples < time[-1])])
         between = cubic_through(time, moved, rate)(fine)
-    return -_trapezoid(motion.acceleration(fine), between)[np.searchsorted(fine, time)]
+    return -trapezoid(motion.acceleration(fine), between)[np.searchsorted(fine, time)]
 
 
-def _trapezoid(force: np.ndarray, path: np.ndarray) -> np.ndarray:
+def trapezoid(force: np.ndarray, path: np.ndarray) -> np.ndarray:
     return np.concatenate(([0.0], np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(path))))
 
 

@@ -224,7 +224,7 @@ class Lesson:
     question to answer before the controls are used, which the picture then answers. code : a few lines that compute a
     number of the lesson, `answer`; their text is a cell of the notebook. playground : positions of the playground's
     sliders, as its address after #. drawing : at the head of the lesson. table : rows below the picture. example : a
-    second picture, without controls, and its caption `says`.
+    second picture, without controls, its caption `says`, and its heading.
     """
 
     number: int
@@ -247,6 +247,7 @@ class Lesson:
     drawing: Callable[[], Markup] | None = None
     table: Callable[[], Table] | None = None
     example: Callable[[], View] | None = None
+    example_head: str = "A bad example"
 
     def glossary(self) -> list[tuple[str, str]]:
         """Return (symbol as TeX, meaning) of each symbol of the lesson."""

@@ -136,7 +136,7 @@ def closing(lesson: Lesson, mo: Any) -> Any:
     wrong = "\n".join(f"- {text}" for text in lesson.wrong)
     folded = {exercise.question: mo.md(f"**{answer(exercise)}** – {exercise.because}") for exercise in lesson.exercises}
     example = lesson.example() if lesson.example else None
-    parts = [mo.md(f"**A bad example.** {example.says}"), shown(example, mo)] if example else []
+    parts = [mo.md(f"**{lesson.example_head}.** {example.says}"), shown(example, mo)] if example else []
     parts += [mo.md(f"## What goes wrong\n\n{wrong}\n\n## Exercises"), mo.accordion(folded)]
     if lesson.table:
         table = lesson.table()

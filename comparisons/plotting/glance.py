@@ -263,11 +263,12 @@ def endings(shares: Sequence[Endings]) -> Figure:
     """Draw the shares of runs that end otherwise than the model's, motion by motion."""
     caption = (
         "Lines: 95 % intervals; runs under one motion count as one. Missed: overturns in the model alone. Added: "
-        "overturns in the engine alone. Other: stands, slides or rocks instead. Late: both overturn, at different "
-        "times. Failed: no result, or an unphysical one. Left out in every row: runs near an outcome boundary of the "
-        "model, where a change of the scene by 10⁻⁴ changes its end (pulses: within 1 % of the boundary); the column "
-        "says how many of them overturn in engine or model alone, or fail. –: not tested, or not stored. Defaults were "
-        "run in fewer scenes. Pulses under which the block would jump are not counted."
+        "overturns in the engine alone. Other: stands, slides or rocks instead, or the other one of two blocks "
+        "overturns. Late: both overturn, at different times. Failed: no result, or an unphysical one. Left out in "
+        "every row: runs near an outcome boundary of the model, where a change of the scene by 10⁻⁴ changes its end "
+        "(pulses: within 1 % of the boundary); the column says how many of them overturn in engine or model alone, or "
+        "fail. –: not tested, or not stored. Defaults were run in fewer scenes. Pulses under which the block would "
+        "jump, and stacked blocks that leave the model, are not counted."
     )
     return broad(_endings_chart(shares, WIDE), [_endings_chart(shares, WIDTH)], caption)
 

@@ -47,6 +47,7 @@ SHORT = {
     "restitution": "One impact",
     "overturning": "Many pulses",
     "statues": "Random statues",
+    "stack": "Stacked blocks",
     "recorded": "Recorded motions",
     "shake-table": "Shake table",
     "fragility": "Many earthquakes",

@@ -73,6 +73,10 @@ QUESTIONS = {
         "Statues drawn at random in the promised range. How often is an engine right, with and without friction? "
         "Where are its overturning boundaries, and is every wrong run reported?"
     ),
+    "stack": (
+        "A statue on a free pedestal: two blocks on each other. Are engines right, what falls first and when, and is "
+        "the answer always unique?"
+    ),
     "stability": (
         "Hard cases in every solver and variant. Is each right, different or failed, by which measures, and do finer "
         "levels help?"

@@ -190,6 +190,11 @@ VARIANTS = {
 }
 
 
+NO_STACK = (
+    ": the contact of its corners is the adapter's own law along the axes of the ground, not of a tilted pedestal"
+)
+
+
 def versions() -> dict[str, str]:
     """Versions of the packages that compute: {package: version}."""
     return {"exudyn": version("exudyn"), "python": platform.python_version()}

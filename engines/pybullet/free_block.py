@@ -11,11 +11,8 @@ from analytic.solver import until_decided
 
 from ..loop import FirstScript, run_of, trace_of
 from ..observe import failed_response, observe
-from .adapter import FRICTION, FreeBox, iterations, pybullet, versions, without_losses
+from .adapter import FRICTION, FreeBox, correction, iterations, pybullet, versions, without_losses
 
-# contactERP of a box on a slab: penetration decays at this rate per second at any step. With a fixed share of .08 per
-# step the base velocity jump is off by 2 to 5 % at any step.
-CORRECTION_RATE, MOST_CORRECTION = 30.0, 0.1
 BREAKING_THRESHOLD = 1e-3  # m; with Bullet's own .02 the rate after the third impact of a box is off by 4e-4 rad/s
 LEAST_ITERATIONS = 20  # a box has four corners, and `iterations` counts what two need
 CONTACT = 1e-6  # tilt below which the block counts as in flat contact, over the slenderness
@@ -58,7 +55,7 @@ def _without_defaults(box, scene, step):
         fixedTimeStep=step,
         numSubSteps=0,
         contactSlop=0.0,
-        contactERP=min(MOST_CORRECTION, CORRECTION_RATE * step),
+        contactERP=correction(step),
         contactBreakingThreshold=BREAKING_THRESHOLD,
         numSolverIterations=max(LEAST_ITERATIONS, iterations(scene, 2)),
         physicsClientId=client,

@@ -2,7 +2,7 @@
 
 import math
 
-from analytic import PulseMotion, Scene, simulate, synthetic_motion
+from analytic import Block, Pedestal, PulseMotion, Scene, simulate, synthetic_motion
 from analytic.motion import Motion
 from analytic.scene import BASE, BEARINGS, caryatid_block
 
@@ -28,6 +28,11 @@ NEAR_FAULT = synthetic_motion()
 LONG = 2 * math.pi / 1.8  # rad/s, near the frequency of the isolated statue
 MOTIONS: dict[str, Motion] = {"near-fault": NEAR_FAULT, "long pulse": PulseMotion("one-sine", 0.22 * G, LONG)}
 WINDOW = 12.0  # s
+BUST = Scene(
+    block=Block(mass=120.0, radius=math.hypot(0.125, 0.35), slenderness=math.atan2(0.125, 0.35)),
+    pedestal=Pedestal(width=0.4, mass=430.0, height=1.0),
+)
+SHORT, SHOWN = 2 * math.pi * 1.2, 4.0  # rad/s; s
 
 
 def scene_of(slenderness: float, stiffness: float | None, motion: Motion) -> Scene:
@@ -83,6 +88,36 @@ def harmful_pulse() -> float:
     return edge(
         lambda amplitude: overturns(scene_of(0.28, 1.0, PulseMotion("one-sine", amplitude * G, LONG))), 0.15, 0.25
     )
+
+
+def bust_under(peak: float, free: bool) -> Scene:
+    """Return a bust on its pedestal, free or fixed, under a sine of 1.2 Hz; peak [g]."""
+    pulse = PulseMotion("one-sine", peak * G, SHORT)
+    return BUST.with_(pedestal={"free": free}, motion=pulse, duration=SHOWN)
+
+
+def free_pedestal() -> View:
+    """Tilts of a bust on a fixed and on a free pedestal."""
+    figure, axes = canvas(2, (1, 1), sharex=True)
+    peak = weakest_on_a_free_pedestal()
+    for axis, free in zip(axes, (False, True), strict=True):
+        history = simulate(bust_under(peak, free)).history
+        tilt_axis(axis, history.time, history.tilt / BUST.block.slenderness, SHOWN)
+    pedestal = math.atan2(0.4, 1.0)
+    axes[1].plot(history.time, history.pedestal_tilt / pedestal, "--", color=OTHER, label="of the pedestal")
+    axes[1].set(xlabel="time [s]")
+    legend(axes[1], loc="upper right")
+    return View(
+        figure,
+        {"peak of the sine": (peak, "g"), "it lifts a fixed bust above": (math.tan(BUST.block.slenderness), "g")},
+        f"A bust on a pedestal 0.4 m wide and 1 m high, under a sine of 1.2 Hz and {peak:g} g. Above: the pedestal is "
+        "fixed, and the bust hardly lifts. Below: the pedestal is free, both rock, and the bust overturns.",
+    )
+
+
+def weakest_on_a_free_pedestal() -> float:
+    """Least peak [g], in steps of 0.01 g, of a sine of 1.2 Hz at which the bust on a free pedestal overturns."""
+    return next(k / 100 for k in range(33, 45) if overturns(bust_under(k / 100, True)))
 
 
 def code() -> object:
@@ -160,7 +195,18 @@ LESSON = Lesson(
             "g",
             "Less than the $0.288\\,g$ that would lift it without bearings.",
         ),
+        Exercise(
+            "A bust of 0.25 × 0.7 m and 120 kg stands on a pedestal of 0.4 × 1 m and 430 kg that is not fixed. In "
+            "steps of 0.01 g, which sine of 1.2 Hz is the weakest that overturns it? Write `free = true` in "
+            "`[pedestal]`.",
+            weakest_on_a_free_pedestal,
+            "g",
+            "The pedestal rocks before the bust would, and each of its landings pushes the bust. Fixing it pays.",
+            2,
+        ),
     ),
     code=code,
     playground="motion=synthetic&base=true",
+    example=free_pedestal,
+    example_head="A pedestal that is not fixed",
 )

@@ -256,6 +256,7 @@ SMALL: dict[str, dict[str, Any]] = {
     "fragility": {"scenes": {"free-standing": ("caryatid-rigid", (0.15, 0.3))}, "runs": (40, 3, 1)},
     "sensitivity": {"scenes": {"free-standing": ("caryatid-rigid", (0.2,))}, "motions": (8, 2, 1)},
     "mistakes": {},
+    "stack": {"size": (1, (), 1.8, 1)},
 }
 DEAR = {"restitution": "long", "statues": "long", "sensitivity": "slow", "mistakes": "long"}
 # an engine's row is made of its own runs alone; of the second by test_shake_table.py, with tests made up

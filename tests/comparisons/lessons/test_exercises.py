@@ -12,6 +12,7 @@ from scripts import run_alone, written
 from analytic import PulseMotion, Scene, load_scene, simulate, synthetic_motion
 from analytic.checks.closed_form import swing_energy
 from analytic.checks.twin import simulate_twin
+from analytic.checks.two_bodies import simulate_two_bodies
 from analytic.rocking import RockingModel, restitution
 from analytic.scene import BASE, BEARINGS, MASS, RADIUS, caryatid_block
 from comparisons.execution.results import RESULTS
@@ -108,6 +109,12 @@ def test_an_edge_of_overturning_has_two_sides(side, outcome):
     pulse = PulseMotion("one-sine", caryatid.harmful_pulse() * (1 + 0.1 * side) * 9.81, 2 * math.pi / 1.8)
     assert simulate(caryatid.scene_of(0.28, 1.0, pulse), history=False).outcome == outcome
     assert simulate(caryatid.scene_of(0.28, None, pulse), history=False).outcome == "stands"  # isolation does harm
+
+
+@pytest.mark.parametrize("less, fallen", [(0.0, "upper"), (0.01, "")])
+def test_a_free_pedestal_throws_a_bust_off(less, fallen):
+    scene = caryatid.bust_under(caryatid.weakest_on_a_free_pedestal() - less, free=False)
+    assert simulate_two_bodies(scene, step=1e-4).fallen == fallen
 
 
 def test_lifting_is_the_bearings_force():
