@@ -51,14 +51,14 @@ def row_of(par: L.Parameters) -> tuple[float, ...]:
     return (*par[:-1], *par.constants)
 
 
-def arrays(totals: np.ndarray, capacity: int = 0, outputs: int = 0) -> L.Arrays:
+def arrays(totals: np.ndarray, capacity: int = 0, outputs: int = 0) -> tuple[np.ndarray, ...]:
     """Return the workspace of runs, with room for `capacity` events of a kind and `outputs` rows of history.
 
-    totals : (n, TOTALS), a row for each run.
+    totals : (n, TOTALS), a row for each run. Returns the fields of `layout.Arrays`.
     """
     workspace, scratch = np.zeros((L.ROWS, MAX_ORDER + 2)), np.empty(SCRATCH)
     events = np.empty((capacity, 4)), np.empty(capacity), np.empty(capacity)
-    return L.Arrays(workspace, scratch, *events, np.empty((outputs, 6)), totals)
+    return workspace, scratch, *events, np.empty((outputs, 6)), totals
 
 
 def run(
@@ -72,18 +72,21 @@ def run(
     outputs = int(math.floor(par.duration / options.output_step * (1 + 1e-14))) + 1 if options.output_step > 0 else 0
     into = arrays(np.empty((1, L.TOTALS)), options.capacity if options.record else 0, outputs)
     run_rows(np.array([row_of(par)]), np.array([ground.shaking]), ground, options, into)
-    (totals,) = into.totals
-    counts = [int(totals[slot]) for slot in (L.IMPACTS, L.UPLIFTS, L.RESTS, L.WRITTEN)]
-    written = into.impacts, into.uplifts, into.rests, into.history
-    return totals, *(rows[:count] for rows, count in zip(written, counts, strict=True))
+    _, _, impacts, uplifts, rests, history, (totals,) = into
+    count = totals.tolist()
+    events = impacts[: int(count[L.IMPACTS])], uplifts[: int(count[L.UPLIFTS])], rests[: int(count[L.RESTS])]
+    return totals, *events, history[: int(count[L.WRITTEN])]
 
 
-def run_rows(rows: np.ndarray, pulses: np.ndarray, ground: L.Ground, options: L.Options, into: L.Arrays) -> None:
+def run_rows(
+    rows: np.ndarray, pulses: np.ndarray, ground: L.Ground, options: L.Options, into: tuple[np.ndarray, ...]
+) -> None:
     """Run each of `rows` under its own of `pulses` and the samples of `ground`.
 
     rows : (n, SIZE), entries of `ROW`. pulses : (n, SHAKING). into : `arrays`; events and history are the last run's.
     """
-    _run_rows(rows, pulses, ground._replace(upright=None), ground.upright, options, into)
+    # Plain tuples: numba takes twice as long to recognise a named one, longer than a short run takes.
+    _run_rows(rows, pulses, (ground.kind, ground.dt, ground.samples), ground.upright, (*options,), into)
 
 
 # One long function, as two loops share some twenty state variables.
@@ -246,10 +249,11 @@ def _conclude(par, end_of_motion, body, base, totals):
 # It stands below all that it calls, as the key of its compiled form is taken here, see `cache`.
 @entry
 def _run_rows(rows, pulses, ground, upright, options, into):
-    """Run the rows. upright : an argument of its own, see `steps`."""
+    """Run the rows. ground : kind, dt and samples; upright : an argument of its own, see `steps`."""
+    (kind, dt, samples), chosen = ground, L.Options(*options)
     P, work, impacts, uplifts, rests, history, totals = into
     for i in range(rows.shape[0]):
         numbers = tuple_of(rows[i], SIZE)
         par = L.Parameters(*numbers[:OWN], Constants(*numbers[OWN:]))  # type: ignore[call-arg]  # of one length
-        ground_of_run = L.Ground(ground.kind, ground.dt, ground.samples, None, L.Shaking(*tuple_of(pulses[i], SHAKING)))
-        _integrate(par, ground_of_run, upright, options, L.Arrays(P, work, impacts, uplifts, rests, history, totals[i]))
+        ground_of_run = L.Ground(kind, dt, samples, None, L.Shaking(*tuple_of(pulses[i], SHAKING)))
+        _integrate(par, ground_of_run, upright, chosen, L.Arrays(P, work, impacts, uplifts, rests, history, totals[i]))
