@@ -23,8 +23,9 @@ import numpy as np
 from numba.core.caching import UserProvidedCacheLocator
 
 HERE = Path(__file__).parent
+USER = Path.home() / ".cache" / "rocking"
 # Folders of the cache; the first one that can be written is used.
-PLACES = (HERE / "__pycache__", Path.home() / ".cache" / "rocking", Path(tempfile.gettempdir()))
+PLACES = (HERE / "__pycache__", USER, Path(tempfile.gettempdir()))
 
 
 class Locator(UserProvidedCacheLocator):
