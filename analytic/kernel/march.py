@@ -103,7 +103,7 @@ def _integrate(par, ground, upright, options, arrays):
     no, none = math.isnan(0.0), math.floor(0.0)  # a literal argument would compile a function once more
     fresh, refused = no, no  # onset just located: phi'' = 0 exactly; onset refused: a touch (graze) of the threshold
     shape = L.Shape(par.gamma, par.slope, par.on_base)
-    branch = L.Branch(0.0, par.x, 1.0)
+    branch = L.Branch(0.0, par.x, 1.0, 0.0)
     peak_tilt, peak_x, will_overturn = abs(par.tilt), abs(par.x), False
     held = 0.0, 1.0, 0.0, peak_x, 0.0  # friction demand, N/(m g), peaks of the base, time: up to |tilt| = gamma
     segment, begin, written, idle, steps, highest = none, 0.0, none, none, none, none
@@ -174,7 +174,7 @@ def _integrate(par, ground, upright, options, arrays):
             if s != 0:
                 tilt, rate, peak_tilt = end_of_block(body, step, peak_tilt, P, work)
             if par.on_base:
-                base = end_of_base(par, event, base, branch, step, P)
+                base, branch = end_of_base(par, event, base, branch, step, P)
                 peak_x = max(peak_x, abs(base.x))
             if event == L.PASSAGE:
                 tilt = s * par.gamma
