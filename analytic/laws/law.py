@@ -57,7 +57,7 @@ class Law:
     after_travel(z, dx, c) : z after monotonic travel dx [m].
     work(z, dx, c) : integral of z over that travel [J]; not compiled.
     recoverable(z, c) : energy [J] that a bearing with z > 0 returns while unloading to z = 0.
-    power(travel, c) : what both the end of a step and the start of the next need of the travel, as it is slow to compute.
+    power(travel, c) : what the end of a step and the start of the next both need of the travel, slow to compute.
     begin(s, z, travel, power, c) : (q_0, factors, corner) at the start of a Taylor step: q_0, three numbers for the
         terms, and the next s z at which the stiffness jumps, an event; inf without one.
     term(k, factors, x, v, q) : z_k for k >= 1, with q_k filled in; x up to k, v and q up to k - 1 are given.
