@@ -46,6 +46,9 @@ OWN, SIZE, SHAKING = len(L.Parameters._fields) - 1, len(ROW.descr), len(L.Shakin
 tuple_of: Any = to_fixed_tuple
 
 
+NO_EVENTS = np.empty((0, 4)), np.empty(0), np.empty(0)
+
+
 def row_of(par: L.Parameters) -> tuple[float, ...]:
     """Return the parameters as an entry of an array of dtype `ROW`."""
     return (*par[:-1], *par.constants)
@@ -57,7 +60,7 @@ def arrays(totals: np.ndarray, capacity: int = 0, outputs: int = 0) -> tuple[np.
     totals : (n, TOTALS), a row for each run. Returns the fields of `layout.Arrays`.
     """
     workspace, scratch = np.zeros((L.ROWS, MAX_ORDER + 2)), np.empty(SCRATCH)
-    events = np.empty((capacity, 4)), np.empty(capacity), np.empty(capacity)
+    events = (np.empty((capacity, 4)), np.empty(capacity), np.empty(capacity)) if capacity else NO_EVENTS
     return workspace, scratch, *events, np.empty((outputs, 6)), totals
 
 
@@ -71,7 +74,8 @@ def run(
     """
     outputs = int(math.floor(par.duration / options.output_step * (1 + 1e-14))) + 1 if options.output_step > 0 else 0
     into = arrays(np.empty((1, L.TOTALS)), options.capacity if options.record else 0, outputs)
-    run_rows(np.array([row_of(par)]), np.array([ground.shaking]), ground, options, into)
+    rows, pulses = np.fromiter(row_of(par), float)[None], np.fromiter(ground.shaking, float)[None]
+    run_rows(rows, pulses, ground, options, into)
     _, _, impacts, uplifts, rests, history, (totals,) = into
     count = totals.tolist()
     events = impacts[: int(count[L.IMPACTS])], uplifts[: int(count[L.UPLIFTS])], rests[: int(count[L.RESTS])]
