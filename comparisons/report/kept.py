@@ -68,14 +68,11 @@ def digest_of(*parts: object) -> str:
 
 
 def _files(place: Path) -> Iterable[Path]:
-    """Return a file, or the files of a folder without results and compiled code."""
+    """Return a file, or the files of a folder; of a package without the stored results, and without compiled code."""
     if place.is_file():
         return [place]
-    return sorted(
-        file
-        for file in place.rglob("*")
-        if file.is_file() and "__pycache__" not in file.parts and (place == RESULTS or RESULTS not in file.parents)
-    )
+    files = (file for file in place.rglob("*") if file.is_file() and "__pycache__" not in file.parts)
+    return sorted(file for file in files if place not in RESULTS.parents or RESULTS not in file.parents)
 
 
 def digest_of_code() -> str:

@@ -23,7 +23,9 @@ def drawing(tmp_path, monkeypatch):
     monkeypatch.setattr(kept, "FOLDER", tmp_path / "cache" / "pages")
     monkeypatch.setattr(kept, "PROJECT", ("drawing_package",))
     monkeypatch.syspath_prepend(str(tmp_path))
-    package, studies = tmp_path / "drawing_package", tmp_path / "studies"
+    package = tmp_path / "drawing_package"
+    studies = package / "results"  # as the shipped ones, in a package
+    monkeypatch.setattr(kept, "RESULTS", studies)
     for name, text in PACKAGE.items():
         (package / name).parent.mkdir(parents=True, exist_ok=True)
         (package / name).write_text(text)
@@ -71,10 +73,15 @@ def test_a_new_or_renamed_file_of_code_draws_anew(drawing):
     assert drawing.draw()[0] == 0
 
 
-def test_a_change_of_the_result_draws_anew(drawing):
+def test_a_change_of_a_result_draws_that_one_anew(drawing):
     drawing.draw()
     drawing.result.write_bytes(drawing.result.read_bytes() + b"\n")
     assert drawing.draw()[0] == 2
+    other = shutil.copytree(RESULTS / "mistakes", drawing.package / "results" / "mistakes")
+    assert drawing.draw()[0] == 3  # itself, and both pages with a new entry in their lists
+    (other / "more").write_text("")
+    assert drawing.draw()[0] == 2
+    assert drawing.draw()[0] == 0
 
 
 @pytest.mark.parametrize(
