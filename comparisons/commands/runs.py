@@ -236,7 +236,8 @@ def engines(
 
     Example: rocking engines exudyn
     """
-    from ..plotting.terminal import echo, engine_text, engines_table
+    from ..plotting.terminal import echo
+    from ..plotting.variants import engine_text, engines_table
 
     with stdout_to_stderr():  # engines print on import
         names, missing = ((), {}) if name else available_engines()

@@ -8,6 +8,8 @@ the table of trust of all variants. `screen` builds the first screen: five lines
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
+from operator import attrgetter
 from pathlib import Path
 from typing import Any, Self
 
@@ -20,8 +22,9 @@ from ..plotting.glance import Endings, Glance, costs, endings, swatches
 from ..plotting.parts import COST, RESTITUTION, Judgement, Mark, Section, grouped
 from ..plotting.wording import listed, outcomes, rating, with_counts
 from ..schemas.columns import number, percent
-from ..studies import StudyBroken, get_study, study_names
+from ..studies import STUDIES, StudyBroken, get_study, study_names
 from ..studies.rows import read_study
+from .kept import digest_of, digest_of_code, kept
 
 
 @dataclass(frozen=True)
@@ -30,7 +33,8 @@ class Stored:
 
     section: the study's own page. finding: its section of the first page. judgements: its rows of the first table.
     glance: its part of the first screen. origin: machine, versions, date and commit in one line. variants: those of its
-    settings, for `setups_of`. wrong: why it cannot be shown; "": it can.
+    settings, for `setups_of`. wrong: why it cannot be shown; "": it can. key: digest of what it is drawn from, under
+    which it is kept (`comparisons.report.kept`); "": it is not kept.
     """
 
     name: str
@@ -41,6 +45,7 @@ class Stored:
     origin: str = ""
     variants: tuple[Mapping[str, Any], ...] = ()
     wrong: str = ""
+    key: str = ""
 
     @classmethod
     def damaged(cls, name: str, title: str, words: str, **more: Any) -> Self:
@@ -57,9 +62,10 @@ def stored_studies(
     """
     order = {name: place for place, name in enumerate(study_names())}
     paths = sorted(results_in(folder), key=lambda path: (order.get(path.name, len(order)), path.name))
-    stored = []
+    stored, code = [], digest_of_code()
     for path in paths:
-        stored.append(_stored(path))
+        key = digest_of(path, code)
+        stored.append(kept(key, partial(_stored, path, key), attrgetter("key")))
         progress(len(stored), len(paths))
     return stored
 
@@ -114,7 +120,8 @@ def commit_of(origin: Mapping[str, Any]) -> str:
     return origin["commit"][:12] + (", with uncommitted changes" if origin["dirty"] else "")
 
 
-def _stored(path):
+def _stored(path, key):
+    """Draw a result. key: under which it is kept, if it can be shown and its study is of this project."""
     name = path.name
     try:
         result = read_study(path)
@@ -137,7 +144,8 @@ def _stored(path):
         words = f"{name} cannot be shown: its page fails ({readable(repr(error))}); --replot shows where."
         return Stored.damaged(name, f"Study {result.kind}", words, age=old, origin=origin)
     finding = finding and replace(finding, age=old)
-    return Stored(name, section, finding, judgements, glance, origin, variants)
+    own = key if result.kind in STUDIES else ""
+    return Stored(name, section, finding, judgements, glance, origin, variants, key=own)
 
 
 def _variants(settings):
