@@ -40,16 +40,16 @@ The history as arrays, for numpy or matplotlib; `comparisons.plotting.plots.draw
 True
 """
 
-from .errors import EngineNotInstalled, SceneError, SettingError
-from .kernel.cache import kernel_cache
-from .motion import PulseMotion, SampledMotion
-from .records import read_record
-from .records.synthetic import synthetic_motion
-from .response import Caution, Difference, Energy, Failure, History, Impact, Response, State
+import importlib
+from typing import TYPE_CHECKING, Any
 
-with kernel_cache():
+if TYPE_CHECKING:
     from .batch import Outcomes, overturning_map, rocking_spectrum, simulate_many
-    from .checks import time_stepping  # noqa: F401 compiled, too
+    from .errors import EngineNotInstalled, SceneError, SettingError
+    from .motion import PulseMotion, SampledMotion
+    from .records import read_record
+    from .records.synthetic import synthetic_motion
+    from .response import Caution, Difference, Energy, Failure, History, Impact, Response, State
     from .scene import Base, Bearings, Block, Pedestal, Scene, Start
     from .scene_file import load_scene, shipped_scenes
     from .solver import simulate
@@ -84,3 +84,28 @@ __all__ = [
     "simulate_many",
     "synthetic_motion",
 ]
+
+# The same names by module: each is imported when first used (PEP 562), as some modules load a compiler.
+_NAMES = {
+    "batch": ("Outcomes", "overturning_map", "rocking_spectrum", "simulate_many"),
+    "errors": ("EngineNotInstalled", "SceneError", "SettingError"),
+    "motion": ("PulseMotion", "SampledMotion"),
+    "records": ("read_record",),
+    "records.synthetic": ("synthetic_motion",),
+    "response": ("Caution", "Difference", "Energy", "Failure", "History", "Impact", "Response", "State"),
+    "scene": ("Base", "Bearings", "Block", "Pedestal", "Scene", "Start"),
+    "scene_file": ("load_scene", "shipped_scenes"),
+    "solver": ("simulate",),
+}
+_MODULES = {name: module for module, names in _NAMES.items() for name in names}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    globals()[name] = value = getattr(importlib.import_module(f".{_MODULES[name]}", __name__), name)
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -10,9 +10,10 @@ import os
 import stat
 from collections.abc import Callable
 from os import PathLike
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
-import numpy as np
+if TYPE_CHECKING:
+    import numpy as np
 
 KEY_LENGTH, VALUE_LENGTH, TEXT_LENGTH, FILE_LENGTH = 100, 120, 500, 400  # characters of the parts of a message
 MOST_LINES = 20  # mistakes listed in one message, so that it fits on a screen; further ones are counted
@@ -161,4 +162,4 @@ def read_plain(path: str | PathLike[str], limit: int) -> bytes:
 
 
 GroundFunction = Callable[[float], float]  # a_g(t) [m/s2] of one time [s]
-Values = TypeVar("Values", float, np.ndarray)  # a number or an array; the result has the type of the argument
+Values = TypeVar("Values", float, "np.ndarray")  # a number or an array; the result has the type of the argument

@@ -462,7 +462,7 @@ def refuse_free(scene: Scene, what: str) -> None:
     """Raise `SceneError` where the pedestal is free; what : that does not know it, in words."""
     if scene.is_stack:
         remedy = "leave the line free = true out: the pedestal is then fixed"
-        raise SceneError("pedestal.free", True, f"not known to {what}", remedy, scene.name or None)
+        raise SceneError("pedestal.free", True, f"not supported by {what}", remedy, scene.name or None)
 
 
 MASS, RADIUS = 3172.05, 1.0884  # kg, m

@@ -461,6 +461,7 @@ def scene_text(
             "",
             "[pedestal]",
             *_rows({name: (sizes[name], SCENE_UNITS.get(f"pedestal.{name}", "")) for name in sizes}),
+            *(["# free = true  # not fixed: it may lift and rock"] if pedestal.mass and not pedestal.free else ()),
         ]
     if bearings is not None:
         lines += ["", *_bearings(bearings, note)]

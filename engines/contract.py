@@ -9,7 +9,7 @@ its own, holds
 - ``run(scene, variant, settings)``: a `Run` of a scene with a duration; `variant` is a name, `settings` an instance of
   that variant's dataclass, both checked. Where the motion has a `vertical` one, the block's weight is m (g + a_v);
 - ``run_stack(scene, variant, settings)``, if it builds a free pedestal under the block: a `Run` with the trace of
-  `engines.stack`. ``NO_STACK``: otherwise why not, in words that follow "not known to NAME".
+  `engines.stack`. ``NO_STACK``: otherwise why not, in words that follow "not supported by NAME".
 
 All else is the same for every engine and is done in `engines.simulating`: settings are checked, a scene without a
 duration runs until its outcome is decided, events and peaks are located outside the engine, and the response is

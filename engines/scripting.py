@@ -22,6 +22,7 @@ from analytic.errors import SceneError, SettingError
 from analytic.kernel.decision import motion_end, shortest_duration
 from analytic.motion import SampledMotion
 from analytic.rocking import BearingLaw
+from analytic.scene import refuse_free
 
 from .loads import FRICTION, UNIT_RADIUS, holding, share_of, unkept_friction
 
@@ -79,6 +80,7 @@ def write_script(engine: Engine, scene: Scene, name: str | None = None) -> dict[
 
 def _check(scene: Scene) -> None:
     """Raise `SceneError` where a scene has a law, a pulse or a restitution that scripts lack."""
+    refuse_free(scene, "scripts")
     bearings, motion = scene.bearings, scene.motion
     if bearings is not None and bearings.law not in LAWS:
         raise SceneError(

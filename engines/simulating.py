@@ -190,7 +190,7 @@ class Simulator(Engine):
         raise SceneError(
             "pedestal.free",
             True,
-            f"not known to {self.name}{getattr(adapter, 'NO_STACK', '')}",
+            f"not supported by {self.name}{getattr(adapter, 'NO_STACK', '')}",
             f"remove it, or run it without an engine{' or with ' if able else ''}{', '.join(able)}",
         )
 

@@ -3,12 +3,13 @@
 import doctest
 import importlib
 import re
+import shlex
 import subprocess
 import sys
 from typing import get_type_hints
 
 import pytest
-from test_readme import PARTS
+from test_readme import CONTRIBUTING, blocks
 
 from analytic import scene as part
 
@@ -41,7 +42,8 @@ def test_types_of_a_scene_read_as_they_are_written(one):
 @pytest.mark.timeout(1400)
 def test_the_reference_is_made_without_a_word_and_the_same_each_time(tmp_path):
     pytest.importorskip("pdoc", reason="the extra docs is not installed")
-    (command,) = (words[1:] for words in PARTS if words[:1] == ["pdoc"])
+    (block,) = (block for block in blocks("sh", CONTRIBUTING) if "/pdoc" in block)
+    command = shlex.split(block.partition("/pdoc ")[2].replace("\\\n", " "))
     pages = []
     for name in ("first", "second"):
         words = [str(tmp_path / name) if word == "reference" else word for word in command]

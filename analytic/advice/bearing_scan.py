@@ -32,7 +32,7 @@ from ..errors import SceneError, SettingError, require
 from ..kernel.compiled import inlined, inner
 from ..motion import SampledMotion
 from ..rocking import design_bearings
-from ..scene import Bearings, Scene
+from ..scene import Bearings, Scene, refuse_free
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -275,6 +275,7 @@ def scan_bearings(
     SettingError
         A number is out of range, there is no motion, or no bearings of any damping can be designed.
     """
+    refuse_free(scene, "a search for bearings")
     _check(scene, motions, stroke, tilt, periods)
     dampings, designs = _designs(functools.partial(designer, scene.total_mass, x_max=stroke, **design))
     number = COARSE * math.ceil(math.log(periods[1] / periods[0]) / PERIOD_STEP / COARSE)

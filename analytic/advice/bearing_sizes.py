@@ -86,10 +86,11 @@ class BearingSizes:
         if self.kind == "pendulum":
             return f"Each pendulum bearing: {pendulum}.", *unmade
         assert self.diameter and self.height and self.overlap is not None and self.pressure  # all but a pendulum have
+        overlap = f"{self.overlap:.0%} of its area overlaps" if self.overlap else "top and bottom no longer overlap"
         sizes = (
             f"Each {self.kind} bearing: {f'lead core {round(1000 * self.core, 1):g} mm, ' if self.core else ''}"
             f"rubber {round(1000 * self.diameter, 1):g} mm in diameter, "
-            f"{round(1000 * self.height, 1):g} mm high; {self.overlap:.0%} of its area overlaps at x_max; "
+            f"{round(1000 * self.height, 1):g} mm high; {overlap} at x_max; "
             f"pressure {self.pressure / 1e6:.3g} MPa"
             + (f", {self.overlap_pressure / 1e6:.3g} MPa on the overlap." if self.overlap_pressure else ".")
         )

@@ -10,6 +10,9 @@ boundary between two changes is bisected. A band narrower than the `step` of the
 step is always found. Where narrow bands of outcomes alternate, the boundary is interleaved (fractal). The safe gap
 about the scene is then scanned again in steps `FINER` times smaller, and the margin says so, as the gap may contain
 still narrower bands.
+
+With a free pedestal only motion or start is changed, in steps of `STACK_STEP` at least and without the second scan, as
+a run takes a thousand times as long.
 """
 
 from __future__ import annotations
@@ -35,12 +38,14 @@ from ..solver import STEPS_PER_SAMPLE, simulate, too_long
 if TYPE_CHECKING:
     from ..response import Response
 
-LIMIT_STATES = ("slides", "lifts", "tilt", "stroke", "falls off", "overturns")
+LIMIT_STATES = ("slides", "lifts", "tilt", "stroke", *FALLS)
 TILT = 0.5  # share of the slenderness
 SPAN, STEP = 0.2, 5e-4
 LARGEST_SPAN = 9.0  # ten times the motion: a record of 0.1 g then has 1 g
 MOST_STEPS = 2e9  # of all runs, some twenty minutes on two cores
 BISECTIONS = 14  # boundaries are located to 6e-5 of a step
+STACK_QUANTITIES = ("motion", "start")
+STACK_STEP, STACK_BISECTIONS = 0.01, 7  # of a scene with a free pedestal: boundaries to 1e-4 of the motion
 _outcome = attrgetter("outcome")
 FINER = 20  # factor between the steps of the two scans of an interleaved margin
 # Limits of `nearby`: the motion is one of many that are possible, and its scale is known to a few per cent at best.
@@ -249,12 +254,13 @@ QUANTITIES = {
 def limit_states(scene: Scene) -> tuple[str, ...]:
     """Return the LIMIT_STATES that a scene can reach: "stroke" needs bearings with an x_max, "slides" a friction.
 
-    "falls off" needs a friction and a pedestal.
+    "falls off" needs a friction and a pedestal, "pedestal overturns" one that is free.
     """
     needs = {
         "stroke": scene.bearings is not None and scene.bearings.x_max is not None,
         "slides": scene.friction is not None,
         "falls off": scene.pedestal is not None and scene.friction is not None,
+        "pedestal overturns": scene.is_stack,
     }
     return tuple(state for state in LIMIT_STATES if needs.get(state, True))
 
@@ -302,6 +308,7 @@ def margins(
         f"step = {step!r}: give the relative distance of two changes, from 1e-6 to the span {span:g}",
     )
     scene = scene.with_(duration=None)
+    step, only = (max(step, min(STACK_STEP, span)), STACK_QUANTITIES) if scene.is_stack else (step, only)
     count = math.floor(span / step * (1 + 1e-12))
     changes = step * np.arange(-count, count + 1)
     changes = changes[1 + changes > 0.5 * step]  # closer to -1 the quantity almost vanishes
@@ -314,7 +321,7 @@ def margins(
             progress(name)
         bands, ends = _bands(scene, name, changes, tilt, workers)
         margin = Margin(name, float(value), QUANTITIES[name].unit, bands, step, **ends)
-        if margin.interleaved:
+        if margin.interleaved and not scene.is_stack:
             bands, ends = _bands(scene, name, _finer(margin, changes), tilt, workers)
             margin = replace(margin, bands=bands, **ends)
         results.append(margin)
@@ -361,7 +368,7 @@ def _bands(scene, name, changes, tilt, workers):
     changes, states, ends = _scanned(scene, name, changes, tilt, workers)
     edges, columns = np.nonzero(states[1:] != states[:-1])
     low, high, before = changes[edges], changes[edges + 1], states[edges, columns]
-    for _ in range(BISECTIONS if len(edges) else 0):
+    for _ in range((STACK_BISECTIONS if scene.is_stack else BISECTIONS) if len(edges) else 0):
         middle = 0.5 * (low + high)
         points, where = np.unique(middle, return_inverse=True)
         middle_states, failed = _states(scene, name, points, None, tilt, workers)
@@ -429,6 +436,8 @@ def _states(scene, name, changes, scenes, tilt, workers):
 
     states : array (changes, LIMIT_STATES and one more): those reached, and whether the model is valid.
     """
+    if scene.is_stack:
+        return _stack_states(scene, name, changes, tilt)
     if scenes is None:
         scenes = [QUANTITIES[name].changed(scene, 1 + change) for change in changes]
     scales = 1 + changes if name == "motion" else None
@@ -443,10 +452,30 @@ def _states(scene, name, changes, scenes, tilt, workers):
             outcomes.peak_base_displacement > farthest,
             outcomes.fell_off,
             outcomes.overturns,
+            np.zeros_like(outcomes.overturns),  # a pedestal that is fixed
             (outcomes.min_normal_ratio > 0) | (scene.friction is not None),
         ]
     )
     return reached, outcomes.failed
+
+
+def _stack_states(scene, name, changes, tilt):
+    """Return what `_states` does, of a scene with a free pedestal."""
+    farthest = scene.bearings.x_max if "stroke" in limit_states(scene) else math.inf
+    rows = []
+    for factor in (1 + changes).tolist():
+        changed = QUANTITIES[name].changed(scene, factor)
+        run = simulate(
+            changed.with_(motion=scene.motion.scaled(factor)) if name == "motion" else changed, history=False
+        )
+        reached = {
+            "lifts": run.stack is not None and bool(run.stack.rocked),
+            "tilt": run.peak_tilt_ratio > tilt or run.outcome == FALLS[1],
+            "stroke": run.peak_base_displacement > farthest,
+            **{name: run.outcome == name for name in FALLS},
+        }
+        rows.append([*(reached.get(state, False) for state in LIMIT_STATES), not run.failure])
+    return np.array(rows), np.zeros(len(rows), dtype=bool)
 
 
 def nearby(scene: Scene, *, workers: int | None = None) -> tuple[np.ndarray, Outcomes]:

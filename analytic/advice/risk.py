@@ -23,12 +23,12 @@ from scipy.special import ndtr, ndtri
 
 from ..batch import Outcomes, simulate_many
 from ..errors import SceneError, require
+from ..scene import Scene, refuse_free
 from ..solver import simulate
 from .margins import QUANTITIES, check_cost, limit_states, why_it_fails
 
 if TYPE_CHECKING:
     from ..motion import Motion
-    from ..scene import Scene
 
 DRAWS = 40  # for each record: more records narrow the interval more than more draws do
 LARGEST_SPREAD = 0.5
@@ -159,6 +159,7 @@ def risk(
     SceneError
         The scene cannot be run, or is too stiff or too long for so many runs; the message names the part.
     """
+    refuse_free(scene, "odds")
     total = draws * sum(map(len, records))
     require(draws >= 2 and total <= MOST_RUNS, f"draws = {draws}: give at least 2, and at most {MOST_RUNS} runs in all")
     require(seed >= 0, f"seed = {seed}: give a whole number from 0 on")

@@ -26,9 +26,9 @@ from typing import TYPE_CHECKING, Any
 
 import numba
 import numpy as np
-from numba import njit
 
 from ..errors import SceneError, SettingError, require
+from ..kernel.cache import cached
 from ..kernel.compiled import inner
 from ..kernel.layout import Body
 from ..motion import SampledMotion
@@ -176,7 +176,7 @@ def _rocking(par, body, a, g, force):
     return spin, absolute, m * (absolute + c * spin + n * rate * rate), m * (g + n * spin - c * rate * rate)
 
 
-@njit(cache=True, nogil=True)
+@cached(nogil=True)
 def _march(par, h, ground, gravity, rows):
     """Take all steps, under a_g and g + a_v [m/s2] at each.
 
@@ -340,7 +340,7 @@ def _force(par, x, z, v):
     return par.count * (par.kb * x + z + par.damping * v)
 
 
-@njit(cache=True, nogil=True)
+@cached(nogil=True)
 def _slide(body, par, h, ground, gravity, rows):
     """Take all steps of a block that may slide, under the mean a_g and g + a_v [m/s2] in each; return as `_march`."""
     (q, v), z, pivot, taken, impacts, never = _start(par), par.z, NEITHER, 0.0, [(0.0, 0.0, 0.0, 0.0)], [0.0]

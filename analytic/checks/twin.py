@@ -455,7 +455,9 @@ class Run(Equations):
             stops = self.law.unit.memory  # else there may be several, each a peak
             reversal = Event(lambda t, y: direction * y[3] if t > turned else 1.0, stops, -1 if stops else 0)
             events.append(("reversal", reversal))
-            ahead = self.law.unit.begin.py_func(direction, self.hysteretic_force(self.y), 1.0, self.law.constants)[2]
+            ahead = self.law.unit.begin.py_func(direction, self.hysteretic_force(self.y), 1.0, 0.0, self.law.constants)[
+                2
+            ]
             self.corner = corner = direction * ahead
             if ahead < math.inf:
                 events.append(("corner", Event(lambda t, y: direction * (y[4] - corner), direction=1)))

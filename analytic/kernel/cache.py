@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import builtins
 import dis
+import functools
 import hashlib
 import inspect
 import sys
 import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import CodeType
 from typing import Any
@@ -23,8 +23,9 @@ import numpy as np
 from numba.core.caching import UserProvidedCacheLocator
 
 HERE = Path(__file__).parent
+USER = Path.home() / ".cache" / "rocking"
 # Folders of the cache; the first one that can be written is used.
-PLACES = (HERE / "__pycache__", Path.home() / ".cache" / "rocking", Path(tempfile.gettempdir()))
+PLACES = (HERE / "__pycache__", USER, Path(tempfile.gettempdir()))
 
 
 class Locator(UserProvidedCacheLocator):
@@ -54,20 +55,23 @@ class Locator(UserProvidedCacheLocator):
         return None
 
 
-@contextmanager
-def kernel_cache() -> Iterator[None]:
-    """Cache the functions decorated inside by `Locator`, in files of their own for each version of the source.
+def cached(**options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Return a decorator that compiles by numba with these options and keeps the compiled form by `Locator`.
 
-    NUMBA_CACHE_DIR, if set, wins.
+    It stands in files of its own for each version of the source. NUMBA_CACHE_DIR, if set, wins.
     """
-    config: Any = numba.config
-    before = config.CACHE_LOCATOR_CLASSES
-    if not config.CACHE_DIR:
-        config.CACHE_LOCATOR_CLASSES = f"{__name__}.{Locator.__name__}"
-    try:
-        yield
-    finally:
-        config.CACHE_LOCATOR_CLASSES = before
+
+    def compiled(function):
+        config: Any = numba.config
+        before = config.CACHE_LOCATOR_CLASSES
+        if not config.CACHE_DIR:
+            config.CACHE_LOCATOR_CLASSES = f"{__name__}.{Locator.__name__}"
+        try:  # numba asks for the place here
+            return numba.njit(**options, cache=True)(function)
+        finally:
+            config.CACHE_LOCATOR_CLASSES = before
+
+    return compiled
 
 
 def digest(function: Any) -> str:
@@ -109,6 +113,7 @@ def _module_of(item):
     return (getattr(item, "__module__", None) if callable(item) else None) or ""
 
 
+@functools.cache
 def _source(kind: Any) -> str:
     try:
         return inspect.getsource(kind)
@@ -116,6 +121,7 @@ def _source(kind: Any) -> str:
         return inspect.getsource(sys.modules[kind.__module__])
 
 
+@functools.cache  # entries share most of what they call
 def _global(code):
     """Return the names that a code object reads from its module."""
     inner = (_global(constant) for constant in code.co_consts if isinstance(constant, CodeType))

@@ -18,6 +18,8 @@ from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_machinery import register_pass
 from numba.core.typed_passes import NativeLowering
 
+from .cache import cached
+
 
 class _Linked(JITCodeLibrary):
     """Intermediate code of one function and those it calls, to be linked into its callers; not machine code."""
@@ -80,7 +82,7 @@ def entry(function: Callable[..., Any]) -> Any:
 
     It releases the lock, so that threads run and Ctrl-C works.
     """
-    return njit(**_UNCOUNTED, nogil=True, cache=True)(function)
+    return cached(**_UNCOUNTED, nogil=True)(function)
 
 
 def chosen(functions: Sequence[Callable[..., Any]]) -> Any:

@@ -7,8 +7,8 @@ as most steps have no event. Dense output of the step gives history, contact dia
 import math
 
 from . import layout as L
-from .compiled import inner
-from .polynomial import INVERSE, bound, derivative, first_root, largest, value
+from .compiled import inlined, inner
+from .polynomial import INVERSE, SHORT_ORDER, bound, derivative, first_root, largest, value
 
 # An impact slower than rest_rate omega_r ends in rest if the next swing is short, too [1/omega_r]: while the ground
 # acceleration is close to uplift, a slow impact can still begin a long swing.
@@ -266,12 +266,8 @@ def write_history(par, body, step, output_step, arrays, written):
     return written
 
 
-@inner
-def integral_of_product(f, highest, g, order, h):
-    """Return the integral over [0, h] of f g, of orders `highest` and `order`, with all terms of the product.
-
-    Truncated at the order of its factors, the product would be less accurate than they are, by up to two to that order.
-    """
+@inlined
+def _integral_of_product(f, highest, g, order, h):
     total, power = 0.0, h
     for j in range(highest + 1):
         term, term_power = 0.0, f[j] * power
@@ -281,6 +277,17 @@ def integral_of_product(f, highest, g, order, h):
         total += term
         power *= h
     return total
+
+
+@inner
+def integral_of_product(f, highest, g, order, h):
+    """Return the integral over [0, h] of f g, of orders `highest` and `order`, with all terms of the product.
+
+    Truncated at the order of its factors, the product would be less accurate than they are, by up to two to that order.
+    """
+    if order == SHORT_ORDER:
+        return _integral_of_product(f, highest, g, SHORT_ORDER, h)
+    return _integral_of_product(f, highest, g, order, h)
 
 
 @inner

@@ -57,8 +57,8 @@ Shape = namedtuple("Shape", "gamma slope on_base")
 Body = namedtuple("Body", "s tilt rate")
 # Displacement and velocity of the base, hysteretic force of a bearing.
 Base = namedtuple("Base", "x v z")
-# Of the bearings: direction of travel, displacement and mark (`laws.Law`) at the last reversal.
-Branch = namedtuple("Branch", "direction x_c mark")
+# Of the bearings: direction of travel, displacement and mark (`laws.Law`) at the last reversal, power of the travel.
+Branch = namedtuple("Branch", "direction x_c mark power")
 # Ground motion without a corner, up to `end`: a_g is a0 + slope t, or a pulse of scale a0; a_v with lift and rise.
 Stretch = namedtuple("Stretch", "kind a0 slope lift rise end order")
 # A step from t: its length, order of its series and of the ground's (-1 without), gravity g + a_v at its start, factors

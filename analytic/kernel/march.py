@@ -46,19 +46,22 @@ OWN, SIZE, SHAKING = len(L.Parameters._fields) - 1, len(ROW.descr), len(L.Shakin
 tuple_of: Any = to_fixed_tuple
 
 
+NO_EVENTS = np.empty((0, 4)), np.empty(0), np.empty(0)
+
+
 def row_of(par: L.Parameters) -> tuple[float, ...]:
     """Return the parameters as an entry of an array of dtype `ROW`."""
     return (*par[:-1], *par.constants)
 
 
-def arrays(totals: np.ndarray, capacity: int = 0, outputs: int = 0) -> L.Arrays:
+def arrays(totals: np.ndarray, capacity: int = 0, outputs: int = 0) -> tuple[np.ndarray, ...]:
     """Return the workspace of runs, with room for `capacity` events of a kind and `outputs` rows of history.
 
-    totals : (n, TOTALS), a row for each run.
+    totals : (n, TOTALS), a row for each run. Returns the fields of `layout.Arrays`.
     """
     workspace, scratch = np.zeros((L.ROWS, MAX_ORDER + 2)), np.empty(SCRATCH)
-    events = np.empty((capacity, 4)), np.empty(capacity), np.empty(capacity)
-    return L.Arrays(workspace, scratch, *events, np.empty((outputs, 6)), totals)
+    events = (np.empty((capacity, 4)), np.empty(capacity), np.empty(capacity)) if capacity else NO_EVENTS
+    return workspace, scratch, *events, np.empty((outputs, 6)), totals
 
 
 def run(
@@ -71,19 +74,23 @@ def run(
     """
     outputs = int(math.floor(par.duration / options.output_step * (1 + 1e-14))) + 1 if options.output_step > 0 else 0
     into = arrays(np.empty((1, L.TOTALS)), options.capacity if options.record else 0, outputs)
-    run_rows(np.array([row_of(par)]), np.array([ground.shaking]), ground, options, into)
-    (totals,) = into.totals
-    counts = [int(totals[slot]) for slot in (L.IMPACTS, L.UPLIFTS, L.RESTS, L.WRITTEN)]
-    written = into.impacts, into.uplifts, into.rests, into.history
-    return totals, *(rows[:count] for rows, count in zip(written, counts, strict=True))
+    rows, pulses = np.fromiter(row_of(par), float)[None], np.fromiter(ground.shaking, float)[None]
+    run_rows(rows, pulses, ground, options, into)
+    _, _, impacts, uplifts, rests, history, (totals,) = into
+    count = totals.tolist()
+    events = impacts[: int(count[L.IMPACTS])], uplifts[: int(count[L.UPLIFTS])], rests[: int(count[L.RESTS])]
+    return totals, *events, history[: int(count[L.WRITTEN])]
 
 
-def run_rows(rows: np.ndarray, pulses: np.ndarray, ground: L.Ground, options: L.Options, into: L.Arrays) -> None:
+def run_rows(
+    rows: np.ndarray, pulses: np.ndarray, ground: L.Ground, options: L.Options, into: tuple[np.ndarray, ...]
+) -> None:
     """Run each of `rows` under its own of `pulses` and the samples of `ground`.
 
     rows : (n, SIZE), entries of `ROW`. pulses : (n, SHAKING). into : `arrays`; events and history are the last run's.
     """
-    _run_rows(rows, pulses, ground._replace(upright=None), ground.upright, options, into)
+    # Plain tuples: numba takes twice as long to recognise a named one, longer than a short run takes.
+    _run_rows(rows, pulses, (ground.kind, ground.dt, ground.samples), ground.upright, (*options,), into)
 
 
 # One long function, as two loops share some twenty state variables.
@@ -100,7 +107,7 @@ def _integrate(par, ground, upright, options, arrays):
     no, none = math.isnan(0.0), math.floor(0.0)  # a literal argument would compile a function once more
     fresh, refused = no, no  # onset just located: phi'' = 0 exactly; onset refused: a touch (graze) of the threshold
     shape = L.Shape(par.gamma, par.slope, par.on_base)
-    branch = L.Branch(0.0, par.x, 1.0)
+    branch = L.Branch(0.0, par.x, 1.0, 0.0)
     peak_tilt, peak_x, will_overturn = abs(par.tilt), abs(par.x), False
     held = 0.0, 1.0, 0.0, peak_x, 0.0  # friction demand, N/(m g), peaks of the base, time: up to |tilt| = gamma
     segment, begin, written, idle, steps, highest = none, 0.0, none, none, none, none
@@ -171,7 +178,7 @@ def _integrate(par, ground, upright, options, arrays):
             if s != 0:
                 tilt, rate, peak_tilt = end_of_block(body, step, peak_tilt, P, work)
             if par.on_base:
-                base = end_of_base(par, event, base, branch, step, P)
+                base, branch = end_of_base(par, event, base, branch, step, P)
                 peak_x = max(peak_x, abs(base.x))
             if event == L.PASSAGE:
                 tilt = s * par.gamma
@@ -246,10 +253,11 @@ def _conclude(par, end_of_motion, body, base, totals):
 # It stands below all that it calls, as the key of its compiled form is taken here, see `cache`.
 @entry
 def _run_rows(rows, pulses, ground, upright, options, into):
-    """Run the rows. upright : an argument of its own, see `steps`."""
+    """Run the rows. ground : kind, dt and samples; upright : an argument of its own, see `steps`."""
+    (kind, dt, samples), chosen = ground, L.Options(*options)
     P, work, impacts, uplifts, rests, history, totals = into
     for i in range(rows.shape[0]):
         numbers = tuple_of(rows[i], SIZE)
         par = L.Parameters(*numbers[:OWN], Constants(*numbers[OWN:]))  # type: ignore[call-arg]  # of one length
-        ground_of_run = L.Ground(ground.kind, ground.dt, ground.samples, None, L.Shaking(*tuple_of(pulses[i], SHAKING)))
-        _integrate(par, ground_of_run, upright, options, L.Arrays(P, work, impacts, uplifts, rests, history, totals[i]))
+        ground_of_run = L.Ground(kind, dt, samples, None, L.Shaking(*tuple_of(pulses[i], SHAKING)))
+        _integrate(par, ground_of_run, upright, chosen, L.Arrays(P, work, impacts, uplifts, rests, history, totals[i]))

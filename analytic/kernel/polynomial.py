@@ -8,6 +8,8 @@ import numpy as np
 from .compiled import inner
 
 MAX_ORDER = 24
+# Order of the series between the samples of a record, where steps end anyway (`rocking study speed-error`).
+SHORT_ORDER = 8
 BISECTIONS = 60
 SCRATCH = (BISECTIONS + 2, MAX_ORDER + 3)  # of `first_root`: a row for each halving
 INVERSE = np.array([0.0] + [1.0 / k for k in range(1, 64)])

@@ -26,10 +26,7 @@ from .events import (
     read_lifting,
     write_history,
 )
-from .polynomial import INVERSE, bound, largest, value
-
-# Order of the series between the samples of a record, where steps end anyway (`rocking study speed-error`).
-SHORT_ORDER = 8
+from .polynomial import INVERSE, SHORT_ORDER, bound, largest, value
 
 # A decayed motion below this size [rad, m, ...] does not limit the step.
 NEGLIGIBLE = 1e-200
@@ -45,12 +42,8 @@ QUIET, LINEAR_GROUND, PULSE = range(3)
 _pulse_series = chosen(SERIES)
 
 
-@inner
-def allowed_step(f, order, tolerance, h):
-    """Return the largest step up to h whose last Taylor terms stay below tolerance times the size of f in it.
-
-    NaN where the series is not finite.
-    """
+@inlined
+def _allowed_step(f, order, tolerance, h):
     if not math.isfinite(abs(f[order]) + abs(f[order - 1])):
         return math.nan
     while True:
@@ -64,6 +57,17 @@ def allowed_step(f, order, tolerance, h):
         if before > 4 * limit:
             shrink = min(shrink, 0.9 * (4 * limit / before) ** (1.0 / (order - 1)))
         h *= max(shrink, MOST_SHRINK)
+
+
+@inner
+def allowed_step(f, order, tolerance, h):
+    """Return the largest step up to h whose last Taylor terms stay below tolerance times the size of f in it.
+
+    NaN where the series is not finite.
+    """
+    if order == SHORT_ORDER:  # powers by a constant are unrolled
+        return _allowed_step(f, SHORT_ORDER, tolerance, h)
+    return _allowed_step(f, order, tolerance, h)
 
 
 @inner
@@ -212,7 +216,7 @@ PATIENCE = 1000
 ROUNDING = 4e-16
 
 # Functions of the bearing law, see `laws.Law`.
-mark, begin_step, reached = law_function("mark"), law_function("begin"), law_function("reached")
+mark, power_of, begin_step, reached = map(law_function, ("mark", "power", "begin", "reached"))
 
 
 @inlined
@@ -283,13 +287,14 @@ def branch_of(par, moving, base, branch, P):
 
     moving : the side to which the base moves.
     """
-    (x, _, z), (direction, x_c, mark_c) = base, branch
+    (x, _, z), (direction, x_c, mark_c, power) = base, branch
     if moving != direction and moving != 0:
         direction, x_c = moving, x
         mark_c = mark(par.law, direction, z, par.constants)
+        power = power_of(par.law, mark_c, par.constants)
     travel = mark_c + direction * (x - x_c)
-    P[L.Q, 0], factors, corner = begin_step(par.law, direction, z, travel, par.constants)
-    return L.Branch(direction, x_c, mark_c), factors, corner
+    P[L.Q, 0], factors, corner = begin_step(par.law, direction, z, travel, power, par.constants)
+    return L.Branch(direction, x_c, mark_c, power), factors, corner
 
 
 @inlined
@@ -389,13 +394,13 @@ def end_of_block(body, step, peak_tilt, P, work):
 
 @inlined
 def end_of_base(par, event, base, branch, step, P):
-    """Return the base at the end of the step, which is at the `event`."""
-    z, (direction, x_c, mark_c), h, order = base.z, branch, step.h, step.order
+    """Return base and branch at the end of the step, which is at the `event`."""
+    z, (direction, x_c, mark_c, _), h, order = base.z, branch, step.h, step.order
     x, v = value(P[L.X], order, h), value(P[L.V], order, h)
     if event == L.REVERSAL:
         v = 0.0
-    travel = mark_c + direction * (x - x_c)
-    z = reached(par.law, direction, z, P[L.Q], order, h, travel, par.constants)
+    power = power_of(par.law, mark_c + direction * (x - x_c), par.constants)
+    z = reached(par.law, direction, z, P[L.Q], order, h, power, par.constants)
     if event == L.CORNER:
         z = direction * step.corner
-    return L.Base(x, v, z)
+    return L.Base(x, v, z), L.Branch(direction, x_c, mark_c, power)

@@ -36,15 +36,20 @@ def virtual_travel(s: float, z: float, c: Constants) -> float:
 
 
 @inner
-def on_branch(s: float, travel: float, c: Constants) -> float:
+def power(travel: float, c: Constants) -> float:
+    return travel ** (1 - c.alpha)
+
+
+@inner
+def on_branch(s: float, power: float, c: Constants) -> float:
     """Return z on the branch of direction s, eqs (9), (11) less their kb x."""
-    return s * (c.dk * (travel ** (1 - c.alpha) - c.d0) / (1 - c.alpha) + c.f0)
+    return s * (c.dk * (power - c.d0) / (1 - c.alpha) + c.f0)
 
 
 @inner
 def after_travel(z: float, dx: float, c: Constants) -> float:
     s = math.copysign(1.0, dx)
-    return on_branch(s, virtual_travel(s, z, c) + abs(dx), c)
+    return on_branch(s, power(virtual_travel(s, z, c) + abs(dx), c), c)
 
 
 def work(z: float, dx: float, c: Constants) -> float:
@@ -74,10 +79,11 @@ def recoverable(z: float, c: Constants) -> float:
 
 
 @inner
-def begin(s: float, z: float, travel: float, c: Constants) -> tuple[float, tuple[float, float, float], float]:
+def begin(
+    s: float, z: float, travel: float, power: float, c: Constants
+) -> tuple[float, tuple[float, float, float], float]:
     """Return the start of a step; q is y^(1 - alpha) with y = D_c + s (x - x_c), the `travel`."""
-    power = travel ** (1 - c.alpha) if s != 0 else 0.0
-    return power, (s * (1.0 / travel), 2 - c.alpha, s * c.dk / (1 - c.alpha)), math.inf
+    return power if s != 0 else 0.0, (s * (1.0 / travel), 2 - c.alpha, s * c.dk / (1 - c.alpha)), math.inf
 
 
 @inlined
@@ -93,8 +99,8 @@ def term(k: int, factors: tuple[float, float, float], x: np.ndarray, v: np.ndarr
 
 
 @inner
-def reached(s: float, z: float, q: np.ndarray, order: int, h: float, travel: float, c: Constants) -> float:
-    return z if s == 0 else on_branch(s, travel, c)
+def reached(s: float, z: float, q: np.ndarray, order: int, h: float, power: float, c: Constants) -> float:
+    return z if s == 0 else on_branch(s, power, c)
 
 
 LAW = Law(
@@ -108,5 +114,6 @@ LAW = Law(
     begin=begin,
     term=term,
     mark=virtual_travel,
+    power=power,
     reached=reached,
 )

@@ -38,7 +38,9 @@ def recoverable(z: float, c: Constants) -> float:
 
 
 @inner
-def begin(s: float, z: float, travel: float, c: Constants) -> tuple[float, tuple[float, float, float], float]:
+def begin(
+    s: float, z: float, travel: float, power: float, c: Constants
+) -> tuple[float, tuple[float, float, float], float]:
     if s * z < c.f0:
         return z, (c.dk, 0.0, 0.0), c.f0
     return z, (0.0, 0.0, 0.0), math.inf

@@ -31,7 +31,9 @@ def recoverable(z: float, c: Constants) -> float:
 
 
 @inner
-def begin(s: float, z: float, travel: float, c: Constants) -> tuple[float, tuple[float, float, float], float]:
+def begin(
+    s: float, z: float, travel: float, power: float, c: Constants
+) -> tuple[float, tuple[float, float, float], float]:
     return z, (0.5 * c.dk, 0.5 * c.dk * s / c.f0, 0.0), math.inf
 
 

@@ -33,7 +33,12 @@ def no_mark(s: float, z: float, c: Constants) -> float:
 
 
 @inner
-def last_of_series(s: float, z: float, q: np.ndarray, order: int, h: float, travel: float, c: Constants) -> float:
+def no_power(travel: float, c: Constants) -> float:
+    return 0.0
+
+
+@inner
+def last_of_series(s: float, z: float, q: np.ndarray, order: int, h: float, power: float, c: Constants) -> float:
     return value(q, order, h)
 
 
@@ -52,11 +57,12 @@ class Law:
     after_travel(z, dx, c) : z after monotonic travel dx [m].
     work(z, dx, c) : integral of z over that travel [J]; not compiled.
     recoverable(z, c) : energy [J] that a bearing with z > 0 returns while unloading to z = 0.
-    begin(s, z, travel, c) : (q_0, factors, corner) at the start of a Taylor step: q_0, three numbers for the terms, and
-        the next s z at which the stiffness jumps, an event; inf without one.
+    power(travel, c) : what the end of a step and the start of the next both need of the travel, slow to compute.
+    begin(s, z, travel, power, c) : (q_0, factors, corner) at the start of a Taylor step: q_0, three numbers for the
+        terms, and the next s z at which the stiffness jumps, an event; inf without one.
     term(k, factors, x, v, q) : z_k for k >= 1, with q_k filled in; x up to k, v and q up to k - 1 are given.
     mark(s, z, c) : position of z on the branch of direction s [m], stored at a reversal; travel is counted from it.
-    reached(s, z, q, order, h, travel, c) : z at the end of a step.
+    reached(s, z, q, order, h, power, c) : z at the end of a step.
     branch(z, direction, c) : function (z, v) -> z' [N/s] from z to the next reversal or corner. If given, the second
         implementation integrates z as a state, otherwise it uses `after_travel`; not compiled.
     """
@@ -73,5 +79,6 @@ class Law:
     ignores: tuple[str, ...] = ()
     memory: bool = True
     mark: Callable = no_mark
+    power: Callable = no_power
     reached: Callable = last_of_series
     branch: Callable | None = None

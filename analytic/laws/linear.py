@@ -29,7 +29,9 @@ def recoverable(z: float, c: Constants) -> float:
 
 
 @inner
-def begin(s: float, z: float, travel: float, c: Constants) -> tuple[float, tuple[float, float, float], float]:
+def begin(
+    s: float, z: float, travel: float, power: float, c: Constants
+) -> tuple[float, tuple[float, float, float], float]:
     return z, (0.0, 0.0, 0.0), math.inf
 
 
@@ -39,7 +41,7 @@ def term(k: int, factors: tuple[float, float, float], x: np.ndarray, v: np.ndarr
 
 
 @inner
-def reached(s: float, z: float, q: np.ndarray, order: int, h: float, travel: float, c: Constants) -> float:
+def reached(s: float, z: float, q: np.ndarray, order: int, h: float, power: float, c: Constants) -> float:
     return z
 
 

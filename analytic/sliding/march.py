@@ -463,7 +463,7 @@ def march(par, resting, contact, ground, upright, options, into):
     of the slope: what a level block bears at rest. upright : an argument of its own, see `steps`.
     """
     P, work, totals, shaking = into.P, into.work, into.totals, ground.shaking
-    base, branch, none = L.Base(par.x, par.v, par.z), L.Branch(0.0, par.x, 1.0), math.floor(0.0)
+    base, branch, none = L.Base(par.x, par.v, par.z), L.Branch(0.0, par.x, 1.0, 0.0), math.floor(0.0)
     s = math.copysign(1.0, par.tilt if par.tilt != 0 else par.rate) if par.tilt != 0 or par.rate != 0 else 0.0
     block = Block(none + STICK, s, 0.0 * s, par.tilt, par.rate, 0.0 * s, 0.0 * s, 0.0 * s, 0.0 * s)
     previous, fresh, refused, last = block, none + L.NONE, none + L.NONE, none - 1
@@ -523,7 +523,7 @@ def march(par, resting, contact, ground, upright, options, into):
             written = read(par, contact, upright, block, step, options, into, written)
             block = end_of_step(par, block, event, step, P, totals, work)
             if par.on_base:
-                base = end_of_base(par, event, base, branch, step, P)
+                base, branch = end_of_base(par, event, base, branch, step, P)
                 totals[L.PEAK_X] = max(totals[L.PEAK_X], abs(base.x))
             if abs(block.tilt) <= par.gamma:
                 held = totals[L.FRICTION], totals[L.NORMAL], totals[L.PEAK_ACCELERATION], totals[L.PEAK_X], step.t + h

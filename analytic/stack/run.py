@@ -175,7 +175,7 @@ class Run:
             self.travel = self.travel or float(np.sign(self.instant(t, self.y).a - self.ground(t)))
         if self.law.unit.branch:
             self.branch = self.law.unit.branch(z, self.travel, self.law.constants)
-        self.corner = self.law.unit.begin.py_func(self.travel, z, 1.0, self.law.constants)[2]
+        self.corner = self.law.unit.begin.py_func(self.travel, z, 1.0, 0.0, self.law.constants)[2]
 
     def settle(self) -> None:
         """Let interfaces in full contact open where their centres of pressure are beyond a corner, as after a jump.
@@ -187,12 +187,12 @@ class Run:
         sides = self.model.opened(self.sides, shut, *self.absolute(self.y), *loads)
         for k in (LOWER, UPPER):
             if sides and sides[k] != self.sides[k]:
-                self.open(k, sides[k])
+                self.lift(k, sides[k])
         if not sides or (np.abs(self.y[:4:2]) < FALLING).all() and min(self.instant(self.t, self.y).normal) <= 0:
             self.keep(self.t, self.y)
             raise _Ended(LOST)
 
-    def open(self, k: int, side: int) -> None:
+    def lift(self, k: int, side: int) -> None:
         self.sides[k], self.lifted[k] = side, self.t
         self.uplifts[k].append(self.t)
 
@@ -274,7 +274,7 @@ class Run:
             case "landing":
                 self.land(k)
             case "uplift":
-                self.open(k, int(np.sign(self.instant(self.t, self.y).pressure[k])))
+                self.lift(k, int(np.sign(self.instant(self.t, self.y).pressure[k])))
             case "loss":
                 raise _Ended(LOST)
             case "fall":

@@ -16,6 +16,7 @@ import numpy as np
 
 from analytic import Scene, SettingError, simulate
 from analytic.response import Caution, scene_warnings
+from analytic.scene import refuse_free
 from analytic.solver import TOLERANCE
 from engines import available_engines, get_engine
 from engines.contract import Variant
@@ -164,6 +165,7 @@ def choose(
         raise SettingError(f"--for {criterion}: choose one of {', '.join(CRITERIA)}")
     if not 0 < error < 1:
         raise SettingError(f"--error {error!r}: give a number above 0 and below 1")
+    refuse_free(scene, "the choice of an engine")
     names, missing = available_engines() if engines is None else (named_engines(engines), {})
     is_default = criterion is None and engines is None
     with _shown(progress, f"{scene.name}: the analytic model"):

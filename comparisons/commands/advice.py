@@ -146,8 +146,9 @@ def margin(
     and finds the changes at which the block lifts or overturns. Two further limit states are a peak tilt above --tilt
     and a base displacement beyond the x_max of the bearings.
 
-    The steps are 1/400 of the span. A range ends where a change gives no valid scene (a restitution above 1, ka below
-    kb) or the model is no longer valid. Bearings are taken as rigid in the vertical direction. Status 1: the model
+    The steps are 1/400 of the span. On a free pedestal only motion or start is changed, by 1 %. A range ends where
+    a change gives no valid scene (a restitution above 1, ka below kb) or the model is no longer valid. Bearings are
+    taken as rigid in the vertical direction. Status 1: the model
     failed on the scene or under one of its motions.
 
     Example: rocking margin caryatid-isolated --plot margins.svg
@@ -366,8 +367,7 @@ def _for_scene(place, base_mass, stroke, tilt, options, many, write, plot, json_
     options |= {"gravity": scene.gravity} if "designer" in options else {}
     with bar(f"{scene.name}: bearings") as progress, named_by_options(OF_SCENE), in_file(place):
         scan = scan_bearings(scene, motions, stroke, tilt=tilt, **options, progress=progress)
-        if "designer" in options:
-            scan = scan.among(lambda pendula: not bearing_sizes(pendula, scene.total_mass, scene.gravity).reasons)  # type: ignore[union-attr]  # pendula have sizes
+        scan = scan.among(lambda bearings: not bearing_sizes(bearings, scene.total_mass, scene.gravity).reasons)  # type: ignore[union-attr]  # with x_max they have sizes
     points = {LEAST: scan.least_stroke, SOFTEST: scan.softest}  # (period, damping), None without any
     chosen = {name: _chosen(scene, scan, point, groups, left) for name, point in points.items() if point is not None}
     nothing = "" if chosen else nothing_holds(scene, scan, stroke, tilt, motions)

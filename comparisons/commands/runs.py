@@ -153,7 +153,7 @@ def compare(
     with in_file(scene):
         first, *others = _responses(loaded, engine, time_limit)
     responses = [replace(first, warnings=(*first.warnings, *near_motion(loaded))), *others]
-    horizons = {} if responses[0].failure else _sensitivity(loaded, responses, time_limit)
+    horizons = {} if responses[0].failure or loaded.is_stack else _sensitivity(loaded, responses, time_limit)
     horizon = min((each.horizon for each in horizons.values() if each.parts), default=None)
     with_history = [response for response in responses if response.history]
     if plot and not with_history:
@@ -236,7 +236,8 @@ def engines(
 
     Example: rocking engines exudyn
     """
-    from ..plotting.terminal import echo, engine_text, engines_table
+    from ..plotting.terminal import echo
+    from ..plotting.variants import engine_text, engines_table
 
     with stdout_to_stderr():  # engines print on import
         names, missing = ((), {}) if name else available_engines()

@@ -18,7 +18,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from importlib.metadata import PackageNotFoundError, packages_distributions, version
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeGuard
 
 from analytic.scene_file import SHIPPED, shipped_scenes
 
@@ -342,8 +342,11 @@ def _scene(name):
 @functools.cache
 def _parsed(file, package, _modified):
     text = Path(file).read_text(encoding="utf-8")
-    lines, units, imports = text.splitlines(), [], {}
-    for node in _ForNumbers().visit(ast.parse(text)).body:
+    lines, units, imports, body = text.splitlines(), [], {}, ast.parse(text).body
+    if any(isinstance(node, ast.FunctionDef) and node.name == "__getattr__" for node in body):
+        # what a package imports when it is first used, it imports for types as well
+        body = [each for node in body for each in (node.body if _for_types(node) else [node])]
+    for node in _ForNumbers().visit(ast.Module(body, [])).body:
         if isinstance(node, ast.Import | ast.ImportFrom):
             imports.update(_bound(node, package))
         else:
@@ -424,6 +427,10 @@ class Reading:
         return kind, *((name, self.plain(value)) for name, value in fields.items() if value is not None and value != [])
 
 
+def _for_types(node: ast.AST) -> TypeGuard[ast.If]:
+    return isinstance(node, ast.If) and getattr(node.test, "id", None) == "TYPE_CHECKING"
+
+
 class _ForNumbers(ast.NodeTransformer):
     """Removes from a tree what no number depends on: docstrings, types of arguments and results, imports for types."""
 
@@ -432,7 +439,7 @@ class _ForNumbers(ast.NodeTransformer):
 
     def visit_If(self, node):
         self.generic_visit(node)
-        return node.orelse if getattr(node.test, "id", None) == "TYPE_CHECKING" else node
+        return node.orelse if _for_types(node) else node
 
     def visit_arg(self, node):
         node.annotation = None

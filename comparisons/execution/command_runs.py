@@ -193,6 +193,9 @@ def near(scene: Scene) -> tuple[Caution, ...]:
     try:
         return cliffs(scene, *nearby(scene))
     except SceneError as error:
+        if scene.is_stack:
+            text = f"How the outcome depends on {SHARE:.0%} of the motion was not tested: see rocking margin."
+            return (Caution("motion", text),)
         text = f"How the outcome depends on {SHARE:.0%} of the motion was not tested: {error.remedy}."
         return (Caution("motion", text),)
 

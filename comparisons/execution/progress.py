@@ -92,13 +92,14 @@ def spinner(text: str) -> Iterator[Callable[[str], None]]:
     Without a terminal `text` is printed once, if that takes more than `PATIENCE`.
     """
     from rich.console import Console
-    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
     console, shown = Console(stderr=True), readable(text, SHOWN)
     if not console.is_terminal:
         with _if_it_takes_long(lambda: say(shown)):
             yield lambda words: None
         return
+    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn  # slow to load
+
     columns = SpinnerColumn(), TextColumn("{task.description}", markup=False), TimeElapsedColumn()
     with Progress(*columns, transient=True, console=console) as progress:
         task = progress.add_task(shown)

@@ -16,10 +16,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import brentq, minimize
-from scipy.special import expit, log_ndtr
-from scipy.stats import binom, binomtest, chi2, norm
-from scipy.stats import t as student
+import scipy  # a part of it is loaded when it is first used, as some take .2 s
 
 from analytic.response import COMPARED
 
@@ -73,7 +70,7 @@ def wilson(count: float, size: float, level: float = 0.95) -> tuple[float, float
 
     Neither needs to be a whole number: if runs depend on each other, `size` is the number of independent ones.
     """
-    z = norm.ppf(0.5 + level / 2)
+    z = scipy.special.ndtri(0.5 + level / 2)
     share, spread = count / size, z**2 / size
     half = math.sqrt(spread * (share * (1 - share) + spread / 4))
     ends = [(share + spread / 2 + side * half) / (1 + spread) for side in (-1, 1)]
@@ -92,7 +89,7 @@ def wilson_by_group(shares: npt.ArrayLike, size: int, level: float = 0.95) -> tu
     """
     shares = np.asarray(shares, dtype=float)
     mean, count, runs = float(shares.mean()), len(shares), float(len(shares))
-    wider = 2 * norm.cdf(min(student.ppf(0.5 + level / 2, max(count - 1, 1)), WIDEST)) - 1
+    wider = 2 * scipy.special.ndtr(min(scipy.special.stdtrit(max(count - 1, 1), 0.5 + level / 2), WIDEST)) - 1
     if count > 1 and 2 * min((shares > 0).sum(), (shares < 1).sum()) >= count:
         variance = max(float(shares.var(ddof=1)), 1e-300)
         runs = float(np.clip(mean * (1 - mean) * count / variance, count, count * size))
@@ -125,7 +122,7 @@ def mcnemar(table: Confusion) -> float:
     """Return the two-sided p-value of the exact McNemar test: are the discordant pairs split evenly?"""
     if table.discordant == 0:
         return 1.0
-    return float(binomtest(table.only_a, table.discordant, 0.5).pvalue)
+    return float(scipy.stats.binomtest(table.only_a, table.discordant, 0.5).pvalue)
 
 
 def cohen_kappa(table: npt.ArrayLike, level: float = 0.95) -> tuple[float, float, float] | tuple[None, None, None]:
@@ -152,7 +149,7 @@ def cohen_kappa(table: npt.ArrayLike, level: float = 0.95) -> tuple[float, float
     crossed = columns[:, None] + rows[None, :]
     off = (1 - kappa) ** 2 * ((p * crossed**2).sum() - np.diag(p) @ np.diag(crossed) ** 2)
     variance = (diagonal + off - (kappa - chance * (1 - kappa)) ** 2) / (size * (1 - chance) ** 2)
-    width = norm.ppf(0.5 + level / 2) * math.sqrt(max(variance, 0.0))
+    width = scipy.special.ndtri(0.5 + level / 2) * math.sqrt(max(variance, 0.0))
     return kappa, max(kappa - width, -1.0), min(kappa + width, 1.0)
 
 
@@ -173,6 +170,7 @@ def detectable_difference(size: int, discordance: float, level: float = 0.05, po
     """
     numbers = np.arange(size + 1)
     # Largest count of the rarer side at which the two-sided exact test still rejects; -1: none.
+    binom = scipy.stats.binom
     critical = binom.ppf(level / 2, numbers, 0.5)
     critical = np.where(2 * binom.cdf(critical, numbers, 0.5) <= level, critical, critical - 1)
 
@@ -184,7 +182,7 @@ def detectable_difference(size: int, discordance: float, level: float = 0.05, po
 
     if excess(1.0) < 0:
         return None
-    return float(brentq(excess, 1e-9, 1.0, xtol=1e-9))
+    return float(scipy.optimize.brentq(excess, 1e-9, 1.0, xtol=1e-9))
 
 
 def holm(p_values: npt.ArrayLike) -> np.ndarray:
@@ -231,7 +229,7 @@ class Fragility:
 
     def probability(self, intensity: npt.ArrayLike) -> Any:
         """Return the probability of exceedance at `intensity` (array or float, in the unit of the fit)."""
-        return norm.cdf(np.log(np.asarray(intensity) / self.median) / self.dispersion)
+        return scipy.special.ndtr(np.log(np.asarray(intensity) / self.median) / self.dispersion)
 
 
 def fit_fragility(intensity: npt.ArrayLike, exceeded: npt.ArrayLike, size: npt.ArrayLike = 1.0) -> Fragility:
@@ -307,7 +305,7 @@ def goodness(intensity: npt.ArrayLike, exceeded: npt.ArrayLike, curve: Fragility
     edges = np.searchsorted(np.cumsum(variance), variance.sum() * np.arange(1, bins) / bins)
     starts = np.unique([0, *edges])
     seen, meant, spread = (np.add.reduceat(part, starts) for part in (exceeded, expected, variance))
-    return float(chi2.sf(((seen - meant) ** 2 / spread).sum(), len(starts) - 2))
+    return float(scipy.stats.chi2.sf(((seen - meant) ** 2 / spread).sum(), len(starts) - 2))
 
 
 def points(intensity: npt.ArrayLike, exceeded: npt.ArrayLike, count: int) -> list[dict[str, Any]]:
@@ -362,7 +360,7 @@ def _climbed(ab, x, exceeded, size):
 
 def _likelihood(ab, x, exceeded, rest):
     z = ab[:, :1] + ab[:, 1:] * x
-    return (exceeded * log_ndtr(z) + rest * log_ndtr(-z)).sum(axis=1)
+    return (exceeded * scipy.special.log_ndtr(z) + rest * scipy.special.log_ndtr(-z)).sum(axis=1)
 
 
 def _newton(ab, x, exceeded, rest):
@@ -379,7 +377,7 @@ def _newton(ab, x, exceeded, rest):
 
 def _hazard(z):
     """phi(z)/Phi(z), finite far into the lower tail."""
-    return np.exp(-0.5 * z**2 - 0.5 * math.log(2 * math.pi) - log_ndtr(z))
+    return np.exp(-0.5 * z**2 - 0.5 * math.log(2 * math.pi) - scipy.special.log_ndtr(z))
 
 
 CLASSES = ("right", "differs", "failed", "left out")
@@ -485,19 +483,19 @@ def logistic(features: npt.ArrayLike, happened: npt.ArrayLike, chosen: np.ndarra
     def loss(beta):
         z = mine @ beta
         value = (np.logaddexp(0, z) - yes * z).sum() + 0.5 * (ridge * beta**2).sum()
-        return value, mine.T @ (expit(z) - yes) + ridge * beta
+        return value, mine.T @ (scipy.special.expit(z) - yes) + ridge * beta
 
     def curvature(beta):
-        p = expit(mine @ beta)
+        p = scipy.special.expit(mine @ beta)
         return (mine.T * (p * (1 - p))) @ mine + np.diag(ridge + RIDGE)
 
     start = np.zeros(columns.shape[1])
-    fit = minimize(
+    fit = scipy.optimize.minimize(
         loss, start, jac=True, hess=curvature, method="trust-exact", options={"gtol": SMALL, "maxiter": STEPS}
     )
     if np.abs(loss(fit.x)[1]).max() > SETTLED * len(yes):
         raise ArithmeticError(f"logistic regression of {len(yes)} cases has not settled: {fit.message}")
-    return expit(columns @ fit.x)
+    return scipy.special.expit(columns @ fit.x)
 
 
 def bent(features: npt.ArrayLike) -> np.ndarray:

@@ -9,8 +9,8 @@ from engines import missing_words
 
 from ..execution.writing import readable
 from ..schemas.advice import Choice, Level
-from .plots import TITLE_CHARACTERS, marker, style
-from .terminal import digits, echo, grid
+from .plots import marker, style
+from .terminal import TITLE_CHARACTERS, digits, echo, grid
 
 AXES = {
     "restitution": "error of restitution, rms, worst scene [-]",

@@ -1,13 +1,13 @@
 """Margins of a scene, its outcomes under many motions, its odds, and bearings for it: tables and pictures."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 
 from analytic import Caution, Scene
 from analytic.advice.bearing_scan import BearingScan, hardest
@@ -18,11 +18,14 @@ from analytic.response import FALLS, KINDS
 from ..execution.command_runs import OWN
 from ..execution.writing import readable
 from ..metrics.statistics import wilson
-from ..schemas.advice import Odds, Risk
 from ..schemas.columns import number, percent
-from .plots import TITLE_CHARACTERS
-from .terminal import Grid, digits, echo, grid, warned
+from .terminal import TITLE_CHARACTERS, Grid, digits, echo, grid, warned
 from .wording import listed
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from ..schemas.advice import Odds, Risk
 
 # Colours of Okabe and Ito. Hatches, and the lines’ places, tell them apart in print.
 COLOURS = {
@@ -143,6 +146,9 @@ def draw_margins(scene: Scene, margins: Sequence[Margin], tilt: float) -> Figure
     Lines along a strip show where the peak tilt exceeds its limit, where the base exceeds x_max, and where the model
     does not hold.
     """
+    from matplotlib.figure import Figure  # slow to load: not with tables
+    from matplotlib.patches import Patch
+
     figure = Figure(figsize=(8, 1.5 + 0.42 * len(margins)), layout="constrained")
     axis = figure.subplots()
     for row, margin in enumerate(margins):
@@ -356,9 +362,11 @@ def odds(rows: Sequence[Mapping[str, Any]], outcomes: Sequence[str], word: str) 
     known = [hit for hit in hits.values() if not math.isnan(hit)]
     if not known:
         return f"{word} under no {unit_of(rows)} that could be run"
+    told = f"{word} under {sum(known):.0f} of {counted(rows, len(known))}"
+    if len(known) == 1:  # no sample
+        return told
     low, high = wilson(int(sum(known)), len(known))
-    interval = f"({number(100 * low, 2)} to {percent(high)} at 95 %)"
-    return f"{word} under {sum(known):.0f} of {counted(rows, len(known))} {interval}"
+    return f"{told} ({number(100 * low, 2)} to {percent(high)} at 95 %)"
 
 
 HELD = "#009E73"  # Okabe and Ito
@@ -397,6 +405,10 @@ def print_bearings(
     if len({(design["period"], design["damping"]) for design in chosen.values()}) == 1:
         chosen = {" and ".join(chosen): next(iter(chosen.values()))}
     swings = any(design["sizes"] and design["sizes"].kind == "pendulum" for design in chosen.values())
+    unmade = [name for name, design in chosen.items() if design["sizes"] and design["sizes"].reasons]
+    held = "hold" if unmade else "hold and are made"
+    if unmade:
+        echo(f"Warning: no such bearings are made: {' and '.join(unmade)}; the reasons are below the table.", wrap=True)
     rows = {
         "secant period at the stroke [s]": "{period:.3g}",
         "equivalent damping at the stroke": "{damping:.3g}",
@@ -409,7 +421,7 @@ def print_bearings(
     cells = [[label, *(form.format(**design) for design in chosen.values())] for label, form in rows.items()]
     echo(
         grid(["bearings", *chosen], cells, wraps=["bearings", *chosen]),
-        f"Of bearings {_scan_words(scan)}, {percent(float(np.mean(scan.demand <= 1)))} hold.",
+        f"Of bearings {_scan_words(scan)}, {percent(float(np.mean(scan.demand <= 1)))} {held}.",
         *(words for design in chosen.values() for words in motion_warnings(design["motions"])),
         *(
             f"{'On the ' + name + ' bearings: ' if len(chosen) > 1 else ''}{sentence}"
@@ -460,6 +472,9 @@ def _scan_words(scan):
 
 def draw_bearings(scene: Scene, scan: BearingScan, stroke: float, tilt: float) -> Figure:
     """Draw the region of period and damping whose bearings hold, and the points named: a matplotlib Figure."""
+    from matplotlib.figure import Figure
+    from matplotlib.patches import Patch
+
     figure = Figure(figsize=(7, 4.5), layout="constrained")
     axis = figure.subplots()
     shown = np.clip(scan.demand, 0, 3)
@@ -590,6 +605,8 @@ def _most_important(odds):
 
 def draw_odds(risk: Risk) -> Figure:
     """Draw the probability of each limit state, with its interval, over the scale of the motions."""
+    from matplotlib.figure import Figure
+
     figure = Figure(figsize=(7, 4.2), layout="constrained")
     axis = figure.subplots()
     at = [(risk.pga or risk.pgv or 1.0) * scale for scale in risk.intensities]

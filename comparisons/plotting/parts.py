@@ -10,12 +10,14 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup
 
 from ..schemas.columns import Column, Key, Row, short, value_of
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
 
 
 @dataclass(frozen=True)
@@ -237,8 +239,10 @@ def setting_of(row: Row) -> str:
     return f"{row['parameter'].replace('_', ' ')} = {short(row['level'])} {UNITS.get(row['parameter'], '')}".rstrip()
 
 
-def templates(folder: Path) -> Environment:
+def templates(folder: Path) -> "Environment":
     """Return the Jinja environment of the templates in a folder; undefined names are errors."""
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined, select_autoescape  # slow to load
+
     return Environment(
         loader=FileSystemLoader(folder),
         autoescape=select_autoescape(disabled_extensions=["jinja"], default=True),

@@ -20,12 +20,11 @@ from engines import ENGINES
 
 from ..execution.writing import readable
 from ..schemas import runs
-from .terminal import echo, grid
+from .terminal import TITLE_CHARACTERS, echo, grid
 
 # colour, dashes, width. The wide line of the reference lies under the others; dots need width to be seen.
 REFERENCE: tuple[str, str | tuple[float, tuple[float, ...]], float] = ("#000000", "-", 2.4)
 DOTS, LINES = 1.8, 1.4
-TITLE_CHARACTERS = 100
 TILT_RANGE = (0.05, 2.0)  # least and greatest limit of a tilt axis, over slenderness
 LABELS = {
     "tilt": "tilt / slenderness [-]",

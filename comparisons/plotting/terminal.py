@@ -1,18 +1,11 @@
-"""Tables and sentences in the terminal: of responses, their differences and warnings, and of engines.
-
-The reference adds here the variants of the subject engines (`Engine.subject`: those that the studies are about), as
-``rocking engines NAME`` prints them, with settings, default level, levels and calls. The linked class explains the
-settings; a variant may have other values than the class's defaults. The command prints the same of all other engines.
-"""
+"""Tables and sentences in the terminal: of responses, their differences and warnings."""
 
 from __future__ import annotations
 
-import dataclasses
-import inspect
 import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich import box
 from rich.cells import cell_len
@@ -22,15 +15,14 @@ from rich.text import Text
 
 from analytic import Caution, Response, Scene
 from analytic.response import FALLS
-from engines import ENGINES, available_engines, get_engine
-from engines.contract import Engine, Variant
-from engines.simulating import in_words
 
-from ..execution.progress import stdout_to_stderr
 from ..execution.writing import readable
-from ..metrics.errors import Horizon
+from ..schemas.columns import percent
 from .parts import grouped
 from .wording import MOST_NAMED, differing, listed, outcomes
+
+if TYPE_CHECKING:
+    from ..metrics.errors import Horizon
 
 LONGEST_NUMBER = 15  # characters: sign, nine digits, point, exponent; longer words are names and may be broken
 WIDE = 10**4  # columns: wider than any table
@@ -144,16 +136,23 @@ def summary(scene: Scene, response: Response) -> Grid:
         **({"falls off at [s]": digits(response.end.time, ".6g")} if response.outcome == FALLS[0] else {}),
         "peak tilt [rad]": digits(response.peak_tilt),
         "peak tilt / slenderness": digits(response.peak_tilt_ratio),
-        "peak base displacement [m]": digits(response.peak_base_displacement),
+        "peak base displacement [m]": digits(response.peak_base_displacement) + _travel(scene, response),
         "peak base acceleration [m/s2]": digits(response.peak_base_acceleration),
         "impacts": str(response.impact_count),
         **_slip(response),
+        **_pedestal(response),
         "friction demand |H|/N": digits(response.friction_demand),
         "least normal force N/(m g)": digits(response.min_normal_ratio),
         "CPU time [s]": digits(response.cpu_seconds, ".3g"),
         "steps": str(response.steps),
     }
     return named_values(rows, title)
+
+
+def _travel(scene, response):
+    """Return in words which share of x_max the base has used, if it is known."""
+    limit, peak = scene.bearings and scene.bearings.x_max, response.peak_base_displacement
+    return "" if limit is None or math.isnan(peak) else f", {percent(peak / limit)} of x_max"
 
 
 def _slip(response):
@@ -167,6 +166,18 @@ def _slip(response):
         "way slid, to and fro [m]": digits(slid.path),
         **({} if math.isnan(slid.work) else {"work of friction [J]": digits(slid.work)}),
         **({"contact": mode_words(slid.modes)} if slid.modes else {}),
+    }
+
+
+def _pedestal(response):
+    """Return the rows of a free pedestal under the block."""
+    if (stack := response.stack) is None:
+        return {}
+    return {
+        "what rocks": " and ".join(stack.rocked) or "nothing",
+        "peak tilt of the pedestal [rad]": digits(stack.peak_tilt),
+        "impacts of the pedestal": str(len(stack.impacts)),
+        "friction demand of the pedestal": digits(stack.friction_demand),
     }
 
 
@@ -186,15 +197,17 @@ def named_values(rows: Mapping[str, str], title: str) -> Grid:
 
 def comparison(scene: Scene, responses: Sequence[Response], horizons: Mapping[str, Horizon]) -> Grid:
     """Return a table of responses of several solvers, the first being the reference; horizons: {solver: `Horizon`}."""
-    limit = _limit(horizons) if horizons else "No sensitivity horizon known."
+    limit = _limit(horizons) if horizons else "" if scene.is_stack else "No sensitivity horizon known."
     slides = any(response.sliding and response.sliding.peak for response in responses)
+    stacked = any(response.stack for response in responses)
     slip = "; slip: largest slip of the block" if slides else ""
+    pedestal = ";\nlower: peak tilt of the pedestal, from which the block's is measured" if stacked else ""
     caption = (
         "over: time of overturning; tilt: peak tilt over slenderness;\n"
-        f"base: peak base displacement{slip}; d: difference from the first row.\n" + limit
+        f"base: peak base displacement{slip}{pedestal}; d: difference from the first row.\n" + limit
     )
     heads = ["solver", "outcome", "over\n[s]", "tilt\n[-]", "d\n[-]", "base\n[m]", "d\n[%]", "im-\npacts", "CPU\n[ms]"]
-    heads[5:5] = ["slip\n[m]", "d\n[%]"] * slides
+    heads[5:5] = [*["slip\n[m]", "d\n[%]"] * slides, *["lower\n[rad]"] * stacked]
     reference, rows = responses[0], []
     for response in responses:
         tilt, displacement = "", ""
@@ -211,6 +224,7 @@ def comparison(scene: Scene, responses: Sequence[Response], horizons: Mapping[st
                 digits(response.peak_tilt_ratio, ".4f"),
                 tilt,
                 *(_slipped(response, reference) if slides else ()),
+                *([digits(response.stack.peak_tilt if response.stack else None, ".4f")] if stacked else ()),
                 digits(response.peak_base_displacement, ".4f"),
                 displacement,
                 str(response.impact_count),
@@ -291,72 +305,3 @@ def warned(pairs: Iterable[tuple[str, Caution]], count: int, everyone: str) -> l
         worst = max((warning for _, warning in members), key=lambda warning: abs(warning.value or 0.0))
         sentences.append(f"Warning, {who}: {worst}{spread}")
     return sentences
-
-
-NAMES_OF_CALLS = "g, m, R, gamma, J, mb, b, h: as in its script; scale: sqrt(R/1.0884 m)"
-
-
-def engines_table(engines: Sequence[Engine]) -> Grid:
-    """Return a table of all variants: kind, what the engine computes and what the adapter imposes."""
-    caption = Text(f"Tested for {in_words()}.\nrocking engines NAME: settings, levels, calls, versions.")
-    heads = ["engine", "variant", "kind", "the engine computes", "the adapter imposes"]
-    rows = [
-        [engine.name if name == engine.default_variant else "", name, variant.kind, variant.computes, variant.imposes]
-        for engine in engines
-        for name, variant in engine.variants.items()
-    ]
-    return grid(heads, rows, left=heads, wraps=heads[3:], show_edge=False, caption=caption, caption_justify="left")
-
-
-def engine_text(engine: Engine) -> str:
-    """Return the description of an `Engine` in lines: its versions, and each of its variants.
-
-    Of a variant: kind, settings (the accuracy parameter first), levels, what the engine computes, what the adapter
-    imposes, known faults, and the engine's calls.
-    """
-    versions = ", ".join(f"{package} {version}" for package, version in engine.versions().items())
-    lines, shown = [f"{engine.name} ({versions})"], set[str]()
-    if engine.script:
-        lines.append(f"  rocking script {engine.name} SCENE writes the main variant out, as a plain script of a scene.")
-    for name, variant in engine.variants.items():
-        default = "main, " if name == engine.default_variant else ""
-        values = [f"{field}={value:.6g}" for field, value in dataclasses.asdict(variant.settings).items()]
-        values[:1] = [f"{value} (accuracy parameter)" for value in values[:1]]
-        lines += [
-            f"  --variant {name} ({default}{variant.kind}){'' if variant.calls else f': {_about(variant)}'}",
-            f"      settings: {', '.join(values)}",
-            f"      levels, coarse to fine: {', '.join(f'{value:.4g}' for value in variant.levels)}",
-            f"      the engine computes: {variant.computes}",
-            f"      the adapter imposes: {variant.imposes}",
-            *([f"      known faults: {variant.faults}"] if variant.faults else ()),
-            *_calls(variant, shown),
-        ]
-        shown.update(variant.calls)
-    return "\n".join(lines) + "\n"
-
-
-def _calls(variant: Variant, shown: Collection[str]) -> list[str]:
-    """Return the lines of a variant's calls, without those already shown."""
-    if not variant.calls:
-        return []
-    fresh = {call: why for call, why in variant.calls.items() if call not in shown}
-    beside = ", beside some of the above" if len(fresh) < len(variant.calls) else ""
-    head = f"      the engine's calls{beside}, of a block on bearings ({NAMES_OF_CALLS}):"
-    return [head, *(f"        {call}{f'  # {why}' if why else ''}" for call, why in fresh.items())]
-
-
-def _about(variant: Variant) -> str:
-    """Return the first paragraph of the docstring of a variant's settings."""
-    return (inspect.getdoc(type(variant.settings)) or "").split("\n\n")[0].replace("\n", " ")
-
-
-def _section(engine: Engine) -> str:
-    """Return an engine's section of this module's documentation, in Markdown."""
-    kinds = {name: type(variant.settings) for name, variant in engine.variants.items()}
-    explained = ", ".join(f"{name} `{kind.__module__}.{kind.__qualname__}`" for name, kind in kinds.items())
-    return f"\n\n## {engine.name}\n\nSettings: {explained}.\n\n```text\n{engine_text(engine)}```"
-
-
-with stdout_to_stderr():  # engines print on import
-    _names = available_engines(name for name, engine in ENGINES.items() if engine.subject)[0]
-    __doc__ += "".join(_section(get_engine(name)) for name in _names)

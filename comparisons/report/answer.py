@@ -8,6 +8,8 @@ the table of trust of all variants. `screen` builds the first screen: five lines
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
+from operator import attrgetter
 from pathlib import Path
 from typing import Any, Self
 
@@ -20,8 +22,9 @@ from ..plotting.glance import Endings, Glance, costs, endings, swatches
 from ..plotting.parts import COST, RESTITUTION, Judgement, Mark, Section, grouped
 from ..plotting.wording import listed, outcomes, rating, with_counts
 from ..schemas.columns import number, percent
-from ..studies import StudyBroken, get_study, study_names
+from ..studies import STUDIES, StudyBroken, get_study, study_names
 from ..studies.rows import read_study
+from .kept import digest_of, digest_of_code, kept
 
 
 @dataclass(frozen=True)
@@ -30,7 +33,8 @@ class Stored:
 
     section: the study's own page. finding: its section of the first page. judgements: its rows of the first table.
     glance: its part of the first screen. origin: machine, versions, date and commit in one line. variants: those of its
-    settings, for `setups_of`. wrong: why it cannot be shown; "": it can.
+    settings, for `setups_of`. wrong: why it cannot be shown; "": it can. key: digest of what it is drawn from, under
+    which it is kept (`comparisons.report.kept`); "": it is not kept.
     """
 
     name: str
@@ -41,6 +45,7 @@ class Stored:
     origin: str = ""
     variants: tuple[Mapping[str, Any], ...] = ()
     wrong: str = ""
+    key: str = ""
 
     @classmethod
     def damaged(cls, name: str, title: str, words: str, **more: Any) -> Self:
@@ -57,9 +62,10 @@ def stored_studies(
     """
     order = {name: place for place, name in enumerate(study_names())}
     paths = sorted(results_in(folder), key=lambda path: (order.get(path.name, len(order)), path.name))
-    stored = []
+    stored, code = [], digest_of_code()
     for path in paths:
-        stored.append(_stored(path))
+        key = digest_of(path, code)
+        stored.append(kept(key, partial(_stored, path, key), attrgetter("key")))
         progress(len(stored), len(paths))
     return stored
 
@@ -114,7 +120,8 @@ def commit_of(origin: Mapping[str, Any]) -> str:
     return origin["commit"][:12] + (", with uncommitted changes" if origin["dirty"] else "")
 
 
-def _stored(path):
+def _stored(path, key):
+    """Draw a result. key: under which it is kept, if it can be shown and its study is of this project."""
     name = path.name
     try:
         result = read_study(path)
@@ -137,7 +144,8 @@ def _stored(path):
         words = f"{name} cannot be shown: its page fails ({readable(repr(error))}); --replot shows where."
         return Stored.damaged(name, f"Study {result.kind}", words, age=old, origin=origin)
     finding = finding and replace(finding, age=old)
-    return Stored(name, section, finding, judgements, glance, origin, variants)
+    own = key if result.kind in STUDIES else ""
+    return Stored(name, section, finding, judgements, glance, origin, variants, key=own)
 
 
 def _variants(settings):
@@ -273,6 +281,7 @@ def not_to_do(setups: Sequence[Setup]) -> list[str]:
 
 QUESTION = "How far can a multibody engine be trusted with a rocking body, and at what cost?"
 TUNED, DEFAULTS = "tuned", "defaults"
+LEVEL = "Level"  # a line of the first screen
 
 
 def screen(setups: Sequence[Setup], judgements: Sequence[Judgement], glances: Iterable[Glance]) -> dict[str, Any]:
@@ -326,11 +335,10 @@ def lines(
     setups: Sequence[Setup], judgements: Sequence[Judgement], shares: Sequence[Endings], says: Mapping[str, str]
 ) -> list[tuple[str, str]]:
     """Return up to five lines, (subject, sentences); those without a result are left out."""
-    near = " ".join(filter(None, (_left_out(shares), says.get("near", ""))))
     pairs = [
-        ("Restitution", _restitution(setups, judgements)),
-        ("Outcomes", _outcomes(shares)),
-        ("Near outcome boundaries", near),
+        ("Restitution (0 to 1)", _restitution(setups, judgements)),
+        ("Outcomes", " ".join(filter(None, (_outcomes(shares), _left_out(shares))))),
+        (LEVEL, says.get("level", "")),
         ("Cost", says.get("cost", "")),
         ("Real blocks", says.get("real", "")),
     ]
@@ -356,19 +364,15 @@ def _restitution(setups, judgements):
     head = next((judgement.heading for judgement in judgements if judgement.key == RESTITUTION), None)
     columns = [setup for setup in setups if setup.in_first_table and head]
     parts = []
-    for tier, how, begin in (
-        (TUNED, "Tuned", "tuned engines reproduce it to within"),
-        (DEFAULTS, "With defaults", "With defaults the error is"),
-    ):
+    for tier, begin in ((TUNED, "tuned engines are off by"), (DEFAULTS, "With defaults, engines are off by")):
         marks = {setup.engine: setup.marks[head] for setup in columns if setup.tier == tier}
         known = {engine: mark for engine, mark in marks.items() if mark.value is not None}
         if known:
-            parts.append(f"{begin} {_by_engine({engine: number(mark.value, 2) for engine, mark in known.items()})}.")
-        deaf = [engine for engine, mark in known.items() if "missed" in mark.words]
-        if deaf:
+            deaf = [engine for engine, mark in known.items() if "missed" in mark.words]
             who = "both" if len(deaf) == len(known) == 2 else listed(deaf)
-            parts.append(f"{how}, {who} miss{'es' * (len(deaf) == 1)} impacts.")
-    return f"{' '.join(parts)} Measured is the {head}. Restitution lies between 0 and 1." if parts else ""
+            missing = f", and {who} miss{'es' * (len(deaf) == 1)} impacts" if deaf else ""
+            parts.append(f"{begin} {_by_engine({who: number(mark.value, 2) for who, mark in known.items()})}{missing}.")
+    return f"{' '.join(parts)} This is the {head}." if parts else ""
 
 
 def _outcomes(shares):
@@ -378,33 +382,32 @@ def _outcomes(shares):
     )
     first = [share for share in shares if share.motions == motions]
     groups = (
-        (f"under {motions}, {{}} end otherwise than the model, or fail, in {{}}.", _changed_by_engine, first),
+        (f"under {motions}, {{0}} end otherwise than the model, or fail, in {{1}}", _changed_by_engine, first),
+        ("{0} fall at another time in {1} more", _late_by_engine, first if any(share.late for share in first) else []),
         (
-            "In {1}, {0} overturn as the model does, but at another time.",
-            _late_by_engine,
-            first if any(share.late for share in first) else [],
-        ),
-        (
-            "Under all other motions, {} end otherwise than the model, or fail, in {}.",
+            "Under all other motions, {0} end otherwise in {1}",
             _all_motions,
             [share for share in shares if share.motions != motions],
         ),
     )
     sentences = []
     for words, count, chosen in groups:
-        kinds = ((who, _of_kind(chosen, kind)) for kind, who in ((TUNED, "tuned engines"), (DEFAULTS, "defaults")))
+        kinds = ((who, _of_kind(chosen, kind)) for kind, who in ((TUNED, "tuned engines"), (DEFAULTS, "with defaults")))
         counts = [(who, count(members)) for who, members in kinds if members]
-        sentences += [words.format(*counts[0])] if counts else []
-        sentences += [f"With {who}, this happens in {runs}." for who, runs in counts[1:]]
+        if counts:
+            first_words = words.format(*counts[0])
+            begin = first_words[:1].upper() if sentences else first_words[:1]
+            others = "".join(f"; {who}, in {runs}" for who, runs in counts[1:])
+            sentences.append(f"{begin}{first_words[1:]}{others}.")
     return " ".join(sentences)
 
 
 def _changed_by_engine(shares):
-    return _by_engine({share.engine: f"{share.changed} of {share.runs}" for share in shares}) + " runs"
+    return f"{_by_engine({share.engine: f'{share.changed} of {share.runs}' for share in shares})} runs"
 
 
 def _late_by_engine(shares):
-    return _by_engine({share.engine: str(share.late or 0) for share in shares}) + " more runs"
+    return _by_engine({share.engine: str(share.late or 0) for share in shares})
 
 
 def _all_motions(shares):
@@ -423,7 +426,7 @@ def _left_out(shares):
     for (motions,), members in grouped(_of_kind(shares, TUNED), lambda share: share.motions).items():
         counts = dict.fromkeys(f"{share.left_out} of {share.runs + share.left_out}" for share in members)
         parts.append(f"{' or '.join(counts)} ({motions})")
-    return f"these counts leave out runs near a boundary: of each tuned engine, {listed(parts)}." if parts else ""
+    return f"Left out, near an outcome boundary: of each tuned engine {listed(parts)}." if parts else ""
 
 
 MOST_WARNINGS = 3  # of a scene, at the top of the page

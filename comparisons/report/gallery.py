@@ -17,7 +17,7 @@ from ..execution.writing import write, write_all
 from ..plotting.charts import alone
 from ..schemas.columns import spelled, spelled_page
 from ..studies.rows import read_study
-from .answer import Stored, commit_of, judgements_of, screen, setups_of, stored_studies, variants_of
+from .answer import LEVEL, Stored, commit_of, judgements_of, screen, setups_of, stored_studies, variants_of
 
 GALLERY, README = Path(__file__).with_name("gallery"), PROJECT_FOLDER / "README.md"
 RESULTS_README = RESULTS / "README.md"
@@ -45,9 +45,10 @@ def first_screen(stored: Sequence[Stored]) -> dict[str, Any]:
 def headlines(first: Mapping[str, Any]) -> str:
     """Return the first screen as Markdown: its lines, its charts, and the recommendation."""
     charts = " ".join(f"![{ALT[name]}](comparisons/report/gallery/{name}.svg)" for name in ALT if first[name])
-    paragraphs = [line for about, words in first["lines"] for line in (*wrap(f"**{about}:** {words}", 120), "")]
+    lines = [(about, words) for about, words in first["lines"] if about != LEVEL]  # which the table says
+    items = [line for about, words in lines for line in wrap(f"- **{about}:** {words}", 120, subsequent_indent="  ")]
     return spelled(
-        "\n".join((*paragraphs, charts, *(line for advised in first["advice"] for line in _markdown(advised))))
+        "\n".join((*items, "", charts, *(line for advised in first["advice"] for line in _markdown(advised))))
     )
 
 

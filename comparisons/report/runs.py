@@ -16,10 +16,11 @@ import numpy as np
 from scipy.integrate import trapezoid
 
 from analytic import Base, Block, Scene, Start, load_scene
+from analytic.errors import SceneError
 from analytic.motion import Motion
 from analytic.response import LEVEL, Response
 from analytic.rocking import restitution
-from analytic.scene import RADIUS
+from analytic.scene import RADIUS, refuse_free
 from engines import available_engines, get_engine
 
 from ..execution.cases import Case
@@ -53,6 +54,10 @@ def load_scenes(places: Sequence[str], motion: Motion | None = None) -> dict[str
     scenes: dict[str, Scene] = {}
     for place in places:
         scene, name = load_scene(place), Path(place).stem
+        try:
+            refuse_free(scene, "a page of your own scenes")
+        except SceneError as error:
+            raise error.in_file(place) from None
         key = name if name not in scenes else f"{name}-{len(scenes) + 1}"
         scenes[key] = scene if motion is None else scene.with_(motion=motion)
     return scenes

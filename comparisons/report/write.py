@@ -4,6 +4,7 @@ import json
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -35,6 +36,7 @@ from .answer import (
 )
 from .detail import EQUATIONS, GLOSSARY, REFERENCES, assets, detail, environment, frames
 from .figures import animation
+from .kept import digest_of, kept
 from .runs import RESTITUTION, SCENES
 from .sections import earthquake, restitution_section, scene_sections
 from .statue import card_of
@@ -126,12 +128,13 @@ def write_page(
     given = any(scene["block"]["restitution"] is not None for scene in scenes.settings["scenes"].values())
     sections_of_runs = [*scene_sections(scenes), *([restitution_section(block, given)] if block else ())]
     files: dict[str, str] = {}
-    for name, title, sections, origin in (
-        ("runs", "The report’s own runs", sections_of_runs, origin_of(scenes)),
-        *((study.name, study.section.title, [study.section], study.origin) for study in stored),
+    for name, title, sections, origin, key in (
+        ("runs", "The report’s own runs", sections_of_runs, origin_of(scenes), ""),
+        *((study.name, study.section.title, [study.section], study.origin, study.key) for study in stored),
     ):
         file = f"{PAGES}/{name}.html"
-        files[file] = detail(title, sections, origin, pages=listed, home=PAGE, file=file)
+        make = partial(detail, title, sections, origin, pages=listed, home=PAGE, file=file)
+        files[file] = kept(key and digest_of(key, listed), make)
     return write_all(folder, {**files, PAGE: spelled_page(first)})[
         -1
     ]  # each page is there before the one that leads to it

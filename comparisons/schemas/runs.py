@@ -51,7 +51,7 @@ class Stack(Part):
     """A free pedestal under the block: which of both lifted ("pedestal", "statue"), largest absolute tilts of pedestal
     and block [rad], impacts, uplifts and rests [s], friction demand and least normal force over the weight of both, on
     its support. impulses: largest ratio along and off the contact, of pedestal and block. closest: time between two
-    landings in a row, one of each, over the block's rocking period."""
+    landings in a row, one of each, over the block's rocking period. null: not read of an engine."""
 
     rocked: list[str]
     peak_tilt: float | None
@@ -61,7 +61,7 @@ class Stack(Part):
     rests: list[float]
     friction_demand: float | None
     min_normal_ratio: float | None
-    impulses: list[float]
+    impulses: list[float | None]
     closest: float | None
 
 

@@ -92,7 +92,8 @@ def build(scene: Scene, step: float, plain: bool, pedestal_tilt: float = 0.0) ->
     """The block, on a free pedestal or not, over its ground or base in the initial state.
 
     step: longest step [s]. plain: a box for contact, and MuJoCo's defaults. Otherwise the pedestal carries the block on
-    a box in its upper half, which cannot reach the ground.
+    a box in its upper half, wider than itself, so that a corner at its edge meets the top and not the side. The ground
+    does not meet this box.
 
     Raises
     ------
@@ -110,10 +111,15 @@ def build(scene: Scene, step: float, plain: bool, pedestal_tilt: float = 0.0) ->
     bodies, ground, slabs = "", 0.0, slabs_of(scene)
     for slab in slabs:
         b, h = slab.b, slab.h
-        spheres = "".join(f'<geom type="sphere" size="{r!r}" pos="{x!r} 0 {r - h!r}" {geom}/>' for x in (-b, b))
-        top = f'<geom type="box" size="{b!r} {b!r} {h / 2!r}" pos="0 0 {h / 2!r}" {geom}/>'
+        spheres = "".join(
+            f'<geom type="sphere" size="{r!r}" pos="{x!r} 0 {r - h!r}" contype="3" conaffinity="3" {geom}/>'
+            for x in (-b, b)
+        )
+        top = f'size="{2 * b!r} {b!r} {h / 2!r}" pos="0 0 {h / 2!r}" contype="2" conaffinity="2" {geom}'
         box = f'<geom type="box" size="{b!r} {b!r} {h!r}" {geom}/>'
-        bodies += _body(slab, ground + h, box if plain else spheres if slab is slabs[-1] else spheres + top)
+        bodies += _body(
+            slab, ground + h, box if plain else spheres if slab is slabs[-1] else f'{spheres}<geom type="box" {top}/>'
+        )
         ground += 2 * h
     try:
         model = mujoco.MjModel.from_xml_string(f"""<mujoco>

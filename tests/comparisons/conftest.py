@@ -1,5 +1,8 @@
 """What the tests of pages share."""
 
+import os
+from pathlib import Path
+
 import pytest
 from javascript import NEEDED, chromium
 
@@ -14,3 +17,11 @@ def browser():
         found = play.chromium.launch(executable_path=chromium(), args=["--no-sandbox"])
         yield found
         found.close()
+
+
+@pytest.fixture(scope="session", autouse=True)
+def nothing_kept():
+    """Each test draws its pages itself (tests/comparisons/report/test_kept.py has a folder of its own)."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("comparisons.report.kept.FOLDER", Path(os.devnull, "pages"))
+        yield

@@ -109,7 +109,7 @@ def test_a_run_near_a_boundary_or_beyond_the_model_says_so_and_defaults_differ()
 
 @pytest.mark.parametrize("engine", sorted({*installed_engines()} - {"mujoco", "pybullet"}))
 def test_other_engines_refuse_it_and_name_those_that_build_it(engine):
-    with pytest.raises(SceneError, match=f"pedestal.free = True: not known to {engine}.*pybullet, mujoco"):
+    with pytest.raises(SceneError, match=f"pedestal.free = True: not supported by {engine}.*pybullet, mujoco"):
         ENGINES[engine].simulate(STACK)
 
 

@@ -150,7 +150,14 @@ OSCILLATOR_DAMPING = (0.05, 0.30)  # dampings that are run in the engines
 STOCKY = 0.7  # rad
 TIME_LIMIT = 120.0  # s
 HISTORY_STEP = 0.01  # s, at which histories are kept
-LEFT_OUT = "impacts", "uplifts", "rests", "energy", "sliding"  # of a response: lists, and what needs a friction
+LEFT_OUT = (
+    "impacts",
+    "uplifts",
+    "rests",
+    "energy",
+    "sliding",
+    "stack",
+)  # of a response: lists, and what no scene here has
 
 
 def slender_block(motion: Motion, period: float, slenderness: float) -> Scene:

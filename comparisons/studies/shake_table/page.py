@@ -91,27 +91,24 @@ def at_a_glance(result: Result) -> str:
     held = where(result.rows, part="score", judged=BY_RECORD)
     if not (model := where(held, forecast=MODEL)):
         return ""
-    rivals = {CURVE: "The curve is right", THRESHOLD: "one threshold of PGV", FREQUENT: FREQUENT}
-    rivals_right = [f"{words} in {_right_in_words(where(held, forecast=name))}" for name, words in rivals.items()]
+    rivals = {CURVE: "a curve in PGA and PGV", THRESHOLD: "one threshold of PGV", FREQUENT: FREQUENT}
+    rivals_right = [f"{_right_in_words(where(held, forecast=name))} ({words})" for name, words in rivals.items()]
     same_rule = where(result.rows, part="score", judged=IN_SAMPLE, forecast=ONE)
     engines = grouped(where(result.rows, part="engine", specimen=set(specimens)), "engine", "variant").values()
-    fitted = [f"{_right_in_words(rows, False)} ({name_of(rows[0])})" for rows in engines]
-    model_right, size = _right_in_words(model), model[0]["size"]
-    words = f"on a shake table the model is right in {model_right} of {size} tests ({listed(specimens)})."
+    fitted = [f"{_right_in_words(rows)} ({name_of(rows[0])})" for rows in engines]
+    words = (
+        f"held out by record, the model predicts {_right_in_words(model)} of {model[0]['size']} outcomes on a shake "
+        f"table ({listed(specimens)}); right are also {listed(rivals_right)}."
+    )
     if pairs := where(result.rows, part="paired", forecast=MODEL, beside=CURVE):
         words += f" {_against_curve((where(pairs, specimen=ALL) or pairs)[-1], sum(row['size'] for row in model))}"
-    return (
-        f"{words} {listed(rivals_right)}. All of these are held out by record. Engines are judged by another rule, "
-        "with one slenderness fitted to all tests. By this rule "
-        f"{listed([f'{_right_in_words(same_rule, False)} (the model)', *fitted])} are right. Restitution was not "
-        "measured."
-    )
+    by_one_rule = listed([f"{_right_in_words(same_rule)} (the model)", *fitted])
+    return f"{words} With one slenderness fitted to all tests: {by_one_rule}."
 
 
-def _right_in_words(rows, shares=True):
-    """Right answers of each specimen, with their shares, in words; "–" where they are not disclosed."""
-    right = listed(["–" if row["right"] is None else str(row["right"]) for row in rows])
-    return f"{right} ({listed([percent(row['right'] / row['size']) for row in rows])})" if shares else right
+def _right_in_words(rows):
+    """Right answers of each specimen in words; "–" where they are not disclosed."""
+    return listed(["–" if row["right"] is None else str(row["right"]) for row in rows])
 
 
 def _against_curve(pair, size):
@@ -119,7 +116,7 @@ def _against_curve(pair, size):
     low, high = pair["more_interval"]
     words = "better" if low > 0 else "worse" if high < 0 else "not shown to be better"
     more = f"{pair['more_right']} more of {size} (95 % interval {low:.0f} to {high:.0f})".replace("-", "−")
-    return f"It is {words} than a curve in PGA and PGV: it is right in {more}."
+    return f"It is {words} than the curve: it is right in {more}."
 
 
 def together(result: Result) -> list[dict[str, Any]]:
@@ -140,7 +137,7 @@ def near_boundaries(result: Result) -> str:
     if not rows:
         return ""
     return (
-        f"On the shake table, with these runs, tuned engines miss {missed} overturnings, add {added} and fail {failed} "
+        f"With runs near an outcome boundary, tuned engines miss {missed} overturnings, add {added} and fail {failed} "
         f"times in {size} runs. Of these {missed + added + failed}, {on_edge} are in the {near} runs near a boundary."
     )
 
@@ -301,7 +298,7 @@ def page(result: Result) -> Page:
     main = [row for row in where(scores, judged=BY_RECORD) if TABLE not in row["forecast"]]
     return Page(
         title(scores, settings),
-        (sentence(result, engines),),
+        (" ".join(filter(None, (sentence(result, engines), near_boundaries(result)))),),
         first=(_bars(result, engines), _table_of_engines(result, engines)),
         more=(
             bounds(result),
@@ -380,8 +377,7 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
 def glance(result: Result) -> Glance:
     """Return the sentences and outcomes for the report's first screen."""
     endings = tuple(_endings(row, result.settings["records"]) for row in together(result))
-    sentences = {"real": at_a_glance(result), "near": near_boundaries(result)}
-    return Glance(says={key: words for key, words in sentences.items() if words}, endings=endings)
+    return Glance(says={"real": words} if (words := at_a_glance(result)) else {}, endings=endings)
 
 
 def _endings(row, records):

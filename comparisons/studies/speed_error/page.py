@@ -255,17 +255,16 @@ def at_a_glance(result: Result) -> str:
     alike = max(cost for _, cost, _ in costs) <= noise(result) * min(cost for _, cost, _ in costs)
     words = (
         f"a peak tilt within {percent(ASKED, 1)} of the slenderness takes tuned engines {engine_costs} of CPU time per "
-        f"simulated second. The analytic model takes {number(1e3 * costs[0][2], 2)} ms: tuned engines take {over} "
-        "times as long."
+        f"simulated second, and the model {number(1e3 * costs[0][2], 2)} ms: {over} times less."
     )
     if alike and len(costs) > 1:
-        words += f" Costs within a factor of {number(noise(result), 2)} are not distinguished, so these are the same."
+        words += f" The engines cost the same: a factor of {number(noise(result), 2)} is not distinguished."
     scripts = [
         f"{number(1e3 * row['cpu_per_second'], 2)} ms with an error of {percent(row['error'])} ({row['engine']})"
         for row in _main_scene_rows(result)
         if row["variant"] == SCRIPT and row["error"] is not None
     ]
-    return f"{words} A script written by rocking script has one level: {listed(scripts)}." if scripts else words
+    return f"{words} A script of rocking script takes {listed(scripts)}." if scripts else words
 
 
 def _costs_at_asked(result):

@@ -1,4 +1,4 @@
-"""The page's part on levels: which one is advised for an accuracy, and what all levels do on the second draw."""
+"""Which level is advised for an accuracy, in short and in full, and what all levels do on the second draw."""
 
 from collections.abc import Mapping
 from functools import partial
@@ -9,12 +9,56 @@ import numpy as np
 from ...execution.results import Result
 from ...metrics.statistics import wilson
 from ...plotting.parts import Table, grouped, setting_of, table, where
+from ...plotting.wording import listed
 from ...schemas.columns import NAME, Column, number, percent
 from .levels import ACCURACIES, FALLS, FIRST, SECOND, advised, changed, holds, misses, tally
 
+ASKED = ACCURACIES[:2]  # on the first screen
+EXAMPLE = "caryatid-isolated"  # a shipped scene
 LEVEL = Column("level", setting_of)
 COST = Column("CPU time per simulated second: median (range) [ms]", lambda row: _cost_in_words(row["cpu"]))
 OTHER = Column("other outcomes or failed: all (away from a boundary)", "{changed} of {statues} ({away})")
+
+
+def advised_levels(result: Result) -> tuple[Table, ...]:
+    """Return the first screen's table of the levels to use; none without rows of levels."""
+    if not where(result.rows, part="level"):
+        return ()
+    statues = len({row["index"] for row in where(result.rows, part="level", draw=2)})
+    return (
+        table(
+            f"Level to use, by {statues} drawn statues. Kept: the outcome is the model's, and peak tilt (over the "
+            "slenderness) and base displacement are within the accuracy. ✓: at most "
+            f"{percent(SECOND, 1)} of those that stay upright miss it, and no outcome changes away from a boundary. ✗: "
+            "more, at the finest level. CPU time per simulated second: median (range)",
+            [row for accuracy in ASKED for row in _advised_rows(result, accuracy)],
+            Column("accuracy, kept on", lambda row: f"{percent(row['accuracy'], 1)}: {_kept(row)}"),
+            NAME,
+            LEVEL,
+            Column("CPU time [ms]", lambda row: _cost_in_words(row["cpu"])),
+            Column("command, for example", lambda row: row["command"].replace("SCENE", EXAMPLE)),
+        ),
+    )
+
+
+def at_a_glance(result: Result) -> str:
+    """Return sentences on how often the levels to use keep `ASKED`; "" without rows of levels."""
+    if not where(result.rows, part="level"):
+        return ""
+    sentences = []
+    for accuracy in ASKED:
+        rows = [*_advised_rows(result, accuracy)]
+        kept = listed([f"{_kept(row)} ({row['engine']}, {setting_of(row)})" for row in rows])
+        near = listed([str(row["missed_near"]) for row in rows])
+        sentences.append(
+            f"{percent(accuracy, 1)} is kept on {kept} drawn statues ({near} of the others: near a boundary)."
+        )
+    return " ".join(sentences)
+
+
+def _kept(row):
+    """Return on how many of the statues that stay upright an accuracy is kept, and a mark of whether that passes."""
+    return f"{row['upright'] - row['missed']} of {row['upright']} {'✓' if holds(row, SECOND) else '✗'}"
 
 
 def level_tables(result: Result) -> tuple[Table, ...]:
@@ -37,7 +81,7 @@ def level_tables(result: Result) -> tuple[Table, ...]:
             NAME,
             LEVEL,
             Column("passes", lambda row: row["verdict"]),
-            Column("missed (at most, 95 %)", lambda row: _missed_in_words(row, bound=True)),
+            Column("missed (at most, 95 %), of these near a boundary", lambda row: _missed_in_words(row, bound=True)),
             OTHER,
             Column("overturning boundaries within it", lambda row: row["edges"]),
             COST,
@@ -140,7 +184,7 @@ def _missed_in_words(counts, bound=False):
     if not upright:
         return "–"
     words = f"{missed} of {upright} ({percent(missed / upright)}"
-    return f"{words}; {percent(wilson(missed, upright)[1])})" if bound else f"{words})"
+    return f"{words}; {percent(wilson(missed, upright)[1])}), {counts['missed_near']}" if bound else f"{words})"
 
 
 def _cost_in_words(cpu):

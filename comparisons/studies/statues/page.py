@@ -36,7 +36,7 @@ from ...plotting.glance import Glance, counted
 from ...plotting.parts import Figure, Judgement, Mark, Page, grouped, table, where
 from ...plotting.wording import TRUSTED, ends, left_out, listed, tally
 from ...schemas.columns import NAME, Column, number, percent, typeset
-from .advice import alarms, level_tables
+from .advice import advised_levels, alarms, at_a_glance, level_tables
 from .levels import FALLS, SEEDS
 from .study import APART, COLUMNS, FREQUENCY
 
@@ -282,7 +282,11 @@ def glance(result: Result) -> Glance:
         for row in _runs(result)
         if row["friction"] is not None
     ]
-    return Glance(endings=counted("blocks that may slide", runs), advice=level_tables(result))
+    return Glance(
+        says={"level": words} if (words := at_a_glance(result)) else {},
+        endings=counted("blocks that may slide", runs),
+        advice=advised_levels(result),
+    )
 
 
 def summed(cells: Iterable[Mapping[str, Any]], key: Any) -> list[dict[str, Any]]:

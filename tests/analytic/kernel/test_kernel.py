@@ -447,7 +447,7 @@ def test_an_inner_function_is_no_machine_code_but_in_its_entry():
 
 
 def test_the_kernel_keeps_to_the_arrays_it_is_given():
-    arrays = kernel.arrays(np.empty((1, TOTALS)), capacity=2, outputs=3)
+    arrays = layout.Arrays(*kernel.arrays(np.empty((1, TOTALS)), capacity=2, outputs=3))
     assert arrays.P.shape[0] == ROWS and [len(rows) for rows in arrays[2:6]] == [2, 2, 2, 3]
 
 

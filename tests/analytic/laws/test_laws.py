@@ -382,7 +382,7 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
 @given(ANY_LAW, st.floats(-1, 1), SIZES)
 def test_work_is_the_integral_of_the_force(rule, share, dx):
     z, s, cuts = share * rule.f0, math.copysign(1.0, dx), [0.0, *np.geomspace(1e-4, 1, 40)]
-    corner = rule.unit.begin.py_func(s, z, 1.0, rule.constants)[2]  # where the force bends
+    corner = rule.unit.begin.py_func(s, z, 1.0, 0.0, rule.constants)[2]  # where the force bends
     if corner < math.inf:
         cuts = sorted([*cuts, min((corner - s * z) / rule.dk / abs(dx), 1.0)])
     integral = sum(

@@ -191,7 +191,7 @@ def test_what_does_not_know_a_free_pedestal_refuses_it():
         ENGINES["exudyn"].simulate,
     ]
     for other in others:
-        with pytest.raises(SceneError, match=r"pedestal\.free = True: not known to"):
+        with pytest.raises(SceneError, match=r"pedestal\.free = True: not supported by"):
             other(STACK)
     # a fixed pedestal has the digest that stored results have
     assert fixed(STACK).digest()[:16] == "efe0bce57c2485ee" != STACK.digest()[:16]

@@ -77,12 +77,25 @@ def test_module_and_status_in_a_new_process_and_names_the_terminal_cannot_show(t
     assert done.returncode == 0 and "\\u77f3" in done.stdout
 
 
+def loaded_by(*arguments):
+    """The modules that a command loads."""
+    done = in_a_new_process(*arguments)
+    assert done.returncode == 0, done.stderr
+    return {line.rpartition("|")[2].strip() for line in done.stderr.splitlines()}
+
+
+def test_help_loads_no_numbers():
+    loaded = loaded_by("--help")
+    assert "comparisons.cli" in loaded and "analytic.errors" in loaded
+    assert not loaded & {"numpy", "numba", "scipy", "pydantic", "matplotlib", "engines"}
+
+
 @pytest.mark.slow
-def test_help_loads_no_engine_and_no_plots():
-    done = in_a_new_process("--help")
-    loaded = {line.rpartition("|")[2].strip() for line in done.stderr.splitlines()}
-    assert done.returncode == 0 and "comparisons.cli" in loaded
-    assert not loaded & {"matplotlib", *(engine.package for engine in ENGINES.values())}
+def test_a_run_loads_no_engine_no_plots_and_no_statistics():
+    loaded = loaded_by("run", "free-rocking-rigid")
+    assert "numba" in loaded and "comparisons.plotting.terminal" in loaded
+    unused = {"matplotlib", "jinja2", "scipy.stats", "scipy.optimize", "scipy.special", "rich.progress"}
+    assert not loaded & {*unused, *(engine.package for engine in ENGINES.values())}
 
 
 def test_all_mistakes_of_a_scene_are_told_one_a_line(rocking, tmp_path):

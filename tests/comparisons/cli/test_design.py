@@ -171,6 +171,21 @@ def test_where_the_block_jumps_or_overturns_on_all_bearings_the_motion_is_named(
     assert status == 0 and "overturns on all of them, under one-sine pulse, 40 m/s2, 4 rad/s on those of 0.3 s" in words
 
 
+@pytest.mark.parametrize("mass, made", [(400.0, False), (1.6e6, True)])
+def test_bearings_that_are_made_are_preferred_and_otherwise_the_first_line_warns(
+    rocking, tmp_path, monkeypatch, mass, made
+):
+    monkeypatch.setattr(bearing_scan, "DAMPING_STEP", 0.01)
+    block = f"[block]\nmass = {mass}\nradius = 8.0\nslenderness = 0.28\n[base]\nmass = {mass}\n"
+    (tmp_path / "s.toml").write_text(f'{block}[motion]\nsynthetic = "duzce-like"\n')
+    status, out, _ = rocking("design", tmp_path / "s.toml", "--stroke", 0.35, "--json", tmp_path / "s.json")
+    words = " ".join(out.split())
+    assert status == 0 and ("Warning: no such bearings are made: least-stroke" in words) != made
+    assert ("hold and are made." in words) == made and "under 0 of 1 motion," in words
+    chosen = json.loads((tmp_path / "s.json").read_text())["chosen"]
+    assert [not design["sizes"]["reasons"] for design in chosen.values()] == [made, made]
+
+
 def test_a_folder_of_records_adds_motions(rocking, tmp_path):
     for name, sign in (("A000.csv", 1), ("A090.csv", -1)):
         lines = ["t [s],a [m/s2]", *(f"{0.01 * k:.2f},{sign * 2.0 * ((k // 40) % 2 - 0.5)}" for k in range(400))]

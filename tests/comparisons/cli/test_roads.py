@@ -4,6 +4,7 @@ Engines that lie take the place of slow ones (`lying_engine`). The scans of marg
 user's are not is a test of its own. The slow form has the real engines, and `choose`.
 """
 
+import itertools
 import json
 import re
 import shutil
@@ -16,12 +17,12 @@ import pytest
 from answered import Here
 from jsonschema.validators import validator_for
 from lying_engine import FAULTS, LIES, SHARE, liars
-from roads import KINDS, REFUSED, write_records
+from roads import KINDS, REFUSED, STACKS, write_records
 from scipy.integrate import cumulative_trapezoid
 
 from analytic import Base, Bearings, load_scene, simulate, synthetic_motion
 from analytic.advice import bearing_scan, margins
-from analytic.response import DIFFERENCES, JUDGED, Difference, Failure
+from analytic.response import DIFFERENCES, FALLS, JUDGED, Difference, Failure
 from analytic.rocking import properties, restitution
 from comparisons.commands import advice as margin
 from comparisons.commands import risk
@@ -58,6 +59,8 @@ HERE = {
     "comparisons.commands.advice.STEPS": 6,
     "analytic.advice.margins.BISECTIONS": 3,
     "analytic.advice.margins.STEP": 0.0125,
+    "analytic.advice.margins.STACK_STEP": 0.2,
+    "analytic.advice.margins.STACK_BISECTIONS": 3,
     "analytic.advice.bearing_scan.PERIOD_STEP": 0.4,
     "analytic.advice.bearing_scan.DAMPING_STEP": 0.05,
     "comparisons.report.statue.STEP": 0.1,
@@ -87,7 +90,7 @@ def road(rocking, tmp_path, monkeypatch):
     write_records(tmp_path / "records")
 
     def call(command, kind, *words):
-        text = KINDS[kind][0] if kind in KINDS else REFUSED[kind][0]
+        text = (KINDS | REFUSED | STACKS)[kind][0]
         (tmp_path / "scene.toml").write_text(text)
         (tmp_path / "out.json").unlink(missing_ok=True)
         status, out, err = rocking(command, "scene.toml", *words, "--json", "out.json")
@@ -541,6 +544,47 @@ def test_a_scene_that_the_model_refuses_is_named_with_its_remedy(road, kind, com
     match = ERROR.match(err.strip().splitlines()[-1])
     assert match and match["file"] == "scene.toml" and match["field"] == REFUSED[kind][1], err
     assert float(match["value"]) and match["remedy"].startswith(("give", "leave"))
+
+
+@pytest.mark.parametrize("kind", STACKS)
+def test_run_and_compare_of_a_free_pedestal(road, kind):
+    outcome = STACKS[kind][1]
+    status, answer, out, _ = road("run", kind, "--records", "records", "--units", "m/s2")
+    assert status == some_failed([*answer["motions"], answer]) and answer["outcome"] == outcome
+    rocked = answer["stack"]["rocked"]
+    assert shown(f"what rocks {' and '.join(rocked) or 'nothing'}", out) and bool(rocked) == (outcome != "stands")
+    assert shown(answer["headline"], out) and len({row["record"] for row in answer["motions"]}) >= RECORDS
+    status, answer, out, _ = road("compare", kind, *engine_options(["close"]))
+    assert status == int(outcome == "failed") and answer["sensitivity_horizon"] is None
+    assert [response["outcome"] for response in answer["responses"]] == [outcome] * 2 and "lower: peak tilt" in out
+
+
+@pytest.mark.parametrize("kind", STACKS)
+def test_margin_of_a_free_pedestal(road, tmp_path, kind):
+    """What changes at a boundary differs in two runs beside it."""
+    status, answer, out, _ = road("margin", kind, "--span", 60)
+    stack, (margin,) = load_scene(tmp_path / "scene.toml"), answer["margins"]
+    assert status == int(STACKS[kind][1] == "failed") and margin["quantity"] == ("motion" if stack.motion else "start")
+    for below, above in itertools.pairwise(margin["bands"]):
+        for band, side in ((below, -1), (above, 1)):
+            factor = 1 + below["high"] + 0.013 * side
+            changed = {"motion": stack.motion.scaled(factor)} if stack.motion else {"start": {"tilt": 0.15 * factor}}
+            falls = {*FALLS} & ({*below["reached"]} ^ {*above["reached"]})
+            assert falls & {simulate(stack.with_(**changed), history=False).outcome} == falls & {*band["reached"]}
+
+
+@pytest.mark.parametrize("command", ["design", "risk", "choose", "report"])
+def test_what_knows_one_block_refuses_a_free_pedestal_in_a_line(road, command):
+    options = {"design": ("--stroke", 0.2, "--base-mass", 100)}.get(command, ())
+    status, _, _, err = road(command, "stack stands", *options)
+    error = ERROR.match(err.splitlines()[-1])
+    assert status == 2 and error and error["field"] == "pedestal.free" and "Traceback" not in err
+
+
+def test_a_script_of_a_free_pedestal_is_refused(rocking, tmp_path):
+    (tmp_path / "scene.toml").write_text(STACKS["stack stands"][0])
+    status, _, err = rocking("script", "pybullet", tmp_path / "scene.toml")
+    assert status == 2 and ERROR.match(err)["field"] == "pedestal.free"
 
 
 def test_the_scans_of_a_user_are_fine():

@@ -130,6 +130,25 @@ def test_a_change_ages_what_reaches_it_and_is_named(package, module, old, new, c
     assert [change.removeprefix("some_package.") for change in changes(kept)] == ([changed] if changed else [])
 
 
+ON_DEMAND = """
+if TYPE_CHECKING:
+    from .b import f as shown
+
+def __getattr__(name):
+    return getattr(import_module(".b", __name__), "f")
+"""
+
+
+def test_what_a_package_imports_on_demand_is_reached_by_its_name(package):
+    """`analytic` names for a type checker what it imports when it is first used; a number depends on it, too."""
+    package("user", "from . import shown\n\ndef use():\n    return shown(1)\n")
+    root = "some_package.user:use"
+    at_once = names(root)
+    package("__init__", ON_DEMAND)
+    assert names(root) == at_once and "b.f" in at_once
+    assert {"analytic.solver.simulate", "analytic.kernel.march._run_rows"} <= set(source_digests(["analytic:simulate"]))
+
+
 MOVED = "def g():\n    return [late for late in range(2)]\n"
 OTHER = "\n\ndef h():\n    return STEP\n"
 

@@ -126,13 +126,13 @@ def test_the_first_screen_counts_outcomes_that_are_changed_of_subject_engines():
     assert title([]) == title([TABLE]) == QUESTION
     sentences = dict(lines(SETUPS, (JUDGED,), kept, {}))
     counts = (
-        "in 1 of 170 (exudyn) runs. With defaults, this happens in 10 of 50 (exudyn) runs.",
-        "In 2 (exudyn) more runs, tuned engines overturn",
+        "in 1 of 170 (exudyn) runs; with defaults, in 10 of 50 (exudyn) runs.",
+        "Tuned engines fall at another time in 2 (exudyn) more",
         "7 of 80 runs (7 under",
+        "30 of 200 (recorded motions) and 20 of 100 (a table)",
     )
     assert all(words in sentences["Outcomes"] for words in counts)
-    assert "30 of 200 (recorded motions) and 20 of 100 (a table)" in sentences["Near outcome boundaries"]
-    assert "to within 1.0·10⁻⁵ (exudyn)" in sentences["Restitution"] and "is 0.20 (exudyn)" in sentences["Restitution"]
+    assert all(words in sentences["Restitution (0 to 1)"] for words in ("off by 1.0·10⁻⁵ (exudyn)", "by 0.20 (exudyn)"))
 
 
 def test_endings_are_counted_run_by_run_and_an_interval_goes_by_group():

@@ -18,7 +18,7 @@ from comparisons.metrics.boundaries import pulse
 from comparisons.plotting.parts import where
 from comparisons.studies import get_study
 from comparisons.studies.statues import study
-from comparisons.studies.statues.advice import alarms, level_tables
+from comparisons.studies.statues.advice import advised_levels, alarms, level_tables
 from comparisons.studies.statues.levels import advised, holds, level_settings, misses, tally
 from comparisons.studies.statues.study import fates
 from engines import ENGINES, get_engine
@@ -263,13 +263,18 @@ def test_the_second_draw_says_whether_an_advised_level_passes():
         for index in range(40)
     ]
     rows[-1] |= {"warned": True}
+    rows[40] |= {"comparable": "on an edge"}  # the first of the three that miss
     made = SimpleNamespace(rows=rows, settings=settings)
     first, second = level_tables(made)
     assert [row[0] for row in first.rows] == ["1 %", "0.1 %", "0.01 %"]
     coarse, unreached, _ = first.rows
-    assert coarse[2:6] == ["stiffness = 10⁹ N/m", "no", "3 of 40 (7.5 %; 20 %)", "0 of 40 (0)"]
+    assert coarse[2:6] == ["stiffness = 10⁹ N/m", "no", "3 of 40 (7.5 %; 20 %), 1", "0 of 40 (0)"]
     assert coarse[-1].endswith("--engine exudyn --set stiffness=1e+09")
     assert unreached[3].startswith("no level held") and unreached[3].endswith("no")
     assert [row[2] for row in second.rows] == ["3 of 40 (7.5 %)", "0 of 40 (0 %)"]
+    (short,) = advised_levels(made)
+    assert [row[0] for row in short.rows] == ["1 %: 37 of 40 ✗", "0.1 %: 0 of 40 ✗"]
+    assert "rocking run caryatid-isolated --engine exudyn --set stiffness=1e+09" in short.rows[0]
     assert alarms(made).rows[1] == ["2", "80", "1 of 77 (1.3 %)", "3 of 3 (100 %)"]
-    assert level_tables(SimpleNamespace(rows=[], settings={})) == ()
+    empty = SimpleNamespace(rows=[], settings={})
+    assert level_tables(empty) == advised_levels(empty) == ()
