@@ -39,7 +39,6 @@ from .rocking import BearingLaw, RockingModel
 from .scene import refuse_free
 from .sliding.run import contact_of, is_needed
 from .sliding.run import slid as march
-from .stack import run as stack
 
 if TYPE_CHECKING:
     from .motion import Motion
@@ -282,9 +281,11 @@ def simulate_stack(scene: Scene, *, history: bool = True, pedestal_tilt: float =
         Tilts, impacts, friction demand and normal force are those of the statue on the pedestal; `Response.stack` has
         those of the pedestal. A run that has left the model has failed, for a reason "outside the model: ...".
     """
+    from .stack.run import Run  # loads scipy.integrate
+
     compile_kernels()
     begin, par = time.process_time(), parameters(scene.with_(pedestal={"free": False}))
-    run = stack.Run(scene, par, history, pedestal_tilt)
+    run = Run(scene, par, history, pedestal_tilt)
     failure = run.go()
     return run.response(time.process_time() - begin, failure)
 
