@@ -54,6 +54,7 @@ FALLS = OUTCOMES[3:6]
 DIFFERENCES = {
     "outcome": "the block {here}, in the analytic model it {model}",
     "peak_tilt": "peak tilt {here:.4g} rad, in the analytic model {model:.4g}",
+    "pedestal_tilt": "peak tilt of the pedestal {here:.4g} rad, in the analytic model {model:.4g}",
     "peak_base_displacement": "peak base displacement {here:.4g} m, in the analytic model {model:.4g}",
     "peak_slip": "the block slips by up to {here:.4g} m, in the analytic model {model:.4g}",
     "fall_time": "falls from {here:.6g} s on, in the analytic model from {model:.6g} s",

@@ -98,7 +98,6 @@ LEAST_LOSS = 0.02  # smallest of the statue range by eq. (7): slenderness .1, J_
 OUT_OF_PHASE = 0.1  # share of a swing by which an impact is early or late; no later impact counts as missing
 LAST = 0.01  # share of a rocking period before the end in which an impact may occur in one run only
 FALLS = ("overturns", "pedestal overturns")  # one that falls off is compared as one that is upright
-PEDESTAL = "pedestal_tilt"  # the peak tilt of a free pedestal, a difference in "peak_tilt"
 END = {"outcome", "fall_time", "overturning_time", "impacts_before_fall"}  # quantities of the block's end
 FALL_POINTS, MOST_POINTS = 200, 100_000  # samples of the last fall, and at most of the run up to its end
 
@@ -185,15 +184,14 @@ def _number_differences(scene: Scene, models: Sequence[Response], run: Response)
     if not alike:
         return beyond
     slips = ["peak_slip"] if run.sliding and scene.friction is not None else []  # where it was read
-    upright = ("peak_tilt", "peak_base_displacement", *slips, *([PEDESTAL] if scene.is_stack else []))
+    upright = ("peak_tilt", "peak_base_displacement", *slips, *["pedestal_tilt"] * scene.is_stack)
     for name in ("peak_base_displacement", "fall_time") if falls else upright:
         values = [_value(response, name) for response in alike]
         low, high, value = min(values), max(values), _value(run, name)
         if not low - _limit(scene, name, low) <= value <= high + _limit(scene, name, high):  # not: NaN
-            limit = PEAK if name.startswith("peak") else _limit(scene, name, values[0])
+            limit = _limit(scene, name, values[0]) if name == "fall_time" else PEAK
             expected = _model_value(models, alike, values)
-            quantity = "peak_tilt" if name == PEDESTAL else name
-            beyond.append(Difference(quantity, value, expected, limit, _range(models, low, high)))
+            beyond.append(Difference(name, value, expected, limit, _range(models, low, high)))
     if falls and not scene.is_stack:
         beyond += [*_before_fall(scene, models, alike, run), *_overturning(scene, models, alike, run, beyond)]
     return beyond
@@ -203,7 +201,7 @@ def _value(response: Response, name: str) -> float:
     """A number of a response by its name, one of `response.DIFFERENCES`."""
     if name == "peak_slip":
         return response.sliding.peak if response.sliding else 0.0
-    if name == PEDESTAL:
+    if name == "pedestal_tilt":
         return response.stack.peak_tilt
     return getattr(response, name)
 
@@ -221,7 +219,7 @@ def _range(models: Sequence[Response], low: float, high: float) -> tuple[float, 
 def _limit(scene: Scene, name: str, value: float) -> float:
     """Limit of the difference of a number from the model's `value`, in its unit."""
     gamma = scene.block.slenderness
-    if name in ("peak_tilt", PEDESTAL):
+    if name in ("peak_tilt", "pedestal_tilt"):
         return PEAK * max(value, LEAST_TILT * gamma)
     if name == "peak_slip":
         return max(PEAK * value, LEAST_SLIP * scene.block.radius)

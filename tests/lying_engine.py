@@ -36,6 +36,8 @@ def versions():
 
 
 def _outcome(scene, run):
+    if run.failure:
+        return run
     if run.outcome == "overturns":
         return replace(run, outcome="rocks", overturning_time=None, fall_time=None)
     return replace(run, outcome="overturns", overturning_time=run.end.time, fall_time=0.8 * run.end.time)
@@ -63,6 +65,14 @@ def _slip(scene, run):
     slid = run.sliding or Sliding(0.0, 0.0, 0.0, 0.0, ())
     lie = replace(run, sliding=replace(slid, peak=1.03 * slid.peak + LEAST * scene.block.radius))
     return _history(lie, slip=1 + SHARE)
+
+
+def _pedestal(scene, run):
+    return (
+        run
+        if run.stack is None
+        else replace(run, stack=replace(run.stack, peak_tilt=1.03 * run.stack.peak_tilt + LEAST))
+    )
 
 
 def _later(name, periods):
@@ -126,6 +136,7 @@ LIES = {
     "outcome": _outcome,
     "tilt": _tilt,
     "stroke": _stroke,
+    "pedestal": _pedestal,
     "slip": _slip,
     "fall": _later("fall_time", 0.03),
     "lying": _later("overturning_time", 2.0),

@@ -19,7 +19,7 @@ FILES = {
     for floor in FLOORS
     for file in (PROJECT / floor).rglob("*.py")
 }
-PEAKS = ("peak_tilt", "peak_base_displacement", "peak_slip")
+PEAKS = ("peak_tilt", "pedestal_tilt", "peak_base_displacement", "peak_slip")
 IMPACTS = ("restitution", "impact_loss", "missing_impacts", "extra_impacts")
 MOST = 8  # parameters of a compiled function
 

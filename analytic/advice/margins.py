@@ -472,7 +472,7 @@ def _stack_states(scene, name, changes, tilt):
             "lifts": run.stack is not None and bool(run.stack.rocked),
             "tilt": run.peak_tilt_ratio > tilt or run.outcome == FALLS[1],
             "stroke": run.peak_base_displacement > farthest,
-            **{name: run.outcome == name for name in FALLS},
+            **{fall: run.outcome == fall for fall in FALLS},
         }
         rows.append([*(reached.get(state, False) for state in LIMIT_STATES), not run.failure])
     return np.array(rows), np.zeros(len(rows), dtype=bool)

@@ -146,10 +146,9 @@ def margin(
     and finds the changes at which the block lifts or overturns. Two further limit states are a peak tilt above --tilt
     and a base displacement beyond the x_max of the bearings.
 
-    The steps are 1/400 of the span. On a free pedestal only motion or start is changed, by 1 %. A range ends where
-    a change gives no valid scene (a restitution above 1, ka below kb) or the model is no longer valid. Bearings are
-    taken as rigid in the vertical direction. Status 1: the model
-    failed on the scene or under one of its motions.
+    The steps are 1/400 of the span. On a free pedestal only motion or start is changed, by 1 %. A range ends where a
+    change gives no valid scene (a restitution above 1, ka below kb) or the model is no longer valid. Bearings are taken
+    as rigid in the vertical direction. Status 1: the model failed on the scene or under one of its motions.
 
     Example: rocking margin caryatid-isolated --plot margins.svg
     """

@@ -184,6 +184,8 @@ def near_motion(scene: Scene) -> tuple[Caution, ...]:
     """Return the warnings of `near` and show a line meanwhile; none without a motion."""
     if scene.motion is None:
         return ()
+    if scene.is_stack:  # a run takes seconds
+        return near(scene)
     with spinner(f"{scene.name}: within {SHARE:.0%} of the motion"):
         return near(scene)
 

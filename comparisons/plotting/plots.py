@@ -16,6 +16,7 @@ from rich.text import Text
 from analytic import Response, SampledMotion, Scene
 from analytic.advice.bearing_scan import displacement_spectrum
 from analytic.records import Channel, G
+from analytic.stack.equations import LOWER, StackModel
 from engines import ENGINES
 
 from ..execution.writing import readable
@@ -28,6 +29,7 @@ DOTS, LINES = 1.8, 1.4
 TILT_RANGE = (0.05, 2.0)  # least and greatest limit of a tilt axis, over slenderness
 LABELS = {
     "tilt": "tilt / slenderness [-]",
+    "pedestal": "tilt of the pedestal\n/ slenderness [-]",
     "slip": "slip of the block\non its support [m]",
     "displacement": "base displacement [m]",
 }
@@ -56,7 +58,7 @@ def style(solver: str) -> dict[str, Any]:
 
 
 def draw_histories(scene: Scene, responses: Sequence[Response], horizon: float | None = None) -> Figure:
-    """Draw ground motion, tilt, slip, base displacement and hysteresis loop of responses: a matplotlib Figure.
+    """Draw ground motion, tilts, slip, base displacement and hysteresis loop of responses: a matplotlib Figure.
 
     Quantities that a scene does not have are left out. Sliding and flight of the block are shaded if a response tells
     its modes. Each response needs its history. horizon: time [s] at which point-wise comparison ends, if any.
@@ -70,7 +72,7 @@ def draw_histories(scene: Scene, responses: Sequence[Response], horizon: float |
     2
     """
     slides = any(response.sliding and response.sliding.peak for response in responses)
-    rows = ["ground"] * (scene.motion is not None) + ["tilt"] + ["slip"] * slides
+    rows = ["ground"] * (scene.motion is not None) + ["tilt"] + ["pedestal"] * scene.is_stack + ["slip"] * slides
     rows += ["displacement"] * (scene.base is not None)
     figure, axes = _empty_axes(rows, loop=scene.bearings is not None)
     end = max(response.end.time for response in responses)
@@ -83,8 +85,9 @@ def draw_histories(scene: Scene, responses: Sequence[Response], horizon: float |
     if horizon is not None:
         for row in set(rows) - {"ground"}:
             axes[row].axvspan(horizon, end, color="0.93", zorder=-1, label="beyond the sensitivity horizon")
-    low, high = tilt.get_ylim()  # neither a tilt of 1e-6 nor an overturned block sets the scale
-    tilt.set_ylim(min(max(low, -TILT_RANGE[1]), -TILT_RANGE[0]), max(min(high, TILT_RANGE[1]), TILT_RANGE[0]))
+    for axis in [axes[row] for row in ("tilt", "pedestal") if row in axes]:
+        low, high = axis.get_ylim()  # neither a tilt of 1e-6 nor an overturned block sets the scale
+        axis.set_ylim(min(max(low, -TILT_RANGE[1]), -TILT_RANGE[0]), max(min(high, TILT_RANGE[1]), TILT_RANGE[0]))
     tilt.legend(fontsize="small", loc="best")
     if slides:
         _draw_modes(axes["slip"], responses)
@@ -114,6 +117,8 @@ def _draw_response(axes, scene, response, alone):
         line["linewidth"] = 1.2  # nothing to lie underneath
     label = f"{response.engine}, {response.variant}: {response.outcome_text}"
     curves = {"tilt": history.tilt / scene.block.slenderness, "slip": history.slip}
+    if history.pedestal_tilt is not None:
+        curves["pedestal"] = history.pedestal_tilt / StackModel.of(scene).slabs[LOWER].slenderness
     for row, values in {**curves, "displacement": history.base_displacement}.items():
         if row in axes and values is not None:
             axes[row].plot(history.time, values, label=label, **line)

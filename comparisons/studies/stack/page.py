@@ -100,8 +100,9 @@ def glance(result: Result) -> Glance:
     """Return how the engines' runs end; a peak tilt that differs is no other end, and times of falls are not tested."""
     runs = [
         {**row, "class": "right" if row["quantities"] == ["peak_tilt"] and row["class"] == "differs" else row["class"]}
-        for row in _runs(result) if row["tier"] != "model" and row["comparable"] in JUDGED
-    ]  # fmt: skip
+        for row in _runs(result)
+        if row["tier"] != "model" and row["comparable"] in JUDGED
+    ]
     return Glance(endings=tuple(replace(each, late=None) for each in counted("stacked blocks", runs)))
 
 
@@ -128,9 +129,11 @@ def _first_falls(caption: str, mountings: Sequence[Row], by: Column) -> Table:
         for (way,), rows in grouped(mountings, "way").items()
     ]
     return table(
-        f"{caption}, by the {by.head}", ways, COLUMNS["way"],
+        f"{caption}, by the {by.head}",
+        ways,
+        COLUMNS["way"],
         *(Column(text, text) for (text,) in sorted(grouped(mountings, by.text))),
-    )  # fmt: skip
+    )
 
 
 def _details(result: Result, counts: Sequence[Row], mountings: Sequence[Row]) -> tuple[Any, ...]:
@@ -146,15 +149,11 @@ def _details(result: Result, counts: Sequence[Row], mountings: Sequence[Row]) ->
     ]
     causes = [
         {"why": NOT_COMPARED.get(why, why), "share": len(rows) / len(scenes), "which": [row["index"] for row in rows]}
-        for (why,), rows in grouped(scenes, "comparable").items() if why != COMPARED
-    ]  # fmt: skip
+        for (why,), rows in grouped(scenes, "comparable").items()
+        if why != COMPARED
+    ]
     return (
-        table(
-            "The same runs: median and worst of errors and costs",
-            counts,
-            NAME,
-            *(COLUMNS[name] for name in ERRORS),
-        ),
+        table("The same runs: median and worst of errors and costs", counts, NAME, *(COLUMNS[name] for name in ERRORS)),
         _first_falls(
             f"The least peak at which a block falls under {WIDE:g} Hz [g], where nothing is isolated",
             where(mountings, hertz=WIDE, way={*WAYS[:3]}),
@@ -198,7 +197,7 @@ def _details(result: Result, counts: Sequence[Row], mountings: Sequence[Row]) ->
             [row for row in scenes if not row.get("failure")],
             *(COLUMNS[name] for name in OF_MODEL),
         ),
-    )  # fmt: skip
+    )
 
 
 def _how(settings: dict[str, Any]) -> tuple[str, ...]:

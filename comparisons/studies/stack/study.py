@@ -88,8 +88,14 @@ SECONDS, FIRST = 6.0, 3  # of every run, long after the pulse, as falls near a b
 FULL, QUICK = (60, (1.2, 1.5, 2.0), 0.02, 1500), (8, (1.5,), 0.1, 100)  # scenes, boundaries [Hz], steps [g], states
 GROUNDS, FREE, SINE = ("rigid ground", "bearings"), "free pedestal", "one-sine"
 # range of each number of a random scene; peak: over the acceleration that lifts the weaker block
-LIMITS = {"width": (0.35, 0.9), "height": (0.4, 1.3), "tangent": (0.12, 0.4), "share": (0.3, 0.9),
-          "hertz": (0.8, 2.5), "peak": (1.05, 2.2)}  # fmt: skip
+LIMITS = {
+    "width": (0.35, 0.9),
+    "height": (0.4, 1.3),
+    "tangent": (0.12, 0.4),
+    "share": (0.3, 0.9),
+    "hertz": (0.8, 2.5),
+    "peak": (1.05, 2.2),
+}
 STRONGER = 1.5  # amplitudes on bearings over those on the ground: weaker ones lift nothing
 NEAR, LEAST_SWING = 1e-6, 1e-6  # of the model's boundaries; rad: smaller tilts of the stepping are its contacts'
 STEPPING, SOLVER, STEP = "time-stepping", f"{__name__}:time_stepping", 1e-5  # s
@@ -314,8 +320,11 @@ def plan(request: Request, size: tuple[int, Sequence[float], float, int] | None 
     engines = [name for name in request.engines if hasattr(get_engine(name).load(), "run_stack")]
     quiet, (main, others), stepping = {"history": False}, usual_settings(engines), Setting(SOLVER, "", STEP)
     scenes = list(enumerate(map(museum, range(count))))
-    near = [(k, scene.with_(motion=scene.motion.scaled(factor)))
-            for k, scene in scenes for factor in (1, 1 + CHANGE, 1 - CHANGE)]  # fmt: skip
+    near = [
+        (k, scene.with_(motion=scene.motion.scaled(factor)))
+        for k, scene in scenes
+        for factor in (1, 1 + CHANGE, 1 - CHANGE)
+    ]
     model = yield Batch([Case(scene, settings=quiet, tag={"index": k}) for k, scene in near], measured, "model")
     rows = [scene_row(*model[k : k + 3]) for k in range(0, len(model), 3)]
     solvers = [(one.engine, one.variant or None, quiet) for one in (stepping, *main, *others)]

@@ -1,5 +1,6 @@
 """Runs of a stack against one block, Moreau's time stepping, stored answers, energy, and the mirror."""
 
+import itertools
 import json
 import math
 from dataclasses import replace
@@ -10,7 +11,7 @@ import pytest
 from stack_scenes import FIGURE, GRAVITY, PLINTH, SIX, SOFT, STACK, rectangle
 
 import analytic.stack.run as run
-from analytic import Pedestal, PulseMotion, Response, Scene, SceneError, Start, simulate, simulate_many
+from analytic import Block, Pedestal, PulseMotion, Response, Scene, SceneError, Start, simulate, simulate_many
 from analytic.checks.time_stepping import simulate_time_stepping
 from analytic.checks.twin import simulate_twin
 from analytic.checks.two_bodies import simulate_two_bodies
@@ -94,6 +95,24 @@ def test_halves_that_stay_together_are_one_block():
     assert two.stack.impacts[0].time == pytest.approx(one.impacts[0].time, abs=1e-12)
     assert two.stack.impacts[0].rate_before == pytest.approx(one.impacts[0].rate_before, abs=1e-12)
     assert not two.history.tilt[before].any() and before.sum() > 20
+
+
+def test_a_massless_pedestal_is_a_foot_of_the_statue():
+    """Until it lands; after that it tends to a limit, in which the pedestal is a link."""
+    statue, foot = rectangle(0.4, 0.5, 200.0), {"width": 0.4, "height": 0.5, "free": True}
+    b, h = 0.2, 0.75  # from the corner on the ground to the centre of the statue
+    inertia = statue.centre_inertia + 200.0 * (b * b + h * h)
+    whole = Block(mass=200.0, radius=math.hypot(b, h), slenderness=math.atan2(b, h), corner_inertia=inertia)
+    one, errors, ends = simulate(Scene(block=whole, start=Start(tilt=0.1), duration=1.0)).impacts[0], [], []
+    for mass in (1e-2, 1e-3, 1e-4):
+        scene = Scene(block=statue, pedestal=Pedestal(mass=mass, **foot), duration=1.0)
+        two = simulate_stack(scene, pedestal_tilt=0.1)
+        landing = two.stack.impacts[0]
+        errors.append(max(abs(landing.time - one.time), abs(landing.rate_before - one.rate_before)))
+        ends.append(np.array(numbers(two)))
+    assert errors[0] > 9 * errors[1] > 80 * errors[2] and errors[2] < 1e-6
+    steps = [np.abs(after - before).max() for before, after in itertools.pairwise(ends)]
+    assert steps[0] > 8 * steps[1] and steps[1] < 1e-4
 
 
 @pytest.mark.parametrize("name", ("leaning", "opposite", "joined"))

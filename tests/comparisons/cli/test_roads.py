@@ -275,7 +275,7 @@ def test_compare_runs_the_model_first_and_each_engine_once_or_all_that_are_insta
 
 def test_every_kind_of_difference_occurs(road):
     names = set()
-    for kind in ("slender", "slides", "overturns after an impact"):
+    for kind in ("slender", "slides", "overturns after an impact", "stack rocks"):
         _, answer, _, _ = road("compare", kind, *engine_options(LIES))
         names.update(
             difference["quantity"] for response in answer["responses"] for difference in response["differences"]
@@ -554,9 +554,21 @@ def test_run_and_compare_of_a_free_pedestal(road, kind):
     rocked = answer["stack"]["rocked"]
     assert shown(f"what rocks {' and '.join(rocked) or 'nothing'}", out) and bool(rocked) == (outcome != "stands")
     assert shown(answer["headline"], out) and len({row["record"] for row in answer["motions"]}) >= RECORDS
-    status, answer, out, _ = road("compare", kind, *engine_options(["close"]))
+    status, answer, out, _ = road("compare", kind, *engine_options(["close", "tilt", "stroke", "pedestal", "outcome"]))
     assert status == int(outcome == "failed") and answer["sensitivity_horizon"] is None
-    assert [response["outcome"] for response in answer["responses"]] == [outcome] * 2 and "lower: peak tilt" in out
+    model, close, *lies = answer["responses"]
+    assert model["outcome"] == close["outcome"] == outcome and "lower: peak tilt" in out
+    told = {lie["engine"]: {each["quantity"] for each in lie["differences"]} for lie in (close, *lies)}
+    falls, known = outcome in FALLS, outcome != "failed"
+    assert told == {
+        "close": set(),
+        "tilt": {"peak_tilt"} if known and not falls else set(),
+        "stroke": {"peak_base_displacement"} if known else set(),
+        "pedestal": {"pedestal_tilt"} if known and not falls else set(),
+        "outcome": {"outcome"} if known and model["decided"] else set(),
+    }
+    for lie in lies:
+        differences_are_told(lie, out)
 
 
 @pytest.mark.parametrize("kind", STACKS)

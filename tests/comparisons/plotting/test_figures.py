@@ -1,6 +1,7 @@
 """Charts can be read back: figures draw every row where it belongs, tell series apart, and write numbers in cells."""
 
 import json
+import math
 import re
 from xml.etree import ElementTree
 
@@ -9,9 +10,11 @@ import pytest
 from contrast import contrast
 from page_numbers import number_in
 from sliding_scenes import SAVED
+from stack_scenes import SIX
 
 from analytic import Start, load_scene, simulate
 from analytic.kernel.layout import MODES
+from analytic.solver import simulate_stack
 from comparisons.plotting import diagrams as modes
 from comparisons.plotting.charts import INK, SHAPES, STYLE, TONES, Axis, Chart, log_axis, marker
 from comparisons.plotting.plots import draw_histories, style
@@ -166,3 +169,11 @@ def test_slip_has_a_panel_of_its_own_where_the_block_slides_and_when_is_shaded()
     assert [shaded.get_x(), shaded.get_x() + shaded.get_width()] == pytest.approx(ends)
     still = SAVED.with_(motion=None, start=Start(tilt=0.1))
     assert len(draw_histories(still, [simulate(still)]).axes) == 1
+
+
+def test_a_free_pedestal_has_a_panel_over_its_own_slenderness():
+    scene, tilt = SIX["leaning"]
+    response = simulate_stack(scene, pedestal_tilt=tilt)
+    _, pedestal = draw_histories(scene, [response]).axes
+    np.testing.assert_allclose(pedestal.lines[1].get_ydata() * math.atan2(0.5, 0.8), response.history.pedestal_tilt)
+    assert pedestal.get_ylabel().startswith("tilt of the pedestal") and pedestal.get_ylim()[0] <= -0.05
