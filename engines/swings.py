@@ -174,7 +174,7 @@ def cubic_through(time: np.ndarray, value: np.ndarray, rate: np.ndarray) -> Cubi
 
 def find_swings(trace: Trace) -> Swings:
     """The `Swings` of a trace: a swing begins above contact_tilt and ends below half of it (a Schmitt trigger)."""
-    size, side = np.abs(trace.tilt), np.sign(trace.tilt).astype(int)
+    size, side = np.abs(trace.tilt), np.sign(np.nan_to_num(trace.tilt)).astype(int)
     loose = np.where(size > 0.5 * trace.contact_tilt, side, 0)
     edges = np.flatnonzero(np.diff(loose, prepend=0, append=0))
     above = size > trace.contact_tilt
