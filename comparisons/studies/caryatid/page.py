@@ -3,19 +3,17 @@
 Curves of the paper: its misprints beside their corrections, and its bearings.
 """
 
-import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
-from markupsafe import Markup, escape
 
 from engines import missing_words
 
 from ...execution.results import Result
 from ...plotting.charts import Axis, Chart, figure
 from ...plotting.figures import Series, lines, regions
-from ...plotting.parts import Figure, Head, Page, Table, grouped, table, where
+from ...plotting.parts import Figure, Head, Page, grouped, table, where
 from ...schemas.columns import Column, number, percent
 from . import paper
 from .study import CATEGORIES, COLUMNS, FREE, ISOLATED, WITHIN
@@ -89,8 +87,9 @@ def bearings(arrays: Mapping[str, Any]) -> Figure:
         chart.dots([paper.X_MAX], [value], says=[f"Table 1(a): {value:g}"], tone="var(--bad)")
     return figure(
         [loops, periods, damping],
-        "The bearing law between its limit curves; its history is fixed at the reversal points, dots. Dots on period "
-        "and damping: Table 1(a), the secant period at 0.30 m, and loss of a cycle over 2π times the elastic energy.",
+        "Left: the bearing law between its limit curves. Its history is fixed at the reversal points (dots). Middle "
+        "and right: the dots are the values of Table 1(a), which are the secant period at 0.30 m, and the loss of a "
+        "cycle over 2π times the elastic energy.",
     )
 
 
@@ -129,17 +128,6 @@ def page(result: Result) -> Page:
     return {"paper": _paper, "motion": _motion, "histories": _histories}[result.settings["part"]](result)
 
 
-def _table(caption: str, rows: Iterable[Mapping[str, Any]], *columns: Column) -> Table:
-    """Return a `table` in which the indices of symbols such as k_a are set low."""
-    plain = table(caption, rows, *columns)
-
-    def symbols(text):
-        low = re.sub(r"\b(\w)_(\w+)", r"\1<sub>\2</sub>", str(escape(text)))
-        return Markup(low.replace("_", "_<wbr>"))  # a record's name may break at underscores
-
-    return Table(caption, tuple(map(symbols, plain.columns)), [list(map(symbols, row)) for row in plain.rows])
-
-
 def _paper(result):
     """Page of the result ``caryatid-paper``: what needs no motion."""
     rows = where(result.rows, part="equation")
@@ -154,8 +142,8 @@ def _paper(result):
             f"Not at hand, and so not compared: {paper.UNKNOWN}",
         ),
         more=(
-            Head("What is printed, beside what is found"),
-            _table(
+            Head("What is printed, and what is found"),
+            table(
                 "Numbers",
                 where(result.rows, part="value"),
                 NUMBER,
@@ -164,7 +152,7 @@ def _paper(result):
                 COLUMNS["difference"],
                 STATUS,
             ),
-            _table(
+            table(
                 "Equations, Fig. 3 and Table 1",
                 rows,
                 COLUMNS["number"],
@@ -174,7 +162,7 @@ def _paper(result):
                 COLUMNS["value"],
             ),
             Head("Misprints and definitions"),
-            _table(
+            table(
                 "What is printed, and what it should be",
                 where(result.rows, part="misprint"),
                 COLUMNS["where"],
@@ -203,9 +191,10 @@ def _motion(result):
     return Page(
         f"The Caryatid under {label}: {_outcomes(where(runs, part='run'))}",
         (
-            "The paper prints no slenderness. It makes three claims: free-standing, the statue overturns; it is "
-            "vulnerable below a rocking period of about 4 s; isolated, it does not rock. Values of γ [rad] for which "
-            f"all three hold under this motion: {together}. This study uses {result.settings['slenderness']:g} rad.",
+            "The paper prints no slenderness. It makes three claims: the free-standing statue overturns; it is "
+            "vulnerable below a rocking period of about 4 s; the isolated statue does not rock. Under this motion all "
+            f"three hold for these values of γ [rad]: {together}. This study uses {result.settings['slenderness']:g} "
+            "rad.",
             *([f"Not installed, and so not compared: {'; '.join(missing)}"] if missing else ()),
         ),
         more=_motion_details(result, runs, claims, shares, others, mean),
@@ -220,8 +209,8 @@ def _motion(result):
 def _motion_details(result, runs, claims, shares, others, mean):
     """Parts of the page of the paper under one motion."""
     return (
-        Head("What is printed, beside what is found"),
-        _table(
+        Head("What is printed, and what is found"),
+        table(
             "Figs 4 to 6",
             _beside(where(result.rows, part="value")),
             NUMBER,
@@ -231,8 +220,8 @@ def _motion_details(result, runs, claims, shares, others, mean):
             STATUS,
         ),
         _spectra(result),
-        _table(
-            "A linear oscillator at the design period, by either definition of damping, beside the bearings",
+        table(
+            "A linear oscillator with the design period, by either definition of damping, compared with the bearings",
             where(result.rows, part="equivalent"),
             COLUMNS["definition"],
             COLUMNS["damping"],
@@ -240,7 +229,7 @@ def _motion_details(result, runs, claims, shares, others, mean):
             COLUMNS["nonlinear"],
         ),
         Head("Which slenderness?"),
-        _table(
+        table(
             "Slendernesses that fit the paper's claims",
             claims,
             COLUMNS["claim"],
@@ -249,8 +238,8 @@ def _motion_details(result, runs, claims, shares, others, mean):
         _vulnerable(result),
         Head("Does isolation help other blocks, and under other motions?"),
         _benefit(result),
-        _table(
-            "Share of the map over slenderness and intensity",
+        table(
+            "Shares of the area of the map over slenderness and intensity",
             [shares[0], {"motion": f"mean of {len(others)} synthetic motions", **mean}, *others],
             COLUMNS["motion"],
             *(
@@ -260,7 +249,7 @@ def _motion_details(result, runs, claims, shares, others, mean):
         ),
         Head("All runs"),
         _agreement(runs),
-        _table("All runs", [row for same in grouped(runs, SCENE.of).values() for row in same], *RUN),
+        table("All runs", [row for same in grouped(runs, SCENE.of).values() for row in same], *RUN),
     )
 
 
@@ -275,13 +264,13 @@ def _scene(row):
 
 def _spans(intervals):
     """Intervals of slenderness, in words."""
-    return ", ".join(f"{low:.4f} to {high:.4f}" for low, high in intervals) or "nowhere"
+    return ", ".join(f"{low:.4f} to {high:.4f}" for low, high in intervals) or "none"
 
 
 def _outcomes(runs):
     """Words on how many solvers end each scene how."""
     return "; ".join(
-        f"{scene} it {end} in {len(where(same, outcome=end))} of {len(same)} solvers"
+        f"{scene}, it {end} in {len(where(same, outcome=end))} of {len(same)} solvers"
         for (scene,), same in grouped(runs, "scene").items()
         for (end,) in grouped(same, "outcome")
     )
@@ -320,8 +309,8 @@ def _agreement(runs):
         [row for row in rows if row["engine"] != "analytic"],
         COLUMNS["period"],
         Column("relative difference [-]", lambda row: max(row["apart"], FLOOR)),
-        "Relative difference of an engine from the analytic model: in the overturning time if it overturns, otherwise "
-        "in the peak. 1: another outcome.",
+        "Relative difference of an engine from the analytic model: in the overturning time if the block overturns, "
+        "otherwise in the peak. A value of 1 stands for another outcome.",
         panel="panel",
         series=Series(by=lambda row: ""),
         log="y",
@@ -355,8 +344,8 @@ def _spectra(result):
     sway.dots([bearings["period"]], [bearings["nonlinear"]], says=says, mark="X", tone="var(--bad)")
     return figure(
         [tilt, sway],
-        "The analytic model. Shaded: the block overturns. Linear oscillators are exact for the sampled motion; cross: "
-        "the hysteretic bearings at their secant period.",
+        "The analytic model. Shaded: the block overturns. Right: linear oscillators, solved exactly for the sampled "
+        "motion; the cross is the peak of the hysteretic bearings, drawn at their secant period.",
     )
 
 
@@ -367,9 +356,9 @@ def _vulnerable(result):
     return lines(
         [{"engine": "analytic", "at": float(x), "period": float(y)} for x, y in values],
         Column(GAMMA, "at", digits=3),
-        COLUMNS["period"].called("longest that overturns"),
-        "Longest rocking period of a block that overturns: the paper's are vulnerable below about 4 s. By the "
-        "acceleration of the base alone, atan(max|a|/g), a block stays down on the bearings from a slenderness of "
+        COLUMNS["period"].called("longest period that overturns"),
+        "Longest rocking period of a block that overturns. In the paper, blocks are vulnerable below about 4 s. By the "
+        "acceleration of the base alone, atan(max|a|/g), a block on the bearings does not lift from a slenderness of "
         f"{result.settings['uplift_slenderness']:.4f} rad on.",
         series=Series(by=lambda row: ""),
         rules=[("x", result.settings["slenderness"], "used here"), *(("y", at, f"{at:g} s") for at in about)],
@@ -390,8 +379,8 @@ def _benefit(result):
     chart.dots([result.settings["slenderness"]], [1.0], says=["the Caryatid"], mark="D", tone="var(--ink)")
     return figure(
         [chart],
-        "Diamond: the Caryatid. Above the lines the isolated block lifts, and its bearings need more than their "
-        "0.30 m; there the law describes no built bearing.",
+        "Diamond: the Caryatid. Above one line the isolated block lifts; above the other its bearings move by more "
+        "than their 0.30 m, where the law describes no built bearing.",
         keys,
         keys,
     )
@@ -426,8 +415,8 @@ def _histories(result):
             charts[2].line(at[::KEPT], x[::KEPT], row["engine"])
     solvers = dict.fromkeys(row["engine"] for row in ended)
     caption = (
-        "All solvers overlaid. Dashed: peak of the motion; |φ| = γ; the design displacement. Largest tilt of "
-        f"the isolated Caryatid: {number(most, 2)} slendernesses."
+        "All solvers overlaid. Dashed lines: time of the peak of the motion; |φ| = γ; the design displacement. Largest "
+        f"tilt of the isolated Caryatid: {number(most, 2)} slendernesses."
     )
     title = f"The Caryatid over time under {motion['label']}: {_outcomes(result.rows)}"
     return Page(title, (), more=(figure(charts, caption, solvers),))

@@ -59,7 +59,7 @@ COLUMNS = SHARED | declared(
     word_of("quantity", "quantity", "name of the quantity, with its unit"),
     number_of("paper", "paper", "what the paper prints", "of the quantity", type="number or word", digits=6),
     number_of("study", "this study", "what is found here", "of the quantity", type="number or word", digits=6),
-    number_of("difference", "difference", "found over printed, less 1"),
+    number_of("difference", "difference", "found minus printed", "of the quantity"),
     word_of("status", "status", "reproduced, corrected, derived, input, not printed or not checkable"),
     word_of("note", "note", "a note on the status"),
     word_of("printed", "printed", "the equation as printed"),
