@@ -194,6 +194,9 @@ def subject(row: Row) -> bool:
     return row["engine"] in ENGINES and ENGINES[row["engine"]].subject
 
 
+SUBJECTS = listed([name for name, engine in ENGINES.items() if engine.subject])  # their names, in a sentence
+
+
 def mains(variants: Iterable[Row]) -> dict[str, str]:
     """Return {engine: main variant} from a result's settings, which list it first; engines need not be installed."""
     return {variant["engine"]: variant["variant"] for variant in reversed([*variants])}
@@ -446,13 +449,15 @@ def strip(result: Result, title: str) -> Figure | None:
     left_out = "; ".join(NAME.of(variant) for variant in stored if variant not in shown)
     sound, grounds = pressed(result), list(settings.get("grounds", ()))
     lanes = (
-        f"Marks in a row, from above: {', '.join(grounds)}. Bars, and the number after +: boundaries with "
-        "N\u00a0<\u00a00, which do not count. "
+        f"Marks in a row, from top to bottom: {', '.join(grounds)}. Short bars, and the number after +: boundaries at "
+        "which the model has N\u00a0<\u00a00; they do not count. "
     )
     caption = (
         f"Shift of each boundary, known to ±\u00a0{percent(settings['tolerance'] / 2, 1)}. {lanes if grounds else ''}"
-        "Filled marks: tuned; open marks: defaults. Cross at the frame: how many were not found. Arrowhead: the shift "
-        "is nearer to 0." + f" Not drawn, but in the table: {left_out}." * bool(left_out)
+        "Filled marks: tuned; open marks: defaults. Cross at the right, with a number: so many boundaries were not "
+        "found. Arrowhead: the shift is smaller than the axis shows."
+        + f" Not drawn, but in the table: {left_out}."
+        * bool(left_out)
     )
     return figure([_strip_chart(shown, rows, sound, grounds, title)], caption)
 
@@ -567,10 +572,10 @@ def judged(result: Result, what: str) -> Judgement:
         words = f"none found ({what})" if row["largest"] is None else f"{percent(row['largest'])} ({counts})"
         note = f"{what}: median {percent(row['median'])}; {row['of'] - row['found']} not found"
         if row["beyond"]:
-            note += f"; {row['beyond']} with N < 0 do not count, found {row['beyond_found']}"
-            note += f", {percent(row['beyond_largest'])}" if row["beyond_found"] else ""
+            note += f"; {row['beyond']} with N < 0 do not count: {row['beyond_found']} found"
+            note += f", largest shift {percent(row['beyond_largest'])}" if row["beyond_found"] else ""
         marks[row["engine"], row["variant"]] = Mark(words, row["rating"], note, row["largest"])
-    return Judgement("overturning boundary under pulses: shift, worst", marks)
+    return Judgement("largest shift of an overturning boundary under pulses", marks)
 
 
 def largest(result: Result) -> str:
@@ -584,9 +589,9 @@ def largest(result: Result) -> str:
     chosen = [row for row in best if NAME.of(row) in tuned]
     how, chosen = ("tuned engines", chosen) if chosen else ("engines not tuned", best)
     most = max((row["largest"] for row in chosen if row["largest"] is not None), default=None)
-    missed = [f"{row['found']} of {row['of']} found ({row['engine']})" for row in chosen if row["found"] < row["of"]]
-    words = f"{how} shift the overturning boundary by {percent(most)} at most"
-    return "; ".join(filter(None, [words, listed(missed)]))
+    missed = [f"{row['found']} of {row['of']} ({row['engine']})" for row in chosen if row["found"] < row["of"]]
+    words = f"{how} shift the overturning boundary by at most {percent(most)}"
+    return f"{words}, but find only {listed(missed)} boundaries" if missed else words
 
 
 def under_jumps(result: Result) -> Iterator[str]:
@@ -600,9 +605,9 @@ def under_jumps(result: Result) -> Iterator[str]:
         ]
         worst = max(members, key=lambda row: abs(row["shift"]), default=None)
         if worst and PulseMotion(worst["shape"], 1.0, 1.0, start=1.0).jumps:
-            clauses.append(f"{percent(worst['shift'])} under a {worst['shape']} pulse ({engine})")
+            clauses.append(f"{percent(worst['shift'])} under a {worst['shape']} pulse in {engine}")
     if clauses:
-        yield f"The shift is largest where the acceleration of the ground jumps at the start: {listed(clauses)}."
+        yield f"The shift is largest under pulses whose acceleration begins with a jump: {listed(clauses)}."
 
 
 def listing(caption: str, edges: Iterable[Row], shifts: Sequence[Row], *columns: Column) -> Table:
@@ -631,7 +636,7 @@ def listing(caption: str, edges: Iterable[Row], shifts: Sequence[Row], *columns:
 def missing(result: Result) -> Table:
     """Return a table of the boundaries that were not found, and why."""
     return table(
-        "Boundaries not found, within 30 % or half-way to the next one",
+        "Boundaries not found by a search within 30 %, or as far as half-way to the next boundary",
         where(result.rows, part=SHIFTS, shift=None),
         NAME,
         GROUND,

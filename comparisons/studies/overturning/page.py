@@ -63,9 +63,9 @@ def maps(result: Result, shapes: Iterable[str]) -> Figure | None:
         return None
     differ = where(result.rows, part="disagreement", shape=set(chosen))
     caption = (
-        "Analytic model: shaded overturns, blank stands. Marks: boundaries that the engines’ main variants found; "
-        "shifts too small to be seen here are in the table."
-        + f" Crosses: outcomes that differ further than {percent(result.settings['band'], 1)} from every boundary."
+        "Analytic model: where shaded, the block overturns; where blank, it stands. Marks: boundaries that the "
+        "engines’ main variants found; the table has shifts too small to be seen here."
+        + f" Crosses: outcomes that differ more than {percent(result.settings['band'], 1)} away from every boundary."
         * bool(differ)
     )
     keys = {engine: key_of(engine, filled=False, joined=False) for engine in result.settings["engines"]}
@@ -134,8 +134,8 @@ def over_frequency(rows: Sequence[Row]) -> Figure | None:
         [row for row in rows if row["shift"] is not None],
         FREQUENCY,
         Column(SHIFT.head, lambda row: max(SHIFT.of(row), DECADES[0])),
-        "Boundary of the engine over that of the analytic model, less 1, of the main variants; smaller shifts are "
-        f"drawn at {short(DECADES[0])} %. Boundaries that were not found are in the table below.",
+        "Shift of each boundary in the main variants: boundary of the engine over that of the analytic model, minus 1. "
+        f"Shifts below {short(DECADES[0])} % are drawn there. Boundaries that were not found are in the table below.",
         panel="ground",
         series=Series(
             by=lambda row: f"overturning {'begins' if row['rises'] else 'ends'}",
@@ -152,8 +152,8 @@ def over_frequency(rows: Sequence[Row]) -> Figure | None:
 
 REGIONS = {
     "scan": "coarse scan",
-    "outside": "beyond the band, N ≥ 0",
-    "held down": "beyond the band, N < 0",
+    "outside": "outside the band, N ≥ 0",
+    "held down": "outside the band, N < 0",
     "inside": "within the band",
 }
 
@@ -171,9 +171,9 @@ def page(result: Result) -> Page:
         (
             "A pulse overturns a block above some amplitude. At larger amplitudes there may be a safe gap: the first "
             "impact dissipates so much energy that the block does not overturn. Engines are rated by the shift of "
-            "these boundaries, as long as the analytic model keeps the block pressed on its base. An outcome nearer "
+            "these boundaries, wherever the analytic model keeps the block pressed on its base. An outcome nearer "
             "to a boundary than the engine's shift is uncertain. Only whether the block overturns is compared, not "
-            "when it falls. Boundaries of statues drawn at random stand with these in the table of trust.",
+            "when it falls. The first table of the report also has the boundaries of randomly drawn statues.",
             *under_jumps(result),
         ),
         first=_summary(result, settings, band),
@@ -188,9 +188,9 @@ def _summary(result, settings, band):
     return (
         _shifts(result),
         table(
-            "Boundaries under all pulses on both grounds, with the block pressed on its base; outcomes further "
-            f"than {band} from them. Boundaries where the normal force N would be negative are shown but do not "
-            "count",
+            "Boundaries under all pulses on both grounds, and outcomes more than "
+            f"{band} away from them. Boundaries at which the model's normal force N becomes negative are shown but do "
+            "not count",
             rated(result),
             NAME,
             Column("rating", lambda row: RATINGS[row["rating"]]),
@@ -206,9 +206,9 @@ def _summary(result, settings, band):
             ),
         ),
         table(
-            f"Coarse scan: the {_scanned(settings)} pulses, less those within {band} of a boundary and those that do "
-            "not keep the block pressed on its base. 95 % Wilson intervals count pulses of one shape and frequency "
-            "on one ground as one",
+            f"Coarse scan: {_scanned(settings)} pulses, without those within {band} of a boundary and those under "
+            "which N becomes negative. The 95 % Wilson intervals count pulses of one shape and frequency on one ground "
+            "as one",
             where(result.rows, part="scan"),
             NAME,
             COLUMNS["runs"],
@@ -228,8 +228,8 @@ def _details(result, settings, edges, shifts, sound, rated_shifts, main_variants
         Head("Every boundary"),
         over_frequency([row for row in rated_shifts if main_variants[row["engine"]] == row["variant"]]),
         listing(
-            "Boundaries, and the engines' shifts, known to ± "
-            f"{percent(settings['tolerance'] / 2, 1)}: block pressed on its base",
+            "Boundaries at which the block stays pressed on its base, and the engines' shifts, known to ± "
+            f"{percent(settings['tolerance'] / 2, 1)}",
             [edge for edge in edges if place(edge) in sound],
             rated_shifts,
         ),
@@ -240,7 +240,7 @@ def _details(result, settings, edges, shifts, sound, rated_shifts, main_variants
         Head("Outcomes between the boundaries"),
         _confusions(result, band),
         table(
-            f"Overturning missed or added further than {band} from every boundary",
+            f"Overturning missed or added more than {band} away from every boundary",
             where(result.rows, part="disagreement"),
             NAME,
             GROUND,
@@ -252,7 +252,7 @@ def _details(result, settings, edges, shifts, sound, rated_shifts, main_variants
             Column("analytic model", lambda row: "overturns" if row["analytic_overturns"] else "stands"),
         ),
         table(
-            "Runs without an outcome, left out of the tables",
+            "Runs without an outcome. The tables leave them out",
             [
                 {**rows[0], "runs": len(rows), "held_down": sum(row["min_normal"] < 0 for row in rows)}
                 for rows in grouped(where(result.rows, part="failure"), "engine", "variant", "reason").values()
@@ -291,7 +291,7 @@ def _shifts(result):
     """Figure of all boundaries at their shifts, beside one map of the model that shows what is searched for."""
     settings = result.settings
     model = model_map(result, next(iter(settings["grounds"])), settings["shapes"][0])
-    words = "Right: analytic model under one pulse; shaded: overturns; dots: boundaries."
+    words = "Right: the analytic model under one pulse. Shaded: the block overturns; dots: boundaries."
     return beside(strip(result, "shift of every boundary"), figure([model], words))
 
 
@@ -326,8 +326,8 @@ def _sliding(settings):
         for ground, given in settings["grounds"].items() if mu is not None else ():
             if mu < given["tan_slenderness"]:
                 yield (
-                    f"{NAME.of(variant)}: its friction, {mu:g} by default, is below tan γ on {ground}. The block "
-                    "slides where it should lift."
+                    f"In {NAME.of(variant)}, the friction coefficient, {mu:g} by default, is below tan γ on {ground}: "
+                    "the block slides where it should lift."
                 )
 
 
@@ -344,7 +344,8 @@ def _held_down(edges, shifts):
 
 def _confusions(result, band):
     return table(
-        f"Outcomes of engine and analytic model; band: {band} about every boundary, N: least normal force of the model",
+        "Outcomes of engine and analytic model. The band reaches "
+        f"{band} to either side of every boundary; N is the least normal force in the model",
         where(result.rows, part="confusion"),
         NAME,
         GROUND,
@@ -384,8 +385,9 @@ def _refinement(result):
         [row for row in levels if row["found"] == row["of"]],
         Column("accuracy parameter over its default [-]", lambda row: row["level"] / row["default"]),
         LARGEST,
-        "Largest shift where all boundaries are found, one-sine pulses on both grounds; a stiffness refines upward, a "
-        "step downward. Time-stepping: the analytic model's equations by another method; its steps are over 0.1 ms.",
+        "Largest shift of the levels that find all boundaries, under one-sine pulses on both grounds. A larger "
+        "stiffness is finer, and so is a smaller step. Time-stepping: the analytic model's equations by another "
+        "method; its steps are drawn over 0.1 ms.",
         log="xy",
         rules=[("y", 100 * LIMIT, "trusted")],
     )
@@ -414,13 +416,13 @@ def _how(result):
         for name, given in settings["grounds"].items()
     )
     return (
-        f"{len(where(result.rows, part='edge'))} boundaries of the analytic model: pulses "
-        f"{', '.join(settings['shapes'])} of {min(settings['frequencies']):g} to {max(settings['frequencies']):g} "
-        f"times the rocking frequency, amplitudes of {settings['amplitudes'][0]:g} to {settings['amplitudes'][1]:g} "
-        f"g tan γ, on two grounds ({grounds}). Each engine bisects for its own to ± "
-        f"{percent(settings['tolerance'] / 2, 1)} at the default level. Where the normal force of the analytic model "
-        "becomes negative, the model is not to be trusted, and the boundary is not rated.",
-        f"Trusted: all boundaries found, shifted by at most {percent(LIMIT, 1)}, no outcome that differs beyond the "
-        f"band; usable: all found, at most {percent(FAIR, 1)}. Kind “assisted”: the adapter applies the impact, so "
-        "the boundaries test only the integration; no other level is tried.",
+        f"The analytic model has {len(where(result.rows, part='edge'))} boundaries under the pulses "
+        f"{', '.join(settings['shapes'])}, of {min(settings['frequencies']):g} to {max(settings['frequencies']):g} "
+        f"times the rocking frequency, with amplitudes of {settings['amplitudes'][0]:g} to "
+        f"{settings['amplitudes'][1]:g} g tan γ, on two grounds ({grounds}). Each engine bisects for its own "
+        f"boundaries to ± {percent(settings['tolerance'] / 2, 1)} at the default level. Where the normal force of the "
+        "analytic model becomes negative, the model is not to be trusted, and the boundary is not rated.",
+        f"Trusted: all boundaries are found and shifted by at most {percent(LIMIT, 1)}, and no outcome differs outside "
+        f"the band. Usable: all are found and shifted by at most {percent(FAIR, 1)}. Kind “assisted”: the adapter "
+        "applies the impact, so the boundaries test only the integration; no other level is tried.",
     )

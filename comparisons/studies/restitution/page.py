@@ -14,9 +14,9 @@ import numpy as np
 from ...execution.results import Result
 from ...metrics.errors import rms
 from ...plotting.charts import Axis, Chart, figure, key_of
-from ...plotting.figures import Series, as_it_comes, beside, kind, lines, shades, subject
+from ...plotting.figures import SUBJECTS, Series, as_it_comes, beside, kind, lines, shades, subject
 from ...plotting.parts import RESTITUTION, Figure, Head, Judgement, Mark, Page, Table, grouped, setting_of, table, where
-from ...plotting.wording import TRUSTED, USABLE, rating, trust, with_counts
+from ...plotting.wording import TRUSTED, USABLE, listed, rating, trust, with_counts
 from ...schemas.columns import NAME, Column, Row, number, percent, short
 from .study import COLUMNS, STEPS
 
@@ -65,7 +65,7 @@ def causes(result: Result, variants: Mapping[str, Row]) -> Iterator[Figure | Tab
             where(settings, experiment="friction"),
             COLUMNS["value"].called("friction coefficient [-]"),
             DRAWN_ERROR,
-            "Dashed: friction that the model's impact needs, horizontal over vertical impulse.",
+            "Dashed: the friction coefficient that the model's impact needs (horizontal over vertical impulse).",
             rules=needed,
             **changed,
         ),
@@ -89,8 +89,8 @@ def causes(result: Result, variants: Mapping[str, Row]) -> Iterator[Figure | Tab
     sought = {row["engine"] for row in (*phases, *damped, *result.settings["experiments"])}
     if without := [engine for engine in result.settings["engines"] if engine not in sought]:
         yield (
-            f"No cause was looked for in {', '.join(without)}. It takes a setting beside the accuracy parameter that "
-            "the engine's record names as one to change alone, or a tuned variant with a fixed step."
+            f"No causes were tested in {listed(without)}. Such a test needs a tuned variant with a fixed step, or a "
+            "setting besides the accuracy parameter that the engine's record names as one to change alone."
         )
 
 
@@ -136,8 +136,8 @@ def _damping(damped, variants):
         [*predicted, *({**row, "error": row["measured"], "by": setting_of(row)} for row in stick)],
         GAMMA,
         Column("mean error of restitution [-]", "error"),
-        "Damping in flight, built into the engine: the error that it gives the model by itself, and the error "
-        "measured, where the block does not slide.",
+        "Damping in flight, built into the engine: the error of the analytic model with this damping added (“damped as "
+        "it is”), and the error measured in the engine. Blocks that slide are not drawn.",
         panel="whose",
         series=Series(by="by"),
     )
@@ -174,14 +174,21 @@ def equation_8(result: Result, cells: Iterable[Row], ratings: Mapping[str, Row])
     jump = Column("jump over eq. (8), less 1, rms [-]", "error")
     size = Column("size of the block R [m]", lambda row: row["value"] * result.settings["radius"])
     yield beside(
-        lines(over_slenderness, GAMMA, jump, "Base velocity jump against eq. (8).", series=Series(by="by"), log="y"),
+        lines(
+            over_slenderness,
+            GAMMA,
+            jump,
+            "Base velocity jump against eq. (8), over the slenderness and over the size of the block.",
+            series=Series(by="by"),
+            log="y",
+        ),
         lines(
             over_size,
             size,
             jump,
-            f"Over the block's size: in the variants that may be trusted, the jump is off by at most {errors[0]} "
-            f"from the corrected form, and by up to {errors[1]} from the printed one, which has a factor R cos γ [m] "
-            "too many. The engines know nothing of the equation.",
+            f"In the variants that may be trusted, the jump differs by at most {errors[0]} from the corrected form, "
+            f"and by up to {errors[1]} from the printed one, which has a factor R cos γ [m] too many. The engines are "
+            "not given the equation.",
             series=Series(by="by"),
             log="xy",
         ),
@@ -218,10 +225,10 @@ def contact(result: Result) -> Page:
         COLUMNS["energy_lost"],
         Column("main variant", lambda row: "yes" if row["best"] else "no"),
     )
-    causes = ", ".join(dict.fromkeys(row["cause"] for row in wrong)) or "none"
+    causes = listed([f"“{cause}”" for cause in dict.fromkeys(row["cause"] for row in wrong)])
     return Page(
-        f"Why engines err: {len(sound)} of {len(best)} impacts of main variants are within {settings['least']:g}; "
-        f"causes found: {causes}",
+        f"Why engines err: {len(sound)} of {len(best)} impacts of main variants are off by less than "
+        f"{settings['least']:g}" + f"; larger errors of any variant are put down to {causes}" * bool(causes),
         (
             "Newton’s laws give the impulses that an engine must have applied between two steps. These impulses split "
             "the error of restitution into parts that add up to it. The parts show the cause without knowledge of the "
@@ -230,13 +237,13 @@ def contact(result: Result) -> Page:
         first=(
             _frames([row for row in where(analysed, ground=RIGID) if row["best"] or row["tier"] == "defaults"]),
             table(
-                "The first impact: variants with a cause of error, and all main variants of the engines",
+                "The first impact in all main variants, and in other variants whose error has a cause",
                 [*wrong, *sound],
                 *columns,
             ),
         ),
         more=(
-            table("The impacts of other variants", where(ranked, cause=None, best=False), *columns),
+            table("The first impact in all other variants", where(ranked, cause=None, best=False), *columns),
             table(
                 "Causes",
                 [{"cause": cause, "words": words} for cause, words in settings["causes"].items()],
@@ -246,8 +253,8 @@ def contact(result: Result) -> Page:
         ),
         how=(
             f"A block of slenderness {settings['slenderness']:g} rad is released from {settings['start']:g} of it, on "
-            "rigid ground and on the Caryatid’s base sliding freely. Its first impact is taken apart in every engine "
-            f"and variant at its default level. A cause is named for errors from {settings['least']:g} on.",
+            "rigid ground and on the Caryatid’s base, which slides freely. Its first impact is taken apart in every "
+            f"variant of every engine, at the default level. Errors of at least {settings['least']:g} get a cause.",
         ),
         evidence=tuple(
             (f"{NAME.of(row)}, {row['ground']}", row.get("why_not") or row["failure"]["reason"])
@@ -292,9 +299,9 @@ def _frames(rows):
                 chart.dots(time[inside], values[inside], series_kind, grey=grey, filled=filled, says=says, beyond=True)
         charts.append(chart)
     caption = (
-        "First impact on rigid ground. Coloured: main variants, and defaults of subject engines. Grey: other "
-        "defaults. Open marks: defaults; arrowheads: beyond the frame. Frames 2 and 3 show only engines whose block "
-        "position is read."
+        f"First impact on rigid ground. Coloured: main variants, and the defaults of {SUBJECTS}. Grey: other defaults. "
+        "Open marks: defaults. Arrowheads: values outside the plot. Panels 2 and 3 show only engines in which the "
+        "position of the block is read."
     )
     keys = {kind(row): key_of(kind(row), filled=not as_it_comes(row)) for row in rows if _coloured(row)}
     return figure(charts, caption, keys, keys)
@@ -327,14 +334,15 @@ def page(result: Result) -> Page:
     return Page(
         _title(ranked),
         (
-            "A released block loses speed at every impact. Eq. (7) gives the loss from angular momentum alone. The "
-            "engines are not given this number; it follows from their contact. It is wrong where a step straddles the "
-            "impact, or where the corner penetrates or bounces. No corner slips here; for impacts with slip see the "
-            "study of random statues.",
-            "The error is measured by states: the tilt rate after over that before, at the impact, minus eq. (7), "
-            "as root mean square over impacts. By swings, from the energy of the swings before and after, it "
-            "includes what built-in damping dissipates in flight. A variant is rated by the worst of both measures "
-            "on both grounds.",
+            "A released block loses speed at every impact. Eq. (7) gives this loss from angular momentum alone. The "
+            "engines are not given eq. (7); their loss follows from their contact. It is wrong where a step straddles "
+            "the impact, or where the corner penetrates or bounces. No corner slips here; the study of random statues "
+            "has impacts with slip.",
+            "Restitution is measured in two ways. By states, it is the tilt rate just after an impact over that just "
+            "before. By swings, it follows from the energies of the swings before and after the impact, and so "
+            "includes what built-in damping dissipates in flight. The error is the difference from eq. (7), as root "
+            "mean square (rms) over the impacts. A variant is rated by the worse of the two measures on the worse of "
+            "the two grounds.",
         ),
         first=(*_summary(result, cells, ranked), _over_step(levels)),
         more=_details(result, variants, default, cells, levels, orders, ratings, why),
@@ -357,14 +365,14 @@ def _summary(result, cells, ranked):
     return (
         _over_slenderness(cells, result.settings["default_variants"]),
         table(
-            "Restitution without slip, the worse of both grounds; least error by states first",
+            "Restitution without slip, on the worse of the two grounds. The least error by states comes first",
             ranked,
             NAME,
             Column("rating", lambda row: row["rating"].removeprefix("is ").removeprefix("may be ")),
             STATE,
             WORST_STATE,
             ERROR,
-            Column("order by swings in its accuracy parameter, by ground [-]", "orders"),
+            Column("order of the error by swings in the accuracy parameter, by ground [-]", "orders"),
             FAILED,
             LOST,
         ),
@@ -424,17 +432,17 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
     rows, borne = rated(result), where(result.rows, part="bearings", factor="all")
     return (
         Judgement(
-            "error of restitution by states (tilt rates before and after impacts without slip), rms, free rocking, the "
-            "worse of two grounds",
+            "rms error of restitution by states (tilt rate after an impact over that before), in free rocking without "
+            "slip, on the worse of two grounds",
             {(row["engine"], row["variant"]): _free_mark(row) for row in rows},
             RESTITUTION,
         ),
         Judgement(
-            "restitution by states, on bearings without slip: error, rms",
+            "rms error of restitution by states, on bearings without slip",
             {(row["engine"], row["variant"]): _mark(row, "rms_state", "worst_state") for row in borne},
         ),
         Judgement(
-            "base velocity jump on bearings: relative error, rms",
+            "relative rms error of the base velocity jump, on bearings",
             {(row["engine"], row["variant"]): _mark(row, "jump_rms", "jump_worst") for row in borne},
         ),
     )
@@ -522,8 +530,9 @@ def _over_slenderness(cells, defaults):
         worst,
         GAMMA,
         STATE,
-        "Error of restitution by states, rms. On the sliding base: the worst base mass. Coloured: main variants, and "
-        "defaults of subject engines. Open marks: defaults. Grey: other variants. No mark: all runs failed.",
+        "Rms error of restitution by states; on the sliding base, that of the worst base mass. Coloured: main "
+        f"variants, and the defaults of {SUBJECTS}. Open marks: defaults. Grey: other variants. No mark: all runs "
+        "failed.",
         panel=lambda row: f"{row['ground']}: restitution",
         series=Series(by=lambda row: row["variant"] if grey(row) else row["tier"], grey=grey, opened=as_it_comes),
         log="y",
@@ -538,8 +547,8 @@ def _maps(cells):
             BASE,
             GAMMA,
             Column(error.head, error.value, digits=1),
-            f"{error.head.capitalize()}, at default levels, over all starts and impacts. ✗: failed runs of all "
-            "runs; they are not part of the error.",
+            f"{error.head.capitalize()}, at default levels, over all starts and impacts. ✗: how many of the runs "
+            "failed; these are not part of the error.",
             bounds=BOUNDS,
             panel=NAME.of,
             failed=lambda row: FAILED.of(row).replace(" of ", "/") if row["failed"] else "",
@@ -583,8 +592,8 @@ def _over_step(levels):
         where(levels, parameter="step"),
         COLUMNS["level"].called("fixed step [s]"),
         DRAWN_ERROR,
-        "Error of restitution by swings over a fixed step, of defaults and tuned variants. Variants that refine their "
-        "step at impacts are not shown.",
+        "Error of restitution by swings over the size of a fixed step, for tuned variants and defaults. Variants that "
+        "refine their step at impacts are not shown.",
         panel="ground",
         log="xy",
         rules=[("x", step, words) for words, step in STEPS.items()],
@@ -594,12 +603,12 @@ def _over_step(levels):
 def _refinement(levels):
     over_default = Column("accuracy parameter over its default [-]", lambda row: row["level"] / row["default"])
     words = (
-        "Error of restitution by swings along each variant's accuracy parameter; a stiffness refines upward, a step "
-        "downward."
+        "Error of restitution by swings over each variant's accuracy parameter. A larger stiffness is finer, and so is "
+        "a smaller step."
     )
     yield beside(
         lines(levels, over_default, DRAWN_ERROR, words, panel="ground", log="xy"),
-        lines(levels, CPU, DRAWN_ERROR, "And against the CPU time of the same runs.", panel="ground", log="xy"),
+        lines(levels, CPU, DRAWN_ERROR, "The same errors over the CPU time of their runs.", panel="ground", log="xy"),
     )
     yield table(
         "All levels",
@@ -620,19 +629,19 @@ def _how(settings):
     bases = ", ".join(number(ratio, 2) for ratio in settings["ratios"] if ratio is not None)
     grid = "; ".join(f"{name} {', '.join(map(short, values))}" for name, values in settings["bearings"].items())
     return (
-        f"Blocks of slenderness {min(gammas):g} to {max(gammas):g} rad, tilted to {min(starts):g} to {max(starts):g} "
-        f"of it ({len(starts)} starts) and released, on rigid ground and on bases of {bases} times their mass that "
-        f"slide without friction. The first {settings['impacts']} impacts of every run are measured. Restitution by "
-        "swings is the root of the ratio of a swing's energy after an impact to that before it, so anything that "
-        "dissipates energy counts. The base velocity jump is compared with the one that conserves momentum at the "
-        "run's own rates.",
-        f"On bearings: {grid}, in all combinations; the bearing laws alternate. The block is released at half of the "
-        "slenderness, with the ground at rest or under one sine of half the uplift acceleration and three times the "
-        "rocking frequency. The bearings change the energy of a swing, so restitution is measured by states alone, "
-        "against eq. (7). The base velocity jump is compared with momentum, eq. (8). An impact that a run does not "
-        "have counts as missed.",
+        f"Blocks of slenderness {min(gammas):g} to {max(gammas):g} rad are tilted to {min(starts):g} to "
+        f"{max(starts):g} of it ({len(starts)} starts) and released. They stand on rigid ground, or on bases that "
+        f"slide without friction, of {bases} times their mass. The first {settings['impacts']} impacts of every run "
+        "are measured. Restitution by swings is the square root of the energy of the swing after an impact over that "
+        "of the swing before it, so anything that dissipates energy counts. The base velocity jump is compared with "
+        "the jump that conserves momentum at the run's own rates.",
+        f"On bearings, all combinations of these values are run: {grid}. Ratios are those of base mass to block mass; "
+        "the bearing laws alternate. The block is released from half of its slenderness. The ground is at rest, or "
+        "moves by one sine of half the uplift acceleration and three times the rocking frequency. The bearings change "
+        "the energy of a swing, so restitution is measured by states alone, against eq. (7). The base velocity jump is "
+        "compared with momentum, eq. (8). An impact of the model that a run lacks counts as missed.",
         f"Trusted: an error of at most {TRUSTED:g} on both grounds by both measures, no failed run and no missed "
-        f"impact. Usable: at most {USABLE:g}. Measured restitution of stone scatters by some per cent. Corners are "
-        "plastic, do not slip, and move in a plane: these are Housner's assumptions, so agreement verifies the engine "
-        "and is no independent physics.",
+        f"impact. Usable: the same with at most {USABLE:g}. For comparison, the measured restitution of stone scatters "
+        "by some per cent. Corners that are plastic, do not slip, and move in a plane are Housner's assumptions. "
+        "Agreement under them verifies the engine; it is no independent evidence on the physics.",
     )
