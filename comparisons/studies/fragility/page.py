@@ -55,9 +55,9 @@ def page(result: Result) -> Page:
         f"Many earthquakes: {ends_in_words(leading(counts, result.settings['variants']))}",
         (
             "Rocking cannot be predicted point by point over a whole motion, but probabilities can. Engines are "
-            "compared with the analytic model run by run. A run differs if the block ends otherwise, or falls at "
-            f"another time: off by more than {percent(FALL, 1)} of a rocking period, or after another number of "
-            f"impacts. A failed run counts as differing. Even without a difference, {least_shown(counts, 'motions')} "
+            "compared with the analytic model run by run. A run differs if its outcome is another, or if the block "
+            f"falls at another time: more than {percent(FALL, 1)} of a rocking period off, or after another number of "
+            f"impacts. A failed run counts as differing. Even if no run differs, {least_shown(counts, 'motions')} "
             "(upper 95 % limit).",
         ),
         first=_summary(chosen, tones, counts),
@@ -77,14 +77,14 @@ def _summary(chosen, tones, counts):
             _shares(
                 chosen,
                 tones,
-                "Left: share of runs of the analytic model that exceed each limit state, with 95 % Wilson "
-                "intervals, over the intensity measure of overturning. A lognormal curve is drawn where it fits "
-                f"(p ≥ {LEVEL:g}). Small marks: overturning.",
+                "Left and middle: share of the analytic model's runs that exceed each limit state, over the intensity "
+                "measure used for overturning, with 95 % Wilson intervals. A lognormal curve is drawn where it fits (p "
+                f"≥ {LEVEL:g}). Small marks: overturning.",
             ),
             _differing(counts),
         ),
         table(
-            "All scenes together: runs by how they end beside the analytic model’s, with 95 % Wilson intervals by "
+            "How runs end compared with the analytic model’s, all scenes together, with 95 % Wilson intervals by "
             "motion",
             counts,
             NAME,
@@ -100,7 +100,8 @@ def _details(result, fits, effects, costs, chosen, tones):
     """Parts that only the study's own page shows."""
     return (
         table(
-            "Overturning: engines against the analytic model on the same runs; 95 % intervals by paired bootstrap",
+            "Overturning: engines compared with the analytic model on the same runs, with 95 % intervals by paired "
+            "bootstrap",
             where(effects, state=OVERTURNING),
             NAME,
             SCENE,
@@ -112,13 +113,13 @@ def _details(result, fits, effects, costs, chosen, tones):
             effects,
             NAME,
             MEDIAN_SHIFT,
-            "Median intensity over the analytic model's on the same runs, with 95 % intervals by paired bootstrap; "
-            "no interval: no outcome differs, or the runs determine no interval.",
+            "Median intensity over the analytic model's on the same runs, with 95 % intervals by paired bootstrap. "
+            "There is no interval where no outcome differs, or where the runs do not determine one.",
             Axis(MEDIAN_SHIFT.head, RATIOS[0], RATIOS[-1], "log", tuple((ratio, short(ratio)) for ratio in RATIOS)),
             panel=lambda row: f"{row['scene']}: {STATE.of(row)}",
         ),
         table(
-            "Other limit states: engines against the analytic model on the same runs",
+            "Other limit states: engines compared with the analytic model on the same runs",
             [row for row in effects if row["state"] != OVERTURNING],
             NAME,
             SCENE,
@@ -126,9 +127,13 @@ def _details(result, fits, effects, costs, chosen, tones):
             *EFFECT,
         ),
         Head("The analytic model"),
-        _shares([row for row in fits if row not in chosen], tones, "The other limit states over their own measure."),
+        _shares(
+            [row for row in fits if row not in chosen],
+            tones,
+            "The other limit states, each over its own intensity measure.",
+        ),
         table(
-            "Lognormal curves of the analytic model; 95 % intervals by bootstrap over runs",
+            "Lognormal curves of the analytic model, with 95 % intervals by bootstrap over runs",
             fits,
             SCENE,
             STATE,
@@ -166,7 +171,7 @@ def tallies(result: Result) -> list[dict[str, Any]]:
 def judgements(result: Result) -> tuple[Judgement, ...]:
     """Judge how many outcomes differ from the model's, by (engine, variant)."""
     marks = {(row["engine"], row["variant"]): equal_mark(row, left_out(row)) for row in tallies(result) if row["runs"]}
-    return (Judgement("outcomes that differ under synthetic motions", marks),)
+    return (Judgement("runs that differ or fail under synthetic motions", marks),)
 
 
 def glance(result: Result) -> Glance:
@@ -187,12 +192,13 @@ def glance(result: Result) -> Glance:
 
 
 def _differing(counts):
-    """Figure of the share of each variant's runs that end otherwise than the model's, subject engines first."""
+    """Figure of the share of each variant's runs that differ from the model's or fail, subject engines first."""
     return ranks(
         sorted((row for row in counts if row["runs"]), key=lambda row: (not subject(row), row["engine"] == REFERENCE)),
         NAME,
         Column("runs that differ or fail", "share", percent=True, within="interval"),
-        "Right: share of runs of each variant that differ from the model or fail, all scenes together; open: defaults.",
+        "Right: share of each variant's runs that differ from the model or fail, all scenes together. Open marks: "
+        "defaults.",
         Axis("runs that differ or fail", 0.0, 1.0, ticks=tuple((k / 4, f"{25 * k} %") for k in range(5))),
         panel=lambda row: "all scenes: engines",
         opened=as_it_comes,
@@ -244,20 +250,22 @@ def _how(settings):
         for name, scene in settings["scenes"].items()
     )
     return (
-        f"{settings['runs']} runs of the analytic model for each scene ({scenes}), independent of each other: each has "
-        f"a synthetic near-fault motion of its own, its time stretched by {stretch[0]:g} to {stretch[1]:g}, its peak "
-        f"{peak[0]:g} to {peak[1]:g} g, and a block of its own, radius {radius[0]:g} to {radius[1]:g} m, all evenly "
-        "over the logarithm. Motions are stretched because all synthetic motions have nearly the same spectrum.",
+        f"The analytic model makes {settings['runs']} independent runs for each scene ({scenes}). Each run has a "
+        f"synthetic near-fault motion of its own, with a peak of {peak[0]:g} to {peak[1]:g} g and its time stretched "
+        f"by {stretch[0]:g} to {stretch[1]:g}, and a block of its own, with a radius of {radius[0]:g} to "
+        f"{radius[1]:g} m. All are drawn evenly over their logarithm. Motions are stretched because all synthetic "
+        "motions have nearly the same spectrum.",
         f"Sa: spectral acceleration at the isolation period, {settings['period']:.2f} s (secant at "
         f"{settings['x_max']:g} m), at {percent(settings['damping'])} damping. g tan γ: uplift acceleration; ωᵣ: "
-        "rocking frequency. The curve P = Φ(ln(x/median)/dispersion) is that of greatest likelihood, p that of "
+        "rocking frequency. The curve P = Φ(ln(x/median)/dispersion) is that of maximum likelihood; p is that of "
         "Pearson's test of its fit.",
-        "Left out of all engines: scenes in which N falls to 0, the friction demand is more than any contact provides, "
-        "or an outcome boundary is near (with a change by 10⁻⁴ the block ends otherwise in the model). Scenes share "
-        "their motions, so the interval counts the runs under one motion as one.",
+        "For all engines, scenes are left out in which N falls to 0, in which the friction demand exceeds what any "
+        "contact provides, or which are near an outcome boundary (a change by 10⁻⁴ changes how the block ends in the "
+        "model). Scenes share their motions, so the interval counts the runs under one motion as one.",
         f"Engines run the first {settings['runs_of_engines']} scenes whose PGA is {settings['near'][0]:g} to "
-        f"{settings['near'][1]:g} times g tan γ, the variants “defaults” the first {settings['runs_of_defaults']}. "
-        f"Exact McNemar test, adjusted after Holm for the limit states, at a level of {LEVEL:g}. “analytic, "
-        f"perturbed”: the model with its restitution changed by 1 part in {1 / settings['change']:.0f}; an "
-        "engine that differs no more than this variant cannot be distinguished from the model.",
+        f"{settings['near'][1]:g} times g tan γ; with defaults they run the first {settings['runs_of_defaults']}. The "
+        f"test is McNemar's exact test at a level of {LEVEL:g}, adjusted by Holm's rule for the limit states. "
+        "“Analytic, perturbed” is the model with its restitution changed by 1 part in "
+        f"{1 / settings['change']:.0f}. An engine that differs no more than this variant cannot be distinguished from "
+        "the model.",
     )

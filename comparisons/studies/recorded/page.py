@@ -1,4 +1,4 @@
-"""The page of recorded motions: how many runs end otherwise than the model's, and in which way."""
+"""The page of recorded motions: how many runs differ from the model's, and in which way."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -10,7 +10,7 @@ from engines.comparison import FALL
 
 from ...execution.results import Result
 from ...plotting.charts import Axis, Chart, figure, key_of
-from ...plotting.figures import as_it_comes, kind, leading, mains, subject
+from ...plotting.figures import SUBJECTS, as_it_comes, kind, leading, mains, subject
 from ...plotting.glance import Glance, counted
 from ...plotting.parts import Figure, Judgement, Mark, Page, grouped, table, where
 from ...plotting.wording import NOT_COMPARED, ends, ends_in_words, equal_mark, least_shown, left_out, tally
@@ -50,16 +50,16 @@ def page(result: Result) -> Page:
     return Page(
         f"Recorded motions: {ends_in_words(leading(both, variants))}",
         (
-            "A run differs from the model if the block ends otherwise (stands, rocks or overturns), or falls at "
-            f"another time: off by more than {percent(FALL, 1)} of a rocking period, or after another number of "
+            "A run differs from the model if its outcome (stands, rocks or overturns) is another, or if the block "
+            f"falls at another time: more than {percent(FALL, 1)} of a rocking period off, or after another number of "
             "impacts. A failed run counts as differing.",
-            f"Runs under one record are not independent, so the interval counts records. Even without a difference, "
+            f"Runs under one record are not independent, so the interval counts records. Even if no run differs, "
             f"{least_shown(both, 'records')} (upper 95 % limit).",
         ),
         first=(
             _tilts(runs, mains(variants)),
             table(
-                "Free-standing and isolated together: runs by how they end beside the analytic model’s, with 95 % "
+                "How runs end compared with the analytic model’s, free-standing and isolated together, with 95 % "
                 "Wilson intervals by record",
                 both,
                 NAME,
@@ -83,11 +83,15 @@ def _details(runs, summaries, counts):
     """Parts that only the study's own page shows."""
     return (
         table(
-            "By configuration", [row for row in summaries if row["configuration"] != BOTH], NAME, CONFIGURATION, *counts
+            "The same by configuration",
+            [row for row in summaries if row["configuration"] != BOTH],
+            NAME,
+            CONFIGURATION,
+            *counts,
         ),
         table(
-            "Relative errors of peaks, run by run: median, largest, number of runs, 95 % quantile; up to the "
-            "horizon common to all engines, and up to the engine’s own",
+            "Relative errors of peaks, run by run: median, largest, number of runs, 95 % quantile. They are taken up "
+            "to the horizon common to all engines, or up to the engine’s own",
             summaries,
             NAME,
             CONFIGURATION,
@@ -97,7 +101,7 @@ def _details(runs, summaries, counts):
             COLUMNS["own_displacement_error"],
         ),
         table(
-            "Runs that differ or fail; tilt over slenderness",
+            "Runs that differ or fail. Peak tilts are over the slenderness",
             where(runs, **{"class": {"differs", "failed"}}),
             NAME,
             RECORD,
@@ -117,12 +121,12 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
     rows = {pair: where(summary(members), configuration=BOTH)[0] for pair, members in runs.items()}
     return (
         Judgement(
-            "outcomes that differ under recorded motions",
+            "runs that differ or fail under recorded motions",
             {name: equal_mark(row, left_out(row)) for name, row in rows.items()},
         ),
         *(
             Judgement(
-                f"{words} under recorded motions: error, median",
+                f"median error of {words} under recorded motions",
                 {name: _peak_mark(row[f"{key}_error"]) for name, row in rows.items()},
             )
             for key, words in PEAKS.items()
@@ -218,8 +222,9 @@ def _tilts(runs: list[dict[str, Any]], main: Mapping[str, str]) -> Figure | None
     keys = {kind(row): key_of(kind(row), filled=not as_it_comes(row), joined=False) for row in coloured}
     left_out = "; ".join(NAME.of(members[0]) for members in groups if members not in subject_groups)
     caption = (
-        "One mark for each component that is judged. On the line engine and model agree; if only one is at "
-        "“overturns”, the outcomes differ. Open marks: defaults, with fewer records; upper edge: failed runs."
+        "One mark for each record component that is judged. On the diagonal, engine and model agree. A mark in the row "
+        "or the column “overturns”, but not in both, is another outcome. Marks at the upper edge: failed runs. Open "
+        "marks: defaults, run under fewer records."
         + f" Grey: {grey}." * bool(grey)
         + f" Not drawn, but in the table: {left_out}." * bool(left_out)
     )
@@ -254,17 +259,17 @@ def _how(result: Result) -> tuple[str, ...]:
     left = [NOT_COMPARED.get(reason, reason) for reason in why]
     reasons = ", ".join(f"{left.count(reason)} {reason}" for reason in dict.fromkeys(left)) or "none"
     return (
-        f"{settings['records']} records ({settings['source']}). Each component is run by itself, as recorded, times a "
-        f"factor. Blocks and factors are drawn by a fixed seed ({result.provenance['seed']}) and the component’s name: "
-        f"{ranges}. Intensity is the peak ground velocity times ωᵣ over g tan γ. It and the base mass over the block’s "
-        "are drawn evenly over the logarithm. Period [s] and damping of the bearings are those at "
-        f"{settings['x_max']:g} m; the law is one of {', '.join(settings['laws'])}. The ranges were chosen once, by "
-        f"the outcomes of the model alone: {mix}.",
-        "Tuned subject engines run all records. Their defaults, and other tuned engines, run both components of "
-        f"{settings['records_of_others']} records. Left out of all engines: {reasons}. A scene is near an outcome "
-        "boundary if a change of it by 10⁻⁴ makes the block end otherwise in the model. Components and configurations "
-        "of a record are not independent, so Wilson’s interval counts records, not runs.",
+        f"The motions are {settings['records']} records ({settings['source']}). Each component is run by itself, "
+        f"scaled by a factor. A fixed seed ({result.provenance['seed']}) and the component’s name determine block and "
+        f"factor, from these ranges: {ranges}. Intensity is the peak ground velocity times ωᵣ over g tan γ; base is "
+        "the base mass over the block mass. Both are drawn evenly over their logarithm. Period [s] and damping of the "
+        f"bearings are those at {settings['x_max']:g} m; the bearing law is one of {', '.join(settings['laws'])}. The "
+        f"ranges were chosen once, by the outcomes of the model alone: {mix}.",
+        f"The tuned variants of {SUBJECTS} run all records. Their defaults, and other tuned engines, run both "
+        f"components of {settings['records_of_others']} records. Left out of all engines: {reasons}. A scene is near "
+        "an outcome boundary if a change of it by 10⁻⁴ changes how the block ends in the model. Components and "
+        "configurations of a record are not independent, so Wilson’s interval counts records, not runs.",
         "The common horizon is the time at which a change of the model by 10⁻⁴ has moved its tilt by a hundredth of "
-        "the slenderness. The engine’s own horizon is the same for a change as large as the engine’s errors. A peak "
-        "too small to count is not compared.",
+        "the slenderness. An engine’s own horizon is that of a change as large as the engine’s errors. Peaks too small "
+        "to count are not compared.",
     )
