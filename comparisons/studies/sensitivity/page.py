@@ -52,8 +52,8 @@ def page(result: Result) -> Page:
         _title(shown),
         (
             "Near the overturning boundary small changes decide the outcome. Each motion and block is changed in one "
-            "way at a time; engines run them unchanged. An outcome counts as changed if it differs from the analytic "
-            "model's of the unchanged scene.",
+            "way at a time; engines run them unchanged. An outcome counts as changed if it differs from that of the "
+            "analytic model in the unchanged scene.",
             *(_against_engines(scene, where(shown, scene=scene)) for scene in ranked),
         ),
         first=(
@@ -61,9 +61,9 @@ def page(result: Result) -> Page:
                 shown,
                 WHAT,
                 SHARE,
-                "Share of outcomes that each change alters, with 95 % Wilson intervals. Not coloured: changes of the "
-                "scene in the analytic model; coloured: the engines’ main variants, on the unchanged scene. "
-                "Arrowhead: none.",
+                "Share of outcomes that each change alters, with 95 % Wilson intervals. Without colour: changes of the "
+                "scene in the analytic model. Coloured: the engines’ main variants in the unchanged scene. Arrowhead: "
+                "no outcome changed.",
                 Axis("outcomes changed", LEAST, 1.0, "log", TICKS),
                 panel=lambda row: f"{row['scene']}: outcomes changed",
             ),
@@ -84,13 +84,13 @@ def _details(vertical, tables):
             RATIO,
             COLUMNS["faster"].called("times as fast"),
             Column(SHARE.head, SHARE.value, digits=1, percent=True),
-            "Share of outcomes that the vertical motion changes, over V/H, peak vertical over peak horizontal "
-            "acceleration, and over how many times as fast it is.",
+            "Share of outcomes that the vertical motion changes. V/H is peak vertical over peak horizontal "
+            "acceleration; the other axis tells how many times as fast the vertical motion runs.",
             bounds=BOUNDS,
             panel="scene",
         ),
         table(
-            "Vertical motion: outcomes changed, and runs in which N reaches zero; the model ends there",
+            "Vertical motion: outcomes changed, and share of runs that end because N reaches zero",
             vertical,
             SCENE,
             RATIO,
@@ -117,7 +117,9 @@ def _title(shown):
     first = _largest_share(grouped(where(shown, engine=REFERENCE), "scene")[shown[0]["scene"],])
     title = f"What matters more than the engine: {WHAT.of(first)} changes {percent(SHARE.of(first))} of outcomes"
     if most := _largest_share([row for row in shown if row["engine"] != REFERENCE and row["runs"]]):
-        title += f", a main variant at most {percent(SHARE.of(most))} (95 % upper bound {percent(most['high'])})"
+        title += (
+            f", an engine’s main variant at most {percent(SHARE.of(most))} (95 % upper limit {percent(most['high'])})"
+        )
     return title
 
 
@@ -130,24 +132,30 @@ def _against_engines(scene, shown):
     worst = max(engines, key=lambda row: row["high"])
     above = sum(row["low"] > worst["high"] for row in changes)
     return (
-        f"{scene.capitalize()}: {above} of {len(changes)} changes alter more outcomes than any engine’s main variant; "
-        f"their 95 % intervals lie above the highest limit of these, {percent(worst['high'])} ({NAME.of(worst)})."
+        f"{scene.capitalize()}: {above} of {len(changes)} changes clearly alter more outcomes than any engine’s main "
+        "variant does. Their 95 % intervals lie wholly above the highest upper limit of these variants, "
+        f"{percent(worst['high'])} ({NAME.of(worst)})."
     )
 
 
 def _how(settings):
     scenes = "; ".join(
-        f"{name} ({scene['scene']}), slenderness {', '.join(f'{gamma:g}' for gamma in scene['slendernesses'])} rad, "
-        f"engines {scene['slenderness_of_engines']:g}"
+        f"{name} ({scene['scene']}), slenderness {', '.join(f'{gamma:g}' for gamma in scene['slendernesses'])} rad "
+        f"(engines: {scene['slenderness_of_engines']:g})"
         for name, scene in settings["scenes"].items()
     )
     best, others = settings["motions_of_engines"], settings["motions_of_other_variants"]
     unseen = [percent(wilson(0, runs)[1]) for runs in (best, others) if runs]
     return (
-        f"{settings['motions']} synthetic motions, scaled by lognormal factors of deviation "
-        f"{short(settings['spread'])} about the one that overturns half. Scenes: {scenes}. Engines take the first "
-        f"{best} motions in their main variant, {others} in others, whose peak is at least {settings['lifting']:g} "
-        "g tan γ" + (f"; where none changes, the 95 % upper bounds are {' and '.join(unseen)}." if unseen else "."),
-        "The vertical motion is that of another seed. Bearings are vertically rigid in the model; real ones vibrate at "
-        "10 to 20 Hz, so twice the usual vertical motion is run too.",
+        f"{settings['motions']} synthetic motions are scaled by lognormal factors, with a median that overturns half "
+        f"of the blocks and a deviation of {short(settings['spread'])}. Scenes: {scenes}. Of the motions with a peak "
+        f"of at least {settings['lifting']:g} g tan γ, engines run the first {best} in their main variant and the "
+        f"first {others} in other variants"
+        + (
+            f"; if none of these changes the outcome, the 95 % upper limits are {' and '.join(unseen)}."
+            if unseen
+            else "."
+        ),
+        "The vertical motion is that of another seed. Bearings are vertically rigid in the model, but real ones "
+        "vibrate vertically at 10 to 20 Hz. So twice the usual vertical motion is run, too.",
     )

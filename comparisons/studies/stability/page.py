@@ -77,10 +77,10 @@ def page(result: Result) -> Page:
             "The reference itself is judged by its independent second implementation and, for free rocking, by the "
             "closed form. With friction it is judged by Moreau’s time stepping, which shares no code with it. "
             "Trajectories are compared up to each scene’s sensitivity horizon and unstable point. Beyond these only "
-            "the outcome is compared, and only if a change of 10⁻⁴ does not alter it. Energy drift and gain are "
-            "what exceeds the same measure of the reference.",
+            "the outcome is compared, and only if a change of 10⁻⁴ does not alter it. Energy drift and energy gain are "
+            "counted only as far as they exceed those of the reference.",
             "Where a result is not right, finer levels are run in turn. Scenes of ten minutes are run by the engines’ "
-            f"main variants only. A run may take {result.settings['time_limit']:g} s.",
+            f"main variants only. The time limit of a run is {result.settings['time_limit']:g} s.",
             f"The range for which engines are tested: {in_words()}.",
         ),
         evidence=tuple(
@@ -101,9 +101,9 @@ def _summary(cells, inside, outside, chosen, counts):
             cells,
             inside,
             chosen,
-            "Default levels. Blank or ✓: right; ~: differs; ≠: another outcome; ✗: failed. Under the pointer: the "
-            "measure farthest outside its tolerance. 2nd code: the independent second implementation; steps: plain "
-            "time stepping of the equations. –: not run, or not modelled: these two have no friction.",
+            "Results at default levels. Blank or ✓: right; ~: differs; ≠: another outcome; ✗: failed; –: not run, or "
+            "not modelled. The pointer shows the measure farthest outside its tolerance. 2nd code: the independent "
+            "second implementation. Steps: plain time stepping of the equations. Neither of these models friction.",
         ),
         table(
             "Results at default levels",
@@ -119,12 +119,12 @@ def _summary(cells, inside, outside, chosen, counts):
 def _details(result, cases, measures, cells, variants, outside, chosen, wrong):
     """Parts that only the study's own page shows."""
     return (
-        _matrix(cells, outside, chosen, "Cases outside the range. They are counted separately."),
+        _matrix(cells, outside, chosen, "Cases outside the tested range, which are counted separately."),
         _matrix(
             cells,
             cases,
             [variant for variant in variants if variant not in chosen],
-            "The engines’ other variants, all cases. –: not run, or no friction modelled.",
+            "The engines’ other variants in all cases. –: not run, or friction not modelled.",
         ),
         table(
             "Where default levels are not right",
@@ -288,10 +288,9 @@ def _title(cells, inside, outside, engines):
         for cases in (inside, outside)
     )
     listed = _readable(f" ({'; '.join(none[:3])}{' …' if len(none) > 3 else ''})") if none else ""
-    more = f"; {APART} {len(beyond)} of {len(outside)}" if outside else ""
-    if len(names) > 2:
-        return f"Hard cases: no engine gets {len(none)} of {len(inside)} right{listed}{more}"
-    return f"Hard cases: {len(none)} of {len(inside)} are not right in {' and '.join(names)}{listed}{more}"
+    more = f", and {len(beyond)} of {len(outside)} outside the tested range" if outside else ""
+    who = "every engine" if len(names) > 2 else " and ".join(names)
+    return f"Hard cases: {len(none)} of {len(inside)} defeat {who}{listed}{more}"
 
 
 def _best_solvers(counts):
@@ -300,7 +299,7 @@ def _best_solvers(counts):
     names = " and ".join(NAME.of(row) for row in counts if row[RIGHT] == most)
     run, right, tried, cured = (sum(row[key] for row in counts) for key in ("run", RIGHT, "tried", FINER))
     return (
-        f"{names} does best: {most} cases are right. Of the {run - right} wrong results of all time-stepping solvers, "
+        f"Best is {names}, with {most} cases right. Of the {run - right} wrong results of all time-stepping solvers, "
         f"{tried} were rerun at finer levels; {cured} then became right."
     )
 
