@@ -26,8 +26,8 @@ def page(result: Result) -> Page:
     return Page(
         f"Agreement tolerances: {f'{len(broken)} of {len(bounded)} do not hold' if broken else 'all hold'}",
         (
-            f"{len(bounded)} tolerances, each the assertion of a test. A bound is at most twice the worst error "
-            "measured when it was set, but for round-off.",
+            f"Each of the {len(bounded)} tolerances is the assertion of a test. Except for errors of round-off, a "
+            "tolerance is at most twice the worst error measured when it was set.",
         ),
         more=(
             table(

@@ -29,18 +29,18 @@ def page(result: Result) -> Page:
     same_outcome = [row for row in mistakes if not row["lost"] and row["error"] is not None and row["error"] <= TRUSTED]
     worst = max(same_outcome, key=lambda row: row["graph"], default=None)
     sentences = [
-        "The scripts that rocking script writes agree with the analytic model. Here one thing in them is changed to "
-        "what a first script may do; all else stays."
+        "The scripts that rocking script writes agree with the analytic model. Here one thing at a time is changed in "
+        "them to what a first script might do."
     ]
     if worst:
         sentences.append(
             f"The error of restitution does not show every mistake: with {worst['mistake']} in {worst['engine']} it is "
-            f"{number(worst['error'], 1)} at most, but the tilt is off by {number(worst['graph'], 2)} of the "
+            f"at most {number(worst['error'], 1)}, but the tilt is off by {number(worst['graph'], 2)} of the "
             "slenderness."
         )
     return Page(
-        f"What a mistake costs: of {len(mistakes)} in scripts for {listed(list(by_engine)) or 'no engine'}, "
-        f"{len(lost)} change an outcome or make a run fail",
+        f"What a mistake costs: {len(lost)} of {len(mistakes)} mistakes in scripts for "
+        f"{listed(list(by_engine)) or 'no engine'} change an outcome or make a run fail",
         tuple(sentences),
         first=(
             _dots(by_engine, result.settings["no_matter"]),
@@ -48,15 +48,16 @@ def page(result: Result) -> Page:
         ),
         more=tuple(_table(engine, rows) for engine, rows in by_engine.items()),
         how=(
-            "Scenes: the Caryatid released from 0.6 of its slenderness, on rigid ground for 5 s and on its base and "
-            "bearings for 3 s; a block of 0.3 rad on rigid ground under a one-sine pulse that overturns it; one of "
-            "0.15 rad on the bearings under the first 9 s of the synthetic record. A mistake is made in the scenes "
-            "that have what it concerns.",
-            "Each script runs by itself; what is measured is read from its steps as that of any engine. Error of "
-            "restitution: against eq. (7), at impacts of at least a tenth of the fastest rate, root mean square, worst "
-            "scene. By energy: from the rates of successive impacts. Tilt: largest difference from the analytic model "
-            "at one time, until either block is beyond its unstable point, so late impacts count. "
-            "A run fails if it ends in an error, gains energy, or leaves its place.",
+            "There are four scenes. The Caryatid is released from 0.6 of its slenderness, on rigid ground for 5 s, and "
+            "on its base and bearings for 3 s. A block of 0.3 rad on rigid ground is overturned by a one-sine pulse. A "
+            "block of 0.15 rad stands on the bearings under the first 9 s of the synthetic record. A mistake is made "
+            "only in scenes that have what it concerns.",
+            "Each script runs by itself; its steps are measured like those of any engine. The error of restitution is "
+            "the root mean square difference from eq. (7), at impacts of at least a tenth of the fastest rate, in the "
+            "worst scene. The error by energy follows from the rates at successive impacts. The error of the tilt is "
+            "the largest difference from the analytic model at the same time, until either block is beyond its "
+            "unstable point; so late impacts count. A run fails if it ends in an error, gains energy, or leaves its "
+            "place.",
         ),
     )
 
@@ -84,7 +85,7 @@ def _counts(mistakes, harmless):
         Column("mistakes", "mistakes"),
         Column("another outcome, or a run that fails", "lost"),
         Column(f"of the others: e off by more than {TRUSTED:g}", "off"),
-        Column("what does not matter", "harmless"),
+        Column("changes that do not matter", "harmless"),
     )
 
 
@@ -117,7 +118,10 @@ def _outcomes(runs: Sequence[dict[str, Any]]) -> str:
     """Return in words where the outcome is not the model's, or why the run failed, each with its scenes."""
     wrong = [run for run in runs if run["outcome"] != run["expected"]]
     by_words = grouped(
-        wrong, lambda run: f"fails: {run['reason']}" if run["reason"] else f"{run['outcome']} for {run['expected']}"
+        wrong,
+        lambda run: (
+            f"fails: {run['reason']}" if run["reason"] else f"{run['outcome']} where the model {run['expected']}"
+        ),
     )
     places = {
         words: ", ".join(run["scene"].replace(", ", " on ") for run in scenes) for (words,), scenes in by_words.items()
@@ -159,9 +163,9 @@ def _dots(by_engine: dict[str, list[dict[str, Any]]], no_matter: str) -> Figure 
         if name != "lost"
     }
     caption = (
-        "Each mistake in its worst scene, costliest first; last, the script without one. Filled: largest difference of "
-        "the tilt; open: error of restitution at impacts. Cross at the right: another outcome than the model’s, or a "
-        "failed run. Changes that do not matter are on the study’s page."
+        "Each mistake in its worst scene, the costliest first; the script without a mistake comes last. Filled: "
+        "largest difference of the tilt. Open: error of restitution at impacts. Cross at the right: another outcome "
+        "than the model’s, or a failed run. Changes that do not matter are not drawn; the study’s page lists them."
     )
     return figure(charts, caption, keys, keys)
 

@@ -67,14 +67,15 @@ def page(result: Result) -> Page:
                 ),
             ),
             table(
-                f"{settings['scenes']} random scenes under one sine, half of them on bearings. A run is right in what "
-                f"falls, and within {percent(PEAK, 1)} of the peak tilts of blocks that stay upright",
+                f"{settings['scenes']} random scenes under one sine, half of them on bearings. A run is right if the "
+                "same block falls as in the model, and the peak tilts of blocks that stay upright are within "
+                f"{percent(PEAK, 1)}",
                 counts,
                 NAME,
                 COLUMNS["tier"],
                 Column("right [-]", lambda row: f"{row['runs'] - row['differing']} of {row['runs']}"),
                 *ends(counts),
-                Column("differ or fail", "share", percent=True, within="interval"),
+                Column("share that differs or fails", "share", percent=True, within="interval"),
             ),
             _first_falls("The least peak at which the bust or its pedestal falls [g]", ways, HERTZ),
         ),
@@ -155,7 +156,7 @@ def _details(result: Result, counts: Sequence[Row], mountings: Sequence[Row]) ->
     return (
         table("The same runs: median and worst of errors and costs", counts, NAME, *(COLUMNS[name] for name in ERRORS)),
         _first_falls(
-            f"The least peak at which a block falls under {WIDE:g} Hz [g], where nothing is isolated",
+            f"The least peak at which a block falls under a sine of {WIDE:g} Hz [g], without isolation",
             where(mountings, hertz=WIDE, way={*WAYS[:3]}),
             COLUMNS["width"],
         ),
@@ -174,19 +175,19 @@ def _details(result: Result, counts: Sequence[Row], mountings: Sequence[Row]) ->
         missing(result),
         Head("Where runs are not compared"),
         table(
-            f"{len(scenes) - len(compared)} of {len(scenes)} random scenes, and why",
+            f"{len(scenes) - len(compared)} of {len(scenes)} random scenes are not compared, and why",
             causes,
             Column("why", "why"),
             Column("scenes [-]", lambda row: len(row["which"])),
             Column("share", "share", percent=True),
             Column("which", "which"),
         ),
-        f"A motion that is stronger or weaker by {percent(CHANGE, 1)} changes a peak tilt by "
-        f"{number(float(np.median(changes)), 2)} of the slenderness in the median, and by {number(max(changes), 2)} at "
-        f"most, in the {len(changes)} scenes that are compared and in which both blocks stay upright. A run of the "
-        f"model takes {number(float(np.median(costs)), 2)} s of CPU time per simulated second.",
+        f"In {len(changes)} of the compared scenes both blocks stay upright. There, a motion stronger or weaker by "
+        f"{percent(CHANGE, 1)} changes a peak tilt by {number(float(np.median(changes)), 2)} of the slenderness in the "
+        f"median, and by at most {number(max(changes), 2)}. A run of the model takes "
+        f"{number(float(np.median(costs)), 2)} s of CPU time per simulated second.",
         table(
-            "Impacts in random states of such blocks: how often the law of impact has not one answer",
+            "Impacts in random states of such blocks: how often the law of impact has no answer, or a second one",
             where(result.rows, part="unique"),
             *(COLUMNS[name] for name in ("closed", "ground")),
             COLUMNS["runs"].called("states"),
@@ -204,23 +205,23 @@ def _how(settings: dict[str, Any]) -> tuple[str, ...]:
     """Return what was run."""
     spans = {name: f"{low:g} to {high:g}" for name, (low, high) in LIMITS.items()}
     return (
-        "Random scenes, by a fixed seed: a pedestal of 2700 kg/m³, "
-        f"{spans['width']} m wide, as deep, and {spans['height']} m high; a statue of 1500 kg/m³, "
-        f"{spans['share']} times as wide, with tan γ of {spans['tangent']}. One sine of {spans['hertz']} Hz, with "
-        f"{spans['peak']} times the acceleration that lifts the first block. Half of the scenes stand on as many of "
-        f"the Caryatid's bearings as carry their weight, under sines {STRONGER:g} times stronger. Each run lasts "
-        f"{SECONDS:g} s.",
-        f"First impacts: the first {FIRST} of both blocks in the model, without those at the end of a chatter. Each is "
-        "compared with the nearest one of the same block. Errors of tilts are over the slendernesses, of blocks that "
-        "stay upright in both runs. Left out of all solvers are scenes in which the model ends: an impact has no "
-        "answer that keeps the pivots, or a second one, or a block would lift off. So are scenes in which a contact "
-        "pulls, or asks for more friction than engines have, and those in which a change of the motion by "
-        f"{percent(CHANGE, 1)} changes what falls. Time-stepping: Moreau's method for two bodies, in steps of "
-        f"{short(STEP)} s.",
-        f"The bust: {BUST[0]:g} × {BUST[1]:g} m, {BUST[2]:g} kg. Its pedestal: {HEIGHT:g} m high, as deep as wide, "
-        f"{SQUARE * WIDTH**2:g} kg where it is {WIDTH:g} m wide. Fixed: the pedestal moves as what carries it. Glued: "
-        "bust and pedestal are one block. Free: neither. Isolated: the pedestal is fixed to a base of "
-        f"{PLATE:g} kg on {settings['bearings']['count']} bearings, with a secant period of {PERIOD:g} s and "
-        f"{percent(DAMPING)} equivalent damping at {X_MAX:g} m. The model's bearings go on beyond "
-        "that displacement.",
+        "The random scenes are drawn by a fixed seed. The pedestal, of 2700 kg/m³, is "
+        f"{spans['width']} m wide, as deep, and {spans['height']} m high. The statue, of 1500 kg/m³, is "
+        f"{spans['share']} times as wide, with tan γ of {spans['tangent']}. The ground moves by one sine of "
+        f"{spans['hertz']} Hz, with {spans['peak']} times the acceleration that lifts the first block. Half of the "
+        f"scenes stand on as many of the Caryatid's bearings as carry their weight, under sines {STRONGER:g} times "
+        f"stronger. Each run lasts {SECONDS:g} s.",
+        f"First impacts are the first {FIRST} of both blocks in the model, without those at the end of a chatter. Each "
+        "is compared with the nearest one of the same block in the other run. Errors of tilts are over the "
+        "slendernesses, for blocks that stay upright in both runs. For all solvers, scenes are left out in which the "
+        "model ends: an impact has no answer that keeps the pivots, or has a second one, or a block would lift off. "
+        "Also left out are scenes in which a contact pulls or needs more friction than engines have, and those in "
+        f"which a change of the motion by {percent(CHANGE, 1)} changes what falls. Time-stepping is Moreau's method "
+        f"for two bodies, in steps of {short(STEP)} s.",
+        f"The bust measures {BUST[0]:g} × {BUST[1]:g} m and has a mass of {BUST[2]:g} kg. Its pedestal is {HEIGHT:g} m "
+        f"high, as deep as wide, and has {SQUARE * WIDTH**2:g} kg where it is {WIDTH:g} m wide. Fixed: the pedestal "
+        "moves with what carries it. Glued: bust and pedestal are one block. Free: neither fixed nor glued. Isolated: "
+        f"the pedestal is fixed to a base of {PLATE:g} kg on {settings['bearings']['count']} bearings, with a secant "
+        f"period of {PERIOD:g} s and {percent(DAMPING)} equivalent damping at {X_MAX:g} m. In the model the bearing "
+        "law continues beyond that displacement.",
     )
