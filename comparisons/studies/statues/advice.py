@@ -27,15 +27,15 @@ def advised_levels(result: Result) -> tuple[Table, ...]:
     statues = len({row["index"] for row in where(result.rows, part="level", draw=2)})
     return (
         table(
-            f"Level to use, by {statues} drawn statues. Kept: the outcome is the model's, and peak tilt (over the "
-            "slenderness) and base displacement are within the accuracy. ✓: at most "
-            f"{percent(SECOND, 1)} of those that stay upright miss it, and no outcome changes away from a boundary. ✗: "
-            "more, at the finest level. CPU time per simulated second: median (range)",
+            f"Which level to use, tested on {statues} drawn statues. An accuracy is kept if the outcome is the model's "
+            "and the errors of peak tilt (over the slenderness) and base displacement are within it. ✓: at most "
+            f"{percent(SECOND, 1)} of the statues that stay upright miss it, and no outcome changes away from an "
+            "outcome boundary. ✗: the level shown fails this test",
             [row for accuracy in ASKED for row in _advised_rows(result, accuracy)],
             Column("accuracy, kept on", lambda row: f"{percent(row['accuracy'], 1)}: {_kept(row)}"),
             NAME,
             LEVEL,
-            Column("CPU time [ms]", lambda row: _cost_in_words(row["cpu"])),
+            COST,
             Column("command, for example", lambda row: row["command"].replace("SCENE", EXAMPLE)),
         ),
     )
@@ -51,7 +51,8 @@ def at_a_glance(result: Result) -> str:
         kept = listed([f"{_kept(row)} ({row['engine']}, {setting_of(row)})" for row in rows])
         near = listed([str(row["missed_near"]) for row in rows])
         sentences.append(
-            f"{percent(accuracy, 1)} is kept on {kept} drawn statues ({near} of the others: near a boundary)."
+            f"{percent(accuracy, 1)} accuracy is kept on {kept} of the drawn statues that stay upright. Of the others, "
+            f"{near} are near an outcome boundary."
         )
     return " ".join(sentences)
 
@@ -70,26 +71,29 @@ def level_tables(result: Result) -> tuple[Table, ...]:
     upright = len({row["index"] for row in second if row["model_outcome"] != FALLS})
     return (
         table(
-            f"Which level to use, of tuned variants, on {statues} drawn statues. An accuracy is kept if the outcome is "
-            "the model's and both errors are within it: of peak tilt over slenderness, and of peak base displacement. "
-            f"The rule was fixed before. The coarsest level that misses at most {percent(FIRST, 1)} on a first draw is "
-            f"chosen; on this second one it passes if it misses at most {percent(SECOND, 1)} of the {upright} statues "
-            "that stay upright, and changes no outcome away from an outcome boundary of the model. CPU times go by "
-            "the machine",
+            f"Which level of a tuned variant to use, tested on {statues} drawn statues. An accuracy is kept if the "
+            "outcome is the model's and the errors of peak tilt (over the slenderness) and of peak base displacement "
+            "are within it. The rule was fixed in advance. On a first draw, the coarsest level is chosen that misses "
+            f"the accuracy on at most {percent(FIRST, 1)} of the statues that stay upright. On this second draw it "
+            f"passes if it misses on at most {percent(SECOND, 1)} of the {upright} that stay upright and changes no "
+            "outcome away from an outcome boundary of the model. CPU times depend on the machine",
             [row for accuracy in ACCURACIES for row in _advised_rows(result, accuracy)],
             Column("accuracy", lambda row: percent(row["accuracy"], 1)),
             NAME,
             LEVEL,
             Column("passes", lambda row: row["verdict"]),
-            Column("missed (at most, 95 %), of these near a boundary", lambda row: _missed_in_words(row, bound=True)),
+            Column(
+                "missed (share; 95 % upper limit), of these near a boundary",
+                lambda row: _missed_in_words(row, bound=True),
+            ),
             OTHER,
             Column("overturning boundaries within it", lambda row: row["edges"]),
             COST,
             Column("command", "command"),
         ),
         table(
-            "All levels on the same statues: how many that stay upright miss each accuracy, near an outcome boundary "
-            "or not",
+            "All levels on the same statues: on how many of those that stay upright each accuracy is missed, near an "
+            "outcome boundary or not",
             _all_rows(result),
             NAME,
             LEVEL,
@@ -111,13 +115,13 @@ def alarms(result: Result) -> Table:
             counts[changed(row) or numbers, row["warned"]] += 1
         rows.append({"draw": draw, "runs": len(runs), "counts": counts})
     return table(
-        f"Runs that say themselves that they are too coarse. Missed: another outcome, or off by more than "
-        f"{percent(ACCURACIES[0], 1)}. The limit was chosen on the first draw",
+        "Do engines warn that a run is too coarse? A run misses the accuracy if its outcome is another or its peaks "
+        f"are off by more than {percent(ACCURACIES[0], 1)}. The limit of the warning was chosen on the first draw",
         [row for row in rows if row["runs"]],
         Column("draw", "draw"),
         Column("runs that did not fail", "runs"),
-        Column("false alarms, of the runs that keep it", lambda row: _alarms_in_words(row["counts"], False)),
-        Column("no warning, of the runs that miss it", lambda row: _alarms_in_words(row["counts"], True)),
+        Column("false alarms, of runs that keep the accuracy", lambda row: _alarms_in_words(row["counts"], False)),
+        Column("no warning, of runs that miss it", lambda row: _alarms_in_words(row["counts"], True)),
     )
 
 
@@ -172,7 +176,7 @@ def _advised_rows(result, accuracy):
 def _verdict(counts: Mapping[str, Any], held: bool) -> str:
     """Return whether a level passes, in words."""
     words = "yes" if holds(counts, SECOND) else "no"
-    return words if held else f"no level held on the first draw; this, the finest: {words}"
+    return words if held else f"{words}; the finest level, as none held on the first draw"
 
 
 def _missed_at(accuracy, row):

@@ -19,6 +19,7 @@ from ...plotting.figures import (
     LARGEST,
     MEDIAN,
     RATINGS,
+    SUBJECTS,
     as_it_comes,
     beside,
     failures,
@@ -61,7 +62,7 @@ def page(result: Result) -> Page:
     return Page(
         _title(result, counts),
         (
-            "Wherever a run is shown that differs from the analytic model, it is marked as differing.",
+            "Every run shown that differs from the analytic model is marked as differing.",
             *_friction_sentences(leading(where(counts, friction=DRAWN), settings["variants"])),
             *under_jumps(result),
             *(
@@ -92,17 +93,17 @@ def _summary(result, counts):
                 counts,
                 NAME,
                 WRONG,
-                "Share of runs that differ from the analytic model or fail, with 95 % Wilson intervals. Open "
-                "marks: defaults; arrowheads: none.",
+                f"Panels “{NONE}” and “{DRAWN}”: share of runs that differ from the analytic model or fail, with 95 % "
+                "Wilson intervals. Open marks: defaults. Arrowhead: no such run.",
                 Axis(WRONG.head, LEAST, 1.0, "log", TICKS),
                 panel="friction",
                 opened=as_it_comes,
             ),
         ),
         table(
-            "Engines. A run is right in the outcome, the time of a fall and the number of impacts, and within "
-            f"{percent(PEAK, 1)} of peaks and slip, {RESTITUTION_LIMIT:g} of the restitution and 10 % of an impact's "
-            "loss",
+            "How runs end in the engines. A run is right if its outcome, the time of a fall and the number of impacts "
+            f"are those of the model, and if peaks and slip are within {percent(PEAK, 1)}, the restitution within "
+            f"{RESTITUTION_LIMIT:g} and the loss at an impact within 10 % of the model's",
             counts,
             NAME,
             COLUMNS["tier"],
@@ -110,11 +111,11 @@ def _summary(result, counts):
             Column("right [-]", "right"),
             *ends(counts),
             Column("right, of those not left out", "share", percent=True, within="share_within"),
-            Column("near an outcome boundary, and beyond it", "{beyond} of {edge}"),
-            Column("error of the slip, median", "slip_median", percent=True),
-            Column("worst", "slip_worst", percent=True),
-            Column("error of restitution by states at slipping impacts, rms [-]", "slipping"),
-            COLUMNS["lost"].called("of these missed"),
+            Column("near an outcome boundary: differ by more than the model itself", "{beyond} of {edge}"),
+            Column("median error of the slip", "slip_median", percent=True),
+            Column("worst error of the slip", "slip_worst", percent=True),
+            Column("rms error of restitution by states at slipping impacts [-]", "slipping"),
+            COLUMNS["lost"].called("slipping impacts missed"),
             Column("CPU time over the model's [-]", lambda row: row["cpu"] and f"{number(row['cpu'], 2)} ×"),
         ),
         table(
@@ -133,7 +134,7 @@ def _details(result, cells, settings, totals):
     """Parts that only the study's own page shows."""
     return (
         table(
-            "Runs that differ, without the variants “defaults”",
+            "Runs that differ, without those with defaults",
             [row for row in _runs(result) if row["class"] == "differs" and row["tier"] != "defaults"],
             NAME,
             COLUMNS["index"],
@@ -194,9 +195,9 @@ def _friction_sentences(rows):
         yield (
             "With friction, engines were run only in scenes where the block actually slides. All measures are right "
             f"in {each(lambda row: '{right} of {runs}'.format(**row))} runs. The outcome is wrong or missing in "
-            f"{each(lambda row: row['runs'] - row['alike'])}. At impacts with slip, restitution by states is off by "
-            f"{each(lambda row: number(row['slipping'], 2))} (rms). The limit for a trusted engine, {TRUSTED:g}, "
-            "applies to impacts without slip."
+            f"{each(lambda row: row['runs'] - row['alike'])} runs. At impacts with slip, the rms error of restitution "
+            f"by states is {each(lambda row: number(row['slipping'], 2))}. The limit for a trusted engine, "
+            f"{TRUSTED:g}, applies to impacts without slip."
         )
 
 
@@ -310,8 +311,8 @@ def _sliding(rows):
         Column(f"{words}, of those {of}", partial(_share_in_words, share=s)) for s, (words, _, of) in SHARES.items()
     )
     return table(
-        "The analytic model: random statues with a friction of 0.2 to 0.8 at rest under a motion; with 95 % Wilson "
-        "intervals",
+        "What sliding changes in the analytic model: random statues with a friction coefficient of 0.2 to 0.8, at rest "
+        "when the motion begins. Shares with 95 % Wilson intervals",
         rows,
         Column("support", "name"),
         COLUMNS["runs"],
@@ -365,30 +366,30 @@ def _how(result: Result) -> tuple[str, ...]:
     low, high = settings["peak"]
     limits = settings["range"].replace("J_O/(m R^2)", "inertia about a corner over m R²")
     return (
-        f"Without friction: {settings['scenes']} scenes drawn at random (seed {result.provenance['seed']}, derived "
-        f"from the commit): {limits}; released or under a pulse, until the outcome is decided. "
-        f"{settings['below_range']} whose peak tilt stays below the range are not run. With friction, drawn evenly: "
-        f"{settings['sliders']} scenes at rest, on rigid ground or on bearings. (No motion reaches a block on a base "
-        f"without bearings.) Half of the motions are pulses, a quarter synthetic, a quarter recorded ({recorded}), "
-        f"each times a factor: its peak is {low:g} to {high:g} times g tan γ. {percent(settings['vertical'])} have a "
-        f"vertical component, {number(settings['ratio'], 2)} times the horizontal peak. The shares depend on how the "
-        "scenes are drawn.",
-        "Without sliding: the same scene without friction, whose block turns about corners that never slip. It needs "
-        "more than the friction where the demand |H|/N exceeds it before any last fall, or N falls to 0. Undecided: "
-        "the base goes on swinging, so the end is not certain. Errors of the slip are relative, for blocks that "
-        "stay upright; a slip too small to count is taken as 0.005 R. CPU time is that of the stepping over that of "
-        "the model’s integration, median over scenes.",
+        f"Without friction, {settings['scenes']} scenes are drawn at random (seed {result.provenance['seed']}, derived "
+        f"from the commit) from this range: {limits}. The block is released or stands under a pulse; a run lasts until "
+        f"its outcome is decided. {settings['below_range']} scenes whose peak tilt stays below the range are not run. "
+        f"With friction, {settings['sliders']} scenes are drawn evenly, at rest, on rigid ground or on bearings. (No "
+        "motion reaches a block on a base without bearings.) Half of the motions are pulses, a quarter are synthetic "
+        f"and a quarter recorded ({recorded}). Each is scaled to a peak of {low:g} to {high:g} times g tan γ. "
+        f"{percent(settings['vertical'])} have a vertical component with {number(settings['ratio'], 2)} times the "
+        "horizontal peak. All shares depend on how the scenes are drawn.",
+        "“Without sliding” is the same scene without a friction coefficient, in which the block turns about corners "
+        "that never slip. It needs more than the friction if its demand |H|/N exceeds the coefficient before a final "
+        "fall, or if N falls to 0. A run is undecided if the base goes on swinging, so that the end is not certain. "
+        "Errors of the slip are relative, for blocks that stay upright; a slip too small to count is taken as 0.005 R. "
+        "The ratio of CPU times is that of an engine’s stepping to the model’s integration, as the median over scenes.",
         f"Engines run the first {len(scenes)} scenes whose friction demand exceeds the friction. Only the main "
-        f"variants of subject engines run all of them; other variants run one in {settings['fewer']}. Left out of "
-        "all engines: scenes whose normal force falls to 0 without friction, whose friction demand no contact "
-        "provides, or which are near an outcome boundary (a change by 10⁻⁴, of the friction too, makes such a "
-        "difference in the model). “Beyond it” counts runs of such scenes that fail, or differ by more than such "
-        "changes do in the model.",
-        f"Levels: statues of two draws (seeds {SEEDS[0]} and {SEEDS[1]}), from the same range. They lift by at least "
-        "the least tilt of the range, and the model holds. Half of them stand under recorded motions (synthetic ones "
-        "where none are at hand), half under pulses; half have a friction.",
-        f"Boundaries: those of {len(where(result.rows, part='drawn edge'))} of the statues, at rest. Shapes of "
-        f"pulses take turns; frequencies are drawn from {FREQUENCY[0]:g} to {FREQUENCY[1]:g} times the rocking "
-        f"frequency. The lowest boundary is taken if no other one is nearer than {percent(APART, 1)} and the block "
-        "is pressed on its base.",
+        f"variants of {SUBJECTS} run all of them; other variants run one in {settings['fewer']}. For all engines, "
+        "scenes are left out whose normal force falls to 0 without friction, whose friction demand no contact "
+        "provides, or which are near an outcome boundary. A scene is near a boundary if a change by 10⁻⁴, of the "
+        "friction too, makes such a difference in the model. A column counts the runs of such scenes that fail, or "
+        "differ by more than such changes make the model differ.",
+        f"Levels are tested on statues of two draws (seeds {SEEDS[0]} and {SEEDS[1]}) from the same range. They lift "
+        "by at least the least tilt of the range, and the model holds for them. Half of them stand under recorded "
+        "motions (synthetic ones where none are at hand), half under pulses; half have a friction coefficient.",
+        f"Boundaries are those of {len(where(result.rows, part='drawn edge'))} of the statues, at rest. The shapes of "
+        f"the pulses take turns; their frequencies are drawn from {FREQUENCY[0]:g} to {FREQUENCY[1]:g} times the "
+        "rocking frequency. The lowest boundary is taken, provided that no other one is nearer than "
+        f"{percent(APART, 1)} and that the block is pressed on its base.",
     )

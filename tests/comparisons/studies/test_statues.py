@@ -270,7 +270,7 @@ def test_the_second_draw_says_whether_an_advised_level_passes():
     coarse, unreached, _ = first.rows
     assert coarse[2:6] == ["stiffness = 10⁹ N/m", "no", "3 of 40 (7.5 %; 20 %), 1", "0 of 40 (0)"]
     assert coarse[-1].endswith("--engine exudyn --set stiffness=1e+09")
-    assert unreached[3].startswith("no level held") and unreached[3].endswith("no")
+    assert unreached[3].startswith("no;") and unreached[3].endswith("none held on the first draw")
     assert [row[2] for row in second.rows] == ["3 of 40 (7.5 %)", "0 of 40 (0 %)"]
     (short,) = advised_levels(made)
     assert [row[0] for row in short.rows] == ["1 %: 37 of 40 ✗", "0.1 %: 0 of 40 ✗"]
