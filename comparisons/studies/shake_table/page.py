@@ -9,7 +9,7 @@ import numpy as np
 from ...execution.results import Result
 from ...metrics.statistics import EQUAL, TOO_FEW, wilson
 from ...plotting.charts import Axis, Chart, curve, figure, key_of
-from ...plotting.figures import as_it_comes, ranks
+from ...plotting.figures import SUBJECTS, as_it_comes, ranks
 from ...plotting.glance import Endings, Glance
 from ...plotting.parts import Figure, Head, Judgement, Page, Table, grouped, table, where
 from ...plotting.wording import equal_mark, listed
@@ -41,8 +41,8 @@ def agreement(specimens: Sequence[dict[str, Any]], right: dict[str, np.ndarray])
         charts.append(chart)
     keys = {name: key_of(name, look=look) for name, look in looks.items()}
     caption = (
-        "Right answers of the model over its slenderness, as it is and with its restitution times a factor. Nothing is "
-        "fitted; sums over all tests."
+        "Right answers of the model over its slenderness, with its own restitution and with that times a factor. They "
+        "are sums over all tests; nothing is fitted."
     )
     return figure(charts, caption, keys, keys) if charts else None
 
@@ -69,15 +69,15 @@ def sentence(result: Result, engines: Sequence[dict[str, Any]]) -> str:
         fits = [count for row in where(result.rows, part="fit", change=AS_IT_IS) for count in row["neighbours"]]
         first, second, *_ = result.settings["specimens"][0]["grid"]
         words.append(
-            f"Tuned engines differ from the model in {listed(counts)} runs. A slenderness "
+            f"Tuned engines differ from the model in {listed(counts)} runs. In the model itself, a slenderness "
             f"{number(math.degrees(second - first), 1)} deg smaller or larger changes {min(fits)} to {max(fits)} of "
-            f"{len(result.settings['tests'])} outcomes of the model itself."
+            f"{len(result.settings['tests'])} outcomes."
         )
     if unsafe := [row for row in where(engine_rows, tier="defaults") if _unsafe(row)]:
         chances = listed([f"{number(row['p_records'], 2)} in {row['engine']}" for row in unsafe])
         words.append(
-            "With defaults, engines err on the unsafe side: they miss more overturnings than they add (p by record: "
-            f"{chances})."
+            "With defaults, engines err on the unsafe side: they miss more overturnings than they add (sign test by "
+            f"record: p = {chances})."
         )
     return " ".join(words)
 
@@ -91,18 +91,18 @@ def at_a_glance(result: Result) -> str:
     held = where(result.rows, part="score", judged=BY_RECORD)
     if not (model := where(held, forecast=MODEL)):
         return ""
-    rivals = {CURVE: "a curve in PGA and PGV", THRESHOLD: "one threshold of PGV", FREQUENT: FREQUENT}
-    rivals_right = [f"{_right_in_words(where(held, forecast=name))} ({words})" for name, words in rivals.items()]
+    rivals = {CURVE: "a curve in PGA and PGV predicts", THRESHOLD: "a threshold of PGV,", FREQUENT: f"{FREQUENT},"}
+    rivals_right = [f"{words} {_right_in_words(where(held, forecast=name))}" for name, words in rivals.items()]
     same_rule = where(result.rows, part="score", judged=IN_SAMPLE, forecast=ONE)
     engines = grouped(where(result.rows, part="engine", specimen=set(specimens)), "engine", "variant").values()
-    fitted = [f"{_right_in_words(rows)} ({name_of(rows[0])})" for rows in engines]
+    fitted = [f"{name_of(rows[0])}, {_right_in_words(rows)}" for rows in engines]
     words = (
-        f"held out by record, the model predicts {_right_in_words(model)} of {model[0]['size']} outcomes on a shake "
-        f"table ({listed(specimens)}); right are also {listed(rivals_right)}."
+        f"on records held out of its fit, the model predicts {_right_in_words(model)} of {model[0]['size']} "
+        f"outcomes on a shake table ({listed(specimens)}). Judged in the same way, {'; '.join(rivals_right)}."
     )
     if pairs := where(result.rows, part="paired", forecast=MODEL, beside=CURVE):
         words += f" {_against_curve((where(pairs, specimen=ALL) or pairs)[-1], sum(row['size'] for row in model))}"
-    by_one_rule = listed([f"{_right_in_words(same_rule)} (the model)", *fitted])
+    by_one_rule = "; ".join([f"model, {_right_in_words(same_rule)}", *fitted])
     return f"{words} With one slenderness fitted to all tests: {by_one_rule}."
 
 
@@ -116,7 +116,7 @@ def _against_curve(pair, size):
     low, high = pair["more_interval"]
     words = "better" if low > 0 else "worse" if high < 0 else "not shown to be better"
     more = f"{pair['more_right']} more of {size} (95 % interval {low:.0f} to {high:.0f})".replace("-", "−")
-    return f"It is {words} than the curve: it is right in {more}."
+    return f"The model is {words} than the curve: it is right in {more}."
 
 
 def together(result: Result) -> list[dict[str, Any]]:
@@ -137,8 +137,9 @@ def near_boundaries(result: Result) -> str:
     if not rows:
         return ""
     return (
-        f"With runs near an outcome boundary, tuned engines miss {missed} overturnings, add {added} and fail {failed} "
-        f"times in {size} runs. Of these {missed + added + failed}, {on_edge} are in the {near} runs near a boundary."
+        f"Runs near an outcome boundary included, tuned engines miss {missed} overturnings, add {added} and fail "
+        f"{failed} times in {size} runs. Of these {missed + added + failed} runs, {on_edge} are among the {near} near "
+        "a boundary."
     )
 
 
@@ -164,12 +165,12 @@ def bounds(result: Result) -> str:
     count = len(settings["tests"])
     words = (
         f"{settings['campaign'].capitalize()}: {count} tests under {settings['records']} records at many scales; "
-        f"{listed([str(specimen) for specimen in settings['overturned']])} overturned ({names})."
+        f"{listed([str(specimen) for specimen in settings['overturned']])} ended in overturning ({names})."
     )
     thresholds = where(result.rows, part="score", forecast=EACH)
     model = where(result.rows, part="score", forecast=MODEL, judged=BY_RECORD)
     words += (
-        " A PGA threshold for each record, fitted to the same tests, is right in "
+        " A PGA threshold of its own for each record, fitted to the same tests, is right in "
         f"{listed([str(row['right']) for row in thresholds])}"
     )
     not_by_chance = all(
@@ -178,10 +179,10 @@ def bounds(result: Result) -> str:
     )
     words += ". Most of the model’s errors are therefore its own, not chance." if not_by_chance else "."
     if settings["agree"] is not None:
-        words += f" The two blocks differ in shape and have the same outcome in {settings['agree']}."
+        words += f" The two blocks, which differ in shape, have the same outcome in {settings['agree']} tests."
     return words + (
-        " The model is planar; the block is not. The mean and the spread of its slenderness are fitted, and judged on "
-        "records not used in the fit."
+        " The model is planar; the block is not. The mean and the spread of the model’s slenderness are fitted, and "
+        "the model is judged on records not used in the fit."
     )
 
 
@@ -200,19 +201,20 @@ def not_shown(result: Result) -> tuple[str, str]:
     boulders = bool(result.settings["cite"])  # the published campaign; nothing more is known of one's own
     slopes = " with five slopes, which was added when a referee asked for it" if boulders else " with five slopes"
     stone = (
-        ", of one kind of stone, on one axis. The model’s block is symmetric; a boulder has another angle to either "
-        "side, stands on three points, may twist, walk and wear. The spread stands for all of this. It was brought in "
-        "after a prototype on the same tests, so no test is untouched by that choice."
+        ", with one kind of stone, shaken along one axis. The model’s block is symmetric. A boulder has a different "
+        "slenderness to either side, stands on three points, and may twist, walk and wear. The spread of the "
+        "slenderness stands for all of this. It was introduced after a prototype on the same tests, so no test is "
+        "untouched by that choice."
     )
     granite = " Restitution and friction of granite on the table were not measured." if boulders else ""
     return (
-        f"What this shows: of {runs} outcomes the model is right in {more_right(pairs[last, THRESHOLD])} more than a "
-        f"threshold of PGV, and in {more_right(pairs[last, CURVE])} more than a curve in PGA and PGV{slopes}. That "
-        "curve holds for these blocks alone. Model and curve joined are compared with the curve above.",
+        f"What this shows: of {runs} outcomes the model predicts {more_right(pairs[last, THRESHOLD])} more than a "
+        f"threshold of PGV, and {more_right(pairs[last, CURVE])} more than a curve in PGA and PGV{slopes}. The curve "
+        "is valid for these blocks alone. A table above compares the curve joined with the model to the curve alone.",
         f"What it does not show: it is one campaign{stone if boulders else '.'} Outcomes cannot separate slenderness "
-        "from restitution: the fitted slenderness stands for all that the model lacks. Intervals count records, "
-        "hold the fits fixed, are not adjusted for their number, and say nothing of records unlike these. The "
-        "slenderness of the engines’ runs is the one at which the model is right most often, which favours the "
+        "from restitution: the fitted slenderness stands for all that the model lacks. The intervals count records "
+        "and hold the fits fixed. They are not adjusted for the number of comparisons, and say nothing about records "
+        "unlike these. The engines run with the slenderness at which the model is right most often, which favours the "
         f"model over them.{granite}",
     )
 
@@ -222,17 +224,19 @@ def _left_out(settings):
     missing, names = settings["missing"], listed([item["name"] for item in settings["specimens"]])
     if not missing["tests"]:
         return ""
-    words = f"{missing['tests']} tests have no motion at hand and are left out"
+    words = f"{missing['tests']} tests are left out because their motion is not at hand. "
     if missing["overturned"]:
         count = len(settings["tests"])
         shares = [percent(item / missing["tests"]) for item in missing["overturned"]]
         others = [percent(item / count) for item in settings["overturned"]]
-        words += f": {listed(shares)} of them overturned ({names}), of the others {listed(others)}"
-    if missing["ratios"]:
         words += (
-            f"; mean PGV/PGA {number(missing['ratios'][0], 2)} s, of the others {number(missing['ratios'][1], 2)} s"
+            f"Of these tests {listed(shares)} ended in overturning ({names}), of the tests that are used "
+            f"{listed(others)}. "
         )
-    return f"{words}. "
+    if missing["ratios"]:
+        first, second = (number(ratio, 2) for ratio in missing["ratios"])
+        words += f"The mean PGV/PGA is {first} s in the tests left out and {second} s in the others. "
+    return words
 
 
 def how(result: Result) -> tuple[str, ...]:
@@ -251,14 +255,14 @@ def how(result: Result) -> tuple[str, ...]:
         f" (published at {settings['published']:g} Hz; resampled by the makers of these files)" if resampled else ""
     )
     speed = f"{settings['model_runs']:,} runs of the model took {short(settings['cpu_seconds'])} s of CPU time"
-    rigid = f"{_left_out(settings)}Rigid planar block on rigid ground; {blocks}."
+    rigid = f"{_left_out(settings)}The model is a rigid planar block on rigid ground; {blocks}."
     intervals = (
-        f"Intervals: percentiles of a bootstrap over records (seed {result.provenance['seed']}). “Fitted to every "
-        "other test” may have a record on both sides."
+        f"Intervals are percentiles of a bootstrap over records (seed {result.provenance['seed']}). With “fitted to "
+        "every other test”, tests under one record may be in the fit and among those judged."
     )
     runs = (
-        f"Subject engines run all tests, other engines one in {settings['others']}, at the slenderness that is right "
-        "most often in the model. A failed run counts as wrong and as differing."
+        f"All tests are run in {SUBJECTS}, one in {settings['others']} in other engines, with the slenderness at which "
+        "the model is right most often. A failed run counts as wrong and as differing."
     )
     if not settings["cite"]:
         return (
@@ -268,12 +272,12 @@ def how(result: Result) -> tuple[str, ...]:
         )
     return (
         f"Data: {settings['cite']}. Only sums over at least five tests are stored or shown.",
-        f"Motions: the measured acceleration of the table at {steps}{published}, less the median of the first second. "
-        f"{rigid} The moment of inertia is the mean about the two horizontal axes of the mesh. {speed}.",
-        f"{intervals} PGA and PGV are as the campaign states them for the motion sent to the table; “of the table” "
-        f"means values of its measured acceleration above {CORNER} Hz. The other specimen’s outcome is that under "
-        "the same motion. The setting of the authors’ discrete elements is chosen in the same way; none was fitted "
-        "to these outcomes as the slenderness is.",
+        f"Motions: the measured acceleration of the table at {steps}{published}, minus the median of its first second. "
+        f"{rigid} The moment of inertia is the mean of those about the two horizontal axes of the mesh. {speed}.",
+        f"{intervals} PGA and PGV are those that the campaign states for the motion sent to the table; “of the table” "
+        f"means values of its measured acceleration above {CORNER} Hz. “The other specimen” predicts the outcome that "
+        "the other boulder had under the same motion. Of the authors’ settings for discrete elements, the one is taken "
+        "that is right most often on the records of the fit; none was fitted to these outcomes as the slenderness is.",
         runs,
     )
 
@@ -303,7 +307,7 @@ def page(result: Result) -> Page:
         more=(
             bounds(result),
             _right_of_engines(engines),
-            Head("Each record held out in turn"),
+            Head("Each record held out of the fit in turn"),
             _scores("Share of right answers and Brier score (smaller is better), with 95 % intervals by record", main),
             Head("Compared in pairs"),
             _pairs(result),
@@ -312,7 +316,7 @@ def page(result: Result) -> Page:
             agreement(settings["specimens"], _by_restitution(result)),
             _fits(result),
             _scores(
-                "Judged otherwise, and by measures of the table’s own acceleration",
+                "The same predictions judged on other tests, and predictions from the table’s measured acceleration",
                 [row for row in scores if row not in main],
             ),
             *not_shown(result),
@@ -355,8 +359,9 @@ def _pairs(result):
         row for members in grouped(where(result.rows, part="paired"), "forecast", "beside").values() for row in members
     ]
     return table(
-        "Paired: how many more answers of the first are right, by how much its Brier score is smaller (a yes or no "
-        "is a probability of 1 or 0), with 95 % intervals by record, and which is right where the two disagree",
+        "Predictions in pairs, the first compared with the second: how many more answers are right and by how much the "
+        "Brier score is smaller, with 95 % intervals by record; and how often the first is right where the two "
+        "disagree. For the Brier score, a yes or no is a probability of 1 or 0",
         rows,
         FORECAST,
         COLUMNS["beside"],
@@ -370,7 +375,7 @@ def _pairs(result):
 def judgements(result: Result) -> tuple[Judgement, ...]:
     """Judge whether engines end as the model does under a table's motions, by (engine, variant)."""
     marks = {(row["engine"], row["variant"]): equal_mark(tally_of(row)) for row in together(result)}
-    heading = "outcomes that differ under shake-table motions, near outcome boundaries too"
+    heading = "runs that differ or fail under shake-table motions, near outcome boundaries too"
     return (Judgement(heading, marks),) if marks else ()
 
 
@@ -438,8 +443,8 @@ def _bars(result: Result, engines: Sequence[dict[str, Any]]) -> Figure | None:
         rows,
         Column("predicted by", "name"),
         SHARE,
-        "Share of outcomes predicted, with 95 % intervals by record. “model, as engines” and the engines use one "
-        "slenderness, fitted to all tests. All others are judged on held-out records. A failed run is not right.",
+        "Share of outcomes predicted, with 95 % intervals by record. The engines and “model, as engines” use one "
+        "slenderness, fitted to all tests. All others are judged on held-out records. A failed run counts as wrong.",
         Axis(SHARE.head, first / 10, 1.0, ticks=tuple((tenth / 10, str(10 * tenth)) for tenth in marked)),
         panel="specimen",
         rules=rules,
@@ -455,10 +460,10 @@ def _table_of_engines(result, engines):
     judged = wilson(0, result.settings["records"])[1] < EQUAL  # otherwise no engine can be equal, whatever it does
     equal = Column("equal", lambda row: "inconclusive" if row["equal"] == TOO_FEW else row["equal"])
     return table(
-        "Engines and the model at the same slenderness. At most: the upper end of the 95 % interval (Wilson, by "
-        f"record). {'Equal: at most 5 %. ' if judged else ''}In brackets: records most of whose differences go "
-        "that way. Last column: differences among the runs in which a change of the scene by 10⁻⁴ changes the model’s "
-        "own outcome or time of a fall",
+        "Engines against the model at the same slenderness. At most: the upper end of the 95 % interval (Wilson, by "
+        f"record). {'Equal: at most 5 %. ' if judged else ''}In brackets: the number of records on which most "
+        "differences go that way. Last column: differing runs, of those in which a change of the scene by 10⁻⁴ changes "
+        "the model’s own outcome or the time of its fall",
         where(engines, specimen=ALL) or engines,
         NAME,
         COLUMNS["tier"],
@@ -469,14 +474,14 @@ def _table_of_engines(result, engines):
         Column("added", "{only_b} ({records_b})"),
         COLUMNS["p_records"],
         COLUMNS["failed"],
-        Column("the model’s own end is sensitive", "{on_edge} of {near}"),
+        Column("differing near an outcome boundary", "{on_edge} of {near}"),
     )
 
 
 def _right_of_engines(engines):
     return _by_specimen(
-        "Engines and the model at the same slenderness, beside what was measured; peak tilt: median over the tests in "
-        "which both rock and stay upright",
+        "Engines, and the model at the same slenderness, against the measured outcomes. Ratio of peak tilts: median "
+        "over the tests in which the block rocks and stays upright in both",
         [row for row in engines if row["specimen"] != ALL],
         (NAME,),
         Column("outcomes that differ", lambda row: f"{apart(row)} of {row['size']}"),
@@ -494,12 +499,11 @@ def _fitted(result):
         angles = [number(math.degrees(row[name]), 2) for name in ("slenderness", "centre", "spread")]
         (specimen,) = where(result.settings["specimens"], name=row["specimen"])
         fits.append(
-            f"{row['specimen']}: {angles[0]} deg by itself, {angles[1]} deg with a spread of {angles[2]} deg "
+            f"{row['specimen']}: {angles[0]} deg alone, or {angles[1]} deg with a spread of {angles[2]} deg "
             f"({specimen['note']})."
         )
     return (
-        "This is the one exception to the rule that no constant is fitted, because nobody knows on which points a "
-        "block stands. "
+        "This is the only constant of the project that is fitted, because nobody knows on which points a block stands. "
         "Slenderness that fits all tests best: " + " ".join(fits)
     )
 
@@ -516,8 +520,8 @@ def _degrees(name):
 
 def _fits(result):
     return _by_specimen(
-        "The model with one thing changed. Slenderness by itself, and mean and spread, are fitted to all tests; right "
-        "answers and Brier score are held out by record",
+        "The model with one thing changed. The slenderness alone, and its mean and spread, are fitted to all tests; "
+        "right answers and Brier score are those on held-out records",
         where(result.rows, part="fit"),
         (CHANGE,),
         Column("slenderness [deg]", _degrees("slenderness")),

@@ -141,8 +141,8 @@ def equal_cost_tables(result: Result) -> list[Table | None]:
 
     return [
         table(
-            "CPU time per simulated second [ms] (over the model’s) of the cheapest level that, as all finer ones, "
-            f"keeps an error of {percent(error, 1)}",
+            "CPU time per simulated second [ms] (over the model’s) of the cheapest level whose error, like that of all "
+            f"finer levels, is at most {percent(error, 1)}",
             [{"name": name, "costs": by_place} for name, by_place in costs.items()],
             Column("solver", "name"),
             *(cell(place, error) for place in places),
@@ -163,7 +163,7 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
         if name in {NAME.of(variant) for variant in result.settings["variants"]}:
             mark = Mark(f"{number(ratio, 2)} ×", "none", value=ratio) if ratio else NOT_REACHED
             marks[tuple(pair)] = Mark(APART, "none", apart[pair[0]]) if ratio and pair[0] in apart else mark
-    heading = f"CPU time over the analytic model's at {percent(ASKED, 1)} of peak tilt, isolated rocking"
+    heading = f"CPU time over the analytic model's for a peak tilt within {percent(ASKED, 1)}, isolated rocking"
     return (Judgement(heading, marks, COST),) if marks else ()
 
 
@@ -254,17 +254,20 @@ def at_a_glance(result: Result) -> str:
     over = listed([number(cost / model, 2) for _, cost, model in costs])
     alike = max(cost for _, cost, _ in costs) <= noise(result) * min(cost for _, cost, _ in costs)
     words = (
-        f"a peak tilt within {percent(ASKED, 1)} of the slenderness takes tuned engines {engine_costs} of CPU time per "
-        f"simulated second, and the model {number(1e3 * costs[0][2], 2)} ms: {over} times less."
+        f"for a peak tilt within {percent(ASKED, 1)} of the slenderness, tuned engines take {engine_costs} of CPU time "
+        f"per simulated second. The analytic model takes {number(1e3 * costs[0][2], 2)} ms, {over} times less."
     )
     if alike and len(costs) > 1:
-        words += f" The engines cost the same: a factor of {number(noise(result), 2)} is not distinguished."
+        words += (
+            " The engines do not differ in cost: the measured times do not distinguish costs within a factor of "
+            f"{number(noise(result), 2)}."
+        )
     scripts = [
-        f"{number(1e3 * row['cpu_per_second'], 2)} ms with an error of {percent(row['error'])} ({row['engine']})"
+        f"{number(1e3 * row['cpu_per_second'], 2)} ms ({row['engine']}, error {percent(row['error'])})"
         for row in _main_scene_rows(result)
         if row["variant"] == SCRIPT and row["error"] is not None
     ]
-    return f"{words} A script of rocking script takes {listed(scripts)}." if scripts else words
+    return f"{words} The scripts that rocking script writes take {listed(scripts)}." if scripts else words
 
 
 def _costs_at_asked(result):
@@ -328,8 +331,8 @@ def page(result: Result) -> Page:
         _title(result),
         (
             "Every solver is run at several levels of its accuracy parameter. Error and CPU time come from the same "
-            "runs. The cost of an error is that of the cheapest level that keeps it, if all finer levels keep it too. "
-            f"Costs within a factor of {number(noise(result), 2)} are not distinguished."
+            "runs. The cost at a given error is that of the cheapest level that keeps it, provided that all finer "
+            f"levels keep it too. Costs within a factor of {number(noise(result), 2)} are not distinguished."
             + "".join(f" {engine} was timed {why}: no ratio is given." for engine, why in timed_apart(result).items()),
         ),
         first=(_figure([row for key in first for row in errors[key]], CPU, MAIN_CAPTION, rows, _leads(result)), usual),
@@ -370,20 +373,21 @@ def page(result: Result) -> Page:
 
 
 MAIN_CAPTION = (
-    "Lower left is better. Coloured, if they keep 0.001 at a level and all finer ones: main variants, scripts as "
-    "written (open) and the first variant of each other solver. Grey: the rest, named under the pointer. No error "
-    "is given for levels that failed, missed impacts or found no boundary. Errors below 10⁻⁹ are drawn there."
+    "Lower left is better. Coloured: main variants, scripts as written (open marks) and the first variant of each "
+    "other solver, if they keep an error of 0.001 at some level and at all finer ones. Grey: all others; the pointer "
+    "shows their names. Levels that failed, missed impacts or found no boundary have no error and are not drawn. "
+    "Errors below 10⁻⁹ are drawn at 10⁻⁹."
 )
 CAPTION = (
-    "Lower left is better. Coloured: solvers that keep 0.001 at a level and all finer ones. Grey: the others, named "
-    "under the pointer. No error is given for levels that failed, missed impacts or found no boundary; the study’s "
-    "page lists them. Errors below 10⁻⁹ are drawn there."
+    "Lower left is better. Coloured: solvers that keep an error of 0.001 at some level and at all finer ones. Grey: "
+    "the others; the pointer shows their names. Levels that failed, missed impacts or found no boundary have no error "
+    "and are not drawn; a table lists them. Errors below 10⁻⁹ are drawn at 10⁻⁹."
 )
 
 FINE_CAPTION = (
-    "Integrators alone. Lower left is better. Problems A (a free block) and B (a block under a pulse) have "
-    "references of 30 digits. All integrate the same two equations, set up for speed: scipy without classes and with "
-    "a first step of the length of the hop. scipy restarts at each impact."
+    "Integrators alone. Lower left is better. The references of problems A (a free block) and B (a block under a "
+    "pulse) have 30 digits. All integrators solve the same two equations and are set up for speed. scipy restarts at "
+    "each impact; it runs without classes, and its first step after an impact spans a short hop at once."
 )
 
 
@@ -394,7 +398,7 @@ def _assisted(result):
 
 def _title(result):
     """Title of the page: what the error `ASKED` costs subject engines."""
-    place = f"Cost against error: {percent(ASKED, 1)} of peak tilt"
+    place = f"Cost against error: a peak tilt within {percent(ASKED, 1)}"
     if not (cost := times(result)):
         return f"{place} is reached by {f'engines {APART}' if reached(result) else 'no subject engine'}"
     return f"{place} takes {cost}"
@@ -488,7 +492,7 @@ def _without_error(rows):
             }
         )
     return table(
-        "Levels that were run and have no error",
+        "Levels that were run but have no error",
         [row for row in counted if row["failed"] or row["lost"] or row["none"]],
         NAME_COLUMN,
         SCENE,
@@ -509,8 +513,8 @@ def _orders(measure, rows, scenes):
             words = f"{round(order, 2) + 0.0:.2f} ± {error:.2f}".replace("-", "−")  # no minus before 0.00
             fits.setdefault(name, dict.fromkeys(scene for (scene,) in grouped(rows, "scene")))[scene] = words
     return table(
-        f"Observed order q, ± its standard error: the {MEASURES[measure]} grows as the accuracy parameter to the power "
-        "q; of three levels or more above rounding",
+        f"Observed order q ± its standard error: the {MEASURES[measure]} grows as the accuracy parameter to the power "
+        "q. It is fitted to three levels or more whose error is above rounding",
         [{"name": name, **orders} for name, orders in fits.items()],
         NAME_COLUMN,
         *(Column(scenes[scene]["title"], scene) for (scene,) in grouped(rows, "scene")),
@@ -561,8 +565,8 @@ def _more_than_needed(result, rows):
 
     yield Head("More than the scene needs")
     yield table(
-        "A scene modelled with more than it needs, at the same level: ratio of CPU times, errors as in the tables "
-        "above, missed impacts",
+        "Scenes modelled with more than they need, beside the model needed, at the same level. Ratio of the two CPU "
+        "times, and errors as in the tables above, with missed impacts in brackets",
         [row for row in pairs if row["model"] != NEEDED],
         COLUMNS["model"],
         NAME_COLUMN,
@@ -573,9 +577,9 @@ def _more_than_needed(result, rows):
         Column("error with more", error),
     )
     yield table(
-        "A Bouc-Wen bearing: CPU time over the algebraic law's at the same level, and what it changes in the scene "
-        "itself. It is not confirmed here that it costs more; the paper's own case (sub-stepped inside a time-step "
-        "scheme) is not tested",
+        "A Bouc-Wen bearing in place of the algebraic law: ratio of the CPU times at the same level, and how far it "
+        "changes the peaks of the scene. That Bouc-Wen costs more is not confirmed here. The paper's own case, "
+        "Bouc-Wen sub-stepped inside a time-stepping scheme, is not tested",
         laws,
         NAME_COLUMN,
         SCENE,
@@ -595,18 +599,19 @@ def _how(result, rows):
         scene["reference_difference"].get(measure, 0.0) for scene in scenes for measure in measures_of(scene)
     ]
     machine, load = result.provenance["machine"], result.settings.get("load")
-    beside = f" Other processes took {percent(max(load))} of it at most." if load else ""
+    beside = f" Other processes took at most {percent(max(load))} of its CPU time." if load else ""
     return (
-        f"{result.settings['rounds']} fresh processes run one after the other. In each, every solver is warmed up and "
-        "timed. A CPU time is the least of these rounds; import, compilation and building of the scene are not in it. "
-        f"The median round took up to {number(noise(result), 2)} times as long as the least for {NOISE} % of the "
-        f"levels, so costs closer than that are not distinguished. Machine: {machine['processor']}, "
+        f"{result.settings['rounds']} fresh processes run one after the other, one round each. In each, every solver "
+        "is warmed up and timed. A CPU time is that of the fastest round, without import, compilation and building of "
+        f"the scene. For {NOISE} % of the levels, the median round took at most {number(noise(result), 2)} times as "
+        f"long as the fastest, so closer costs are not distinguished. Machine: {machine['processor']}, "
         f"{machine['logical_cores']} cores.{beside}",
         "References are computed by the kernel at its tightest tolerance. An independent solution by scipy differs "
         f"from them by at most {number(max(differences), 1)} in the errors shown. Solvers of the equations apply eq. "
-        f"(7): their error of restitution under a motion is rounding. The errors of {same} of {len(rows)} levels are "
-        f"the same bit for bit in every round{'; the exceptions are of ' + ', '.join(differing) if differing else ''}.",
-        "On a free base the largest tilt is the tilt at the start, so it has no error. Errors of the peak "
-        "displacement and of the overturning boundary are relative. A boundary is searched for by six runs, each at "
-        "the amplitude where the one before would just overturn.",
+        "(7) themselves, so under a motion their error of restitution is rounding. The errors of "
+        f"{same} of {len(rows)} levels are the same bit for bit in every round"
+        f"{'; the exceptions are of ' + ', '.join(differing) if differing else ''}.",
+        "On a free base the largest tilt is that at the start, so the peak tilt has no error. Errors of the peak "
+        "displacement and of the overturning boundary are relative. A boundary is searched for by six runs; each takes "
+        "the amplitude at which, by the run before it, the block would just overturn.",
     )
