@@ -67,10 +67,10 @@ ENDS = {
     TURNED: "overturning missed or added [-]",
     FALL: "falls at another time [-]",
     INSTEAD: "stands, slides or rocks instead [-]",
-    ELSE: "differs elsewhere [-]",
+    ELSE: "differs in other quantities [-]",
     "failed": "failed [-]",
     "edge": "left out near an outcome boundary [-]",
-    "out": "left out otherwise [-]",
+    "out": "left out for other reasons [-]",
 }
 
 
@@ -112,19 +112,19 @@ def ends(rows: Sequence[Mapping[str, Any]]) -> tuple[Column, ...]:
 
 
 def ends_in_words(rows: Sequence[Mapping[str, Any]]) -> str:
-    """Return `tally` rows of variants as a clause: how many runs differ, and how many overturnings do."""
+    """Return `tally` rows of variants as a clause: how many runs differ, and how many overturnings are wrong."""
     judged = [row for row in rows if row["runs"]]
     if not judged:
         return "no run is judged"
     single = len({row["engine"] for row in judged}) == len(judged)
+    names = [f"{row['engine']}, {row['tier']}" if single else NAME.of(row) for row in judged]
     clauses = [
-        f"{row['differing']} of {row['runs']}{' runs' * (not k)} ({row['engine'] if single else NAME.of(row)})"
-        for k, row in enumerate(judged)
+        f"{row['differing']} of {row['runs']}{' runs' * (not k)} ({name})"
+        for k, (row, name) in enumerate(zip(judged, names, strict=True))
     ]
     turned, failed = (sum(row[way] for row in judged) for way in (TURNED, "failed"))
     lost = f"{turned} miss or add an overturning" if turned else "no overturning is missed or added"
-    how = "tuned, " if all(row["tier"] == "tuned" for row in judged) else ""
-    return f"{how}{listed(clauses)} end otherwise than the model’s{' or fail' * bool(failed)}; {lost}"
+    return f"{listed(clauses)} differ from the model’s{' or fail' * bool(failed)}; {lost}"
 
 
 def least_shown(rows: Iterable[Mapping[str, Any]], what: str) -> str:
@@ -137,7 +137,8 @@ def least_shown(rows: Iterable[Mapping[str, Any]], what: str) -> str:
 
 def left_out(row: Mapping[str, Any]) -> str:
     """Return in words how many runs of a `tally` are not judged, and why."""
-    return f"left out: {row['edge']} near an outcome boundary" + (f", {row['out']} otherwise" if row["out"] else "")
+    others = f", {row['out']} for other reasons" if row["out"] else ""
+    return f"left out: {row['edge']} near an outcome boundary{others}"
 
 
 def equal_mark(row: Mapping[str, Any], *more: str) -> Mark:

@@ -255,20 +255,22 @@ def own_restitution(block: Result, outside: str = "") -> Judgement:
         if row["engine"] != "analytic"
     }
     return Judgement(
-        "error of restitution by states (tilt rates before and after impacts of this block without slip), rms, free "
-        "rocking",
+        "rms error of restitution by states (tilt rate after an impact over that before), in free rocking of this "
+        "block without slip",
         marks,
         RESTITUTION,
     )
 
 
 def not_to_do(setups: Sequence[Setup]) -> list[str]:
-    """Return warnings to users, three sentences at most."""
+    """Return warnings to users, each one line."""
     defaults = [setup for setup in setups if setup.tier == "defaults" and setup.rating.level in LEVELS]
     lines = []
     if defaults:
         bad = sum(setup.rating.level == "bad" for setup in defaults)
-        lines.append(f"Do not use an engine with its defaults: {bad} of {len(defaults)} tested are not to be trusted.")
+        lines.append(
+            f"Do not use an engine with its defaults: of {len(defaults)} tested, {bad} got the rating “do not trust”."
+        )
     lines.append(
         "Do not rely on an outcome whose margin (rocking margin SCENE) is smaller than the uncertainty of your data."
     )
@@ -326,8 +328,8 @@ def title(shares: Sequence[Endings]) -> str:
     names = listed(list(dict.fromkeys(share.engine for share in _of_kind(shares, TUNED))))
     tuned, plain = (f"{changed} of {runs}" for changed, runs in counts)
     return (
-        f"Away from outcome boundaries, tuned {names} end otherwise than the model, or fail, in {tuned} runs; with "
-        f"defaults, in {plain}."
+        f"Away from outcome boundaries, tuned {names} reach another outcome than the model, or fail, in {tuned} runs; "
+        f"with defaults, in {plain}."
     )
 
 
@@ -372,27 +374,31 @@ def _restitution(setups, judgements):
             who = "both" if len(deaf) == len(known) == 2 else listed(deaf)
             missing = f", and {who} miss{'es' * (len(deaf) == 1)} impacts" if deaf else ""
             parts.append(f"{begin} {_by_engine({who: number(mark.value, 2) for who, mark in known.items()})}{missing}.")
-    return f"{' '.join(parts)} This is the {head}." if parts else ""
+    return f"{' '.join(parts)} Each value is the {head}." if parts else ""
 
 
 def _outcomes(shares):
-    """Return sentences on how many runs end otherwise: under recorded motions, or the first ones; under all others."""
+    """Return sentences on how many outcomes differ: under recorded motions, or the first ones; under all others."""
     motions = next(
         (share.motions for share in shares if "record" in share.motions), shares[0].motions if shares else ""
     )
     first = [share for share in shares if share.motions == motions]
     groups = (
-        (f"under {motions}, {{0}} end otherwise than the model, or fail, in {{1}}", _changed_by_engine, first),
-        ("{0} fall at another time in {1} more", _late_by_engine, first if any(share.late for share in first) else []),
+        (f"under {motions}, {{0}} reach another outcome than the model, or fail, in {{1}}", _changed_by_engine, first),
         (
-            "Under all other motions, {0} end otherwise in {1}",
+            "{0} let the block fall at another time in {1} more runs",
+            _late_by_engine,
+            first if any(share.late for share in first) else [],
+        ),
+        (
+            "Under all other motions, {0} reach another outcome, or fail, in {1}",
             _all_motions,
             [share for share in shares if share.motions != motions],
         ),
     )
     sentences = []
     for words, count, chosen in groups:
-        kinds = ((who, _of_kind(chosen, kind)) for kind, who in ((TUNED, "tuned engines"), (DEFAULTS, "with defaults")))
+        kinds = [(who, _of_kind(chosen, kind)) for kind, who in WHO.items()]
         counts = [(who, count(members)) for who, members in kinds if members]
         if counts:
             first_words = words.format(*counts[0])
@@ -400,6 +406,9 @@ def _outcomes(shares):
             others = "".join(f"; {who}, in {runs}" for who, runs in counts[1:])
             sentences.append(f"{begin}{first_words[1:]}{others}.")
     return " ".join(sentences)
+
+
+WHO = {TUNED: "tuned engines", DEFAULTS: "engines with defaults"}
 
 
 def _changed_by_engine(shares):
@@ -416,7 +425,11 @@ def _all_motions(shares):
     by_motions = {
         motions: _changed(members)[0] for (motions,), members in grouped(shares, lambda share: share.motions).items()
     }
-    counts = [f"{count} under {motions}" for motions, count in by_motions.items() if count and shares[0].kind == TUNED]
+    counts = [
+        f"{'all' if count == changed else count} under {motions}"
+        for motions, count in by_motions.items()
+        if count and shares[0].kind == TUNED
+    ]
     return f"{changed} of {runs} runs{f' ({listed(counts)})' if counts else ''}"
 
 
@@ -426,7 +439,7 @@ def _left_out(shares):
     for (motions,), members in grouped(_of_kind(shares, TUNED), lambda share: share.motions).items():
         counts = dict.fromkeys(f"{share.left_out} of {share.runs + share.left_out}" for share in members)
         parts.append(f"{' or '.join(counts)} ({motions})")
-    return f"Left out, near an outcome boundary: of each tuned engine {listed(parts)}." if parts else ""
+    return f"Runs near an outcome boundary are left out: for each tuned engine {listed(parts)}." if parts else ""
 
 
 MOST_WARNINGS = 3  # of a scene, at the top of the page

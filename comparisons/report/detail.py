@@ -58,98 +58,102 @@ EQUATIONS = (
     Equation(
         "3, 5",
         r"(m + m_b)(a_g + \ddot{x}) + m (c \ddot{\phi} + n \dot{\phi}^2) + n_d f = 0",
-        "Rocking, horizontal: c = R cos(sγ − φ), n = R sin(sγ − φ), s the side it tips to.",
+        "Rocking, horizontal forces: c = R cos(sγ − φ), n = R sin(sγ − φ), s is the side to which the block tips.",
     ),
     Equation(
-        "4, 6", r"J_O \ddot{\phi} + m c (a_g + \ddot{x}) + m g n = 0", "Rocking, moments about the corner it turns on."
+        "4, 6",
+        r"J_O \ddot{\phi} + m c (a_g + \ddot{x}) + m g n = 0",
+        "Rocking, moments about the corner on which the block turns.",
     ),
     Equation(
         "7",
         r"e_{\phi} = \frac{\omega^+}{\omega^-} = 1 - \frac{2 m b^2}{J_O - m \tilde{m} h^2}",
-        "Restitution, from momentum alone; m̃ = m/(m + m_b), 0 on rigid ground: Housner's 1 − 1.5 sin² γ for a "
-        "rectangle.",
+        "Restitution, from momentum alone, with m̃ = m/(m + m_b). On rigid ground m̃ = 0, which gives Housner's "
+        "1 − 1.5 sin² γ for a rectangle.",
     ),
     Equation(
         "8",
         r"e_x = \frac{2 R^3 \sin^2 \gamma \cos \gamma \, m \tilde{m}}{R^2 \cos^2 \gamma \, m \tilde{m} - J_O}",
-        "Jump of the base velocity, ẋ⁺ = ẋ⁻ − e_x φ̇⁻. The paper prints one factor R cos γ too many, a length squared; "
-        "for a block of about a metre this hardly shows.",
+        "Jump of the base velocity, ẋ⁺ = ẋ⁻ − e_x φ̇⁻. The paper prints one factor R cos γ too many; for a block of "
+        "about a metre this hardly shows.",
     ),
     Equation(
         "9, 11",
         r"f = k_b x + s \left( (k_a - k_b) \frac{D^{1 - \alpha} - D_0}{1 - \alpha} + f_0 \right)",
-        "The bearing: D = D_c + s (x − x_c) since the last reversal at x_c, where D_c keeps the force continuous.",
+        "Force of a bearing, with D = D_c + s (x − x_c) since the last reversal at x_c. D_c keeps the force "
+        "continuous.",
     ),
     Equation(
         "12",
         r"1 - x + x_j^- + 2 x_0",
-        "The bracket while unloading, corrected. As the paper prints it the force jumps by 2 f₀ at every reversal.",
+        "The bracket while unloading, corrected. As the paper prints it, the force jumps by 2 f₀ at every reversal.",
     ),
     Equation(
         "S1",
         r"J_G \ddot{\phi} = -c H - n N",
-        "A block that may slide, by Newton and Euler: J_G about its centre of mass; H, N the force of its support. Its "
-        "mode closes (S1) to (S4): stick φ = u = 0; slide φ = 0 and |H| = μ N, against the slip; rock u and η at rest, "
-        "which gives (3) to (6); slide-rock η at rest and |H| = μ N; flight H = N = 0.",
+        "A block that may slide, by Newton and Euler. J_G is about its centre of mass; H and N are the forces of its "
+        "support. Its mode closes (S1) to (S4). Stick: φ = u = 0. Slide: φ = 0 and |H| = μ N, against the slip. Rock: "
+        "u and η are at rest, which gives (3) to (6). Slide-rock: η is at rest and |H| = μ N. Flight: H = N = 0.",
         modes=True,
     ),
     Equation(
         "S2",
         r"m (a_g + \ddot{x} + \ddot{u} + c \ddot{\phi} + n \dot{\phi}^2) = H",
-        "Horizontal: u is the slip of the corner along its support.",
+        "Horizontal forces: u is the slip of the corner along its support.",
     ),
     Equation(
         "S3",
         r"m (g + a_v + \ddot{\eta} + n \ddot{\phi} - c \dot{\phi}^2) = N",
-        "Vertical: η is the gap under the corner, a_v the ground's vertical acceleration.",
+        "Vertical forces: η is the gap under the corner, a_v is the ground's vertical acceleration.",
     ),
-    Equation("S4", r"m_b (a_g + \ddot{x}) = -n_d f - H", "The base under it; on rigid ground x = 0."),
+    Equation("S4", r"m_b (a_g + \ddot{x}) = -n_d f - H", "The base under the block; on rigid ground x = 0."),
     Equation(
         "I1",
         r"J_G (\dot{\phi}^+ - \dot{\phi}^-) = -c P - n Q",
-        "An impact, plastic, by the impulses P and Q of the support, horizontal and upward, with |P| ≤ μ Q. The first "
-        "of these that is admissible: the new corner sticks, which is (7) and (8) if it did not slip before; it slips; "
-        "both corners stay and stick; both stay and slip.",
+        "A plastic impact, by the horizontal and upward impulses P and Q of the support, with |P| ≤ μ Q. The first "
+        "admissible case of these holds: the new corner sticks, which is (7) and (8) if it did not slip before; it "
+        "slips; both corners stay and stick; both stay and slip.",
         modes=True,
     ),
     Equation(
         "I2",
         r"D^+ - D^- = P \left( \frac{1}{m} + \frac{1}{m_b} \right)",
-        "D: horizontal velocity of the centre of mass from the base; on rigid ground without 1/m_b.",
+        "D is the horizontal velocity of the centre of mass relative to the base. On rigid ground 1/m_b drops out.",
     ),
-    Equation("I3", r"m (Y^+ - Y^-) = Q", "Y: its vertical velocity."),
-    Equation("I4", r"m_b (\dot{x}^+ - \dot{x}^-) = -P", "The base."),
+    Equation("I3", r"m (Y^+ - Y^-) = Q", "Y is the vertical velocity of the centre of mass."),
+    Equation("I4", r"m_b (\dot{x}^+ - \dot{x}^-) = -P", "The impulse on the base."),
 )
 
 GLOSSARY = {
     "slenderness γ": "angle between the vertical and the line from a base corner to the centre of mass",
-    "tilt φ": "rotation of the block; it overturns at 90°, and need not return from |φ| = γ on, the unstable point",
+    "tilt φ": "rotation of the block; at |φ| = γ, the unstable point, it may fall, and at 90° it has overturned",
     "uplift": "the instant at which a corner leaves its base",
-    "restitution": "tilt rate after over before an impact, e_φ",
-    "safe gap": "amplitudes above those that overturn a block after an impact, at which it stands again",
+    "restitution": "tilt rate after an impact over that before, e_φ",
+    "safe gap": "range of amplitudes at which a block survives, although smaller ones overturn it after an impact",
     "boundary shift": "how far an engine moves the amplitude at which the outcome changes",
-    "isolation period": "2π times the root of mass over the bearings' stiffness",
+    "isolation period": "2π times the square root of the mass over the bearings' stiffness",
     "lead-rubber bearing": "rubber with a lead core: stiff k_a at first and after each reversal, then k_b",
     "friction demand": "horizontal over normal force under the block: the friction needed not to slide",
     "slip u": "displacement of the block along its support, where the friction demand exceeds the scene's μ",
-    "sensitivity horizon": "time after which a change of the scene by 10⁻⁴ visibly changes the motion; a solver’s "
-    "own: a change as large as its errors",
+    "sensitivity horizon": "time after which a change of the scene by 10⁻⁴ visibly changes the motion; a solver’s own "
+    "horizon is that of a change as large as its errors",
     "analytic model": "the rocking equations solved directly from event to event; its compiled part is the kernel",
-    "second implementation": "a second implementation of the same equations, independent and simple, to check the "
-    "first",
-    "accuracy parameter": "the setting of a solver that trades time for error; its levels: the values tried",
-    "defaults, tuned, assisted": "as in a first script; as a skilled user can set it, with all motion computed by the "
-    "engine; with a velocity, position or constraint set by the adapter at the model's event",
-    "root mean square (rms)": "root of the mean of squares of all errors",
-    "kappa": "Cohen's measure of agreement of two yes-or-no judges: 1 always, 0 as by chance",
-    "McNemar's test": "whether two solvers that judge the same motions differ by more than chance; for many tests "
-    "adjusted by Holm's rule",
-    "Wilson interval": "95 % interval of a share, sound for few cases too",
+    "second implementation": "an independent, simple implementation of the same equations, which checks the first",
+    "accuracy parameter": "the setting of a solver that trades time for error; its levels are the values tried",
+    "variant": "one way of using an engine; its main variant is the one that runs if none is named",
+    "defaults, tuned, assisted": "kinds of variants. Defaults: as in a first script. Tuned: as a skilled user can set "
+    "it, with all motion computed by the engine. Assisted: the adapter sets a velocity, position or constraint at the "
+    "model's event",
+    "root mean square (rms)": "square root of the mean of the squares of all errors",
+    "kappa": "Cohen's measure of the agreement of two yes-or-no judges: 1 if they always agree, 0 if only by chance",
+    "McNemar's test": "whether two solvers that judge the same motions differ by more than chance; adjusted by Holm's "
+    "rule for many tests",
+    "Wilson interval": "95 % interval of a share, which is sound for few cases, too",
 }
 
 REFERENCES = (
     "“Seismic protection of cultural heritage artefacts by means of elastomeric isolators: a case study”: the paper "
-    "whose equation numbers, table and figures are used here; what it prints is compared on a page of its own.",
+    "whose equation numbers, table and figures are used here. The page of the Caryatid paper compares what it prints.",
     "G. W. Housner (1963), The behavior of inverted pendulum structures during earthquakes, Bulletin of the "
     "Seismological Society of America 53(2), 403–417.",
     "H. W. Shenton (1996), Criteria for initiation of slide, rock, and slide-rock rigid-body modes, Journal of "
@@ -177,14 +181,14 @@ def frames() -> list[tuple[Markup, str]]:
     depth = 1e3 * 2 * SCENE.block.half_width * math.sin(abs(inside))  # of the far corner below the ground, mm
     (late, rate), (less, finer) = straddled(STEP), straddled(STEP / 2)
     words = (
-        "1. A step straddles the impact. In this project’s own time stepping, not an engine’s, steps of about "
-        f"{STEP * 1e3:g} ms shift it by {number(1e3 * late, 2)} ms, half of them by {number(1e3 * less, 2)} ms (rms "
-        "over phases).",
+        "1. A step straddles the impact. In this project’s own time stepping, which is no engine’s, steps of about "
+        f"{STEP * 1e3:g} ms shift the impact by {number(1e3 * late, 2)} ms, and steps half as long by "
+        f"{number(1e3 * less, 2)} ms (rms over phases).",
         f"2. The new corner penetrates, here by {number(depth, 2)} mm; the block still turns about the old one.",
         "3. Drawn by hand: where an engine pushes the corner out again, it may bounce or slide. Housner’s corner does "
         "neither.",
-        f"4. The block turns about the new corner. Its rate is off by {number(100 * rate, 2)} %, with half the step by "
-        f"{number(100 * finer, 2)} % (rms): an error of the step.",
+        f"4. The block turns about the new corner. Its rate is off by {number(100 * rate, 2)} %, and with half the "
+        f"step by {number(100 * finer, 2)} % (rms): the step causes this error.",
     )
     feet = (
         _foot(before, 1, "above the ground"),

@@ -22,8 +22,8 @@ def scene_sections(result: Result) -> list[Section]:
         pictures.append(figures.ground_motion(result))
     words = (
         "The Caryatid as a rigid block, once on rigid ground and once on a base carried by lead-rubber bearings (Table "
-        "1 of the paper). The slenderness is not printed in the paper; 0.28 rad reproduces its claims under the record "
-        "it used (Duzce 1999). Under another motion they need not hold."
+        "1 of the paper). The paper does not print the slenderness. With 0.28 rad its claims hold under the record "
+        "that it used (Duzce 1999). Under another motion they need not hold."
     )
     sections = [
         Section("The scenes", () if own_scenes else (words,), (parameters(scenes),), tuple(pictures)),
@@ -31,12 +31,12 @@ def scene_sections(result: Result) -> list[Section]:
     ]
     if shown := [picture for name in scenes for picture in _histories(result, name)]:
         words = (
-            "Left: all solvers overlaid; right: difference from the analytic model. Tilt is not drawn for a block that "
-            "never lifts in any solver."
+            "Left: all solvers overlaid. Right: difference from the analytic model. Tilt is not drawn for a block that "
+            "lifts in no solver."
         )
         if not own_scenes:
             words += (
-                " The bearings' damping in Table 1(a) of the paper, 30 %, is W_D/(2 π E_s); the usual equivalent "
+                " The damping of the bearings in Table 1(a) of the paper, 30 %, is W_D/(2 π E_s). The usual equivalent "
                 "viscous damping, W_D/(4 π E_s), is half of it."
             )
         sections.append(Section("Histories and hysteresis", (words,), (), tuple(shown)))
@@ -70,20 +70,20 @@ def outcome_section(result: Result) -> Section:
     return Section(
         "Outcomes",
         (
-            f"Each solver on the same scenes under {motion}. A block that never lifts “stands”, or “slides” on its "
-            "support; one that lifts and stays upright “rocks”; it “overturns” at |φ| = 90°. |H|/N, horizontal over "
-            "normal force under the block, is the friction coefficient needed not to slide; where the normal force N "
-            "falls to 0 the block jumps. In the model it slides or jumps only if the scene gives a friction "
-            "coefficient. Both quantities are taken over the run, without the fall of a block that overturns.",
+            f"Each solver runs the same scenes under {motion}. A block that never lifts “stands”, or “slides” on its "
+            "support. A block that lifts and stays upright “rocks”. At |φ| = 90° it “overturns”. |H|/N, horizontal "
+            "over normal force under the block, is the friction coefficient needed to prevent sliding. Where the "
+            "normal force N falls to 0, the block jumps. In the model it slides or jumps only if the scene gives a "
+            "friction coefficient. Both quantities are taken over the run, without the fall of a block that overturns.",
             "A run continues until its outcome is decided: nothing later can make the block overturn or prevent it. A "
             "run that ended earlier is “undecided”; its outcome so far is given. A warning names what lies outside the "
-            "model, or is unusual about the record; do not rely on the outcome beside it. Every engine's run is "
-            "compared with the analytic model's.",
+            "model, or what is unusual about the record. Do not rely on an outcome with a warning. Every engine's run "
+            "is compared with the analytic model's.",
             "Impact times and tilt graphs are compared up to the end of the run or the sensitivity horizon, whichever "
-            "is first. The common horizon is that of a change of restitution, motion or start by 10⁻⁴, the same for "
-            "all. A solver's own horizon is that of a change as large as its errors; a difference beyond it says "
-            "nothing about the solver. The distance of two tilt graphs (Hausdorff) is the largest distance of a point "
-            "of one from the other, with time in units of 2 π/ω_r and tilt in units of γ.",
+            "comes first. The common horizon is the same for all solvers: that of a change of restitution, motion or "
+            "start by 10⁻⁴. A solver's own horizon is that of a change as large as its errors; a difference beyond it "
+            "says nothing about the solver. The distance of two tilt graphs (Hausdorff) is the largest distance of a "
+            "point of one from the other, with time in units of 2 π/ω_r and tilt in units of γ.",
         ),
         tuple(
             table
@@ -200,7 +200,7 @@ def different(row: Mapping[str, Any]) -> list[str]:
 def _warning_tables(name, carried):
     """Return the table of warnings as `warned` gives them, in a tuple; an empty tuple without warnings."""
     rows = [[", ".join(solvers), warning] for warning, solvers in carried.items()]
-    return (Table(f"{name}: warnings", ("solver", "outside what is modelled, or differing"), rows),) if rows else ()
+    return (Table(f"{name}: warnings", ("solver", "warning, or difference from the model"), rows),) if rows else ()
 
 
 def _distance(head: str, key: str, digits: int = 2, *, percent: bool = False, until: str = "agreement") -> Column:
@@ -222,7 +222,7 @@ AGREEMENT = (
     _distance("overturning time [s]", "overturning_time_error"),
     _distance("peak |φ|/γ [-]", "peak_tilt_error"),
     *_trajectory_columns("the common", "agreement"),
-    Column("size of its errors: change of the model that does as much [-]", "perturbation"),
+    Column("change of the model with as large an effect as the engine's errors [-]", "perturbation"),
     *_trajectory_columns("its own", "own_agreement"),
 )
 
@@ -259,11 +259,11 @@ def restitution_section(result: Result, given: bool = False) -> Section:
     return Section(
         "Restitution of this block",
         (
-            f"Free rocking for {result.settings['seconds']:g} s, released from rest at φ/γ = {starts}, {grounds}. "
-            "Restitution is measured by states, φ̇⁺/φ̇⁻ at the impact, without slip, and compared with eq. (7). Error "
-            "and CPU time come from the same runs. Trusted: error, root mean square, at most "
-            f"{TRUSTED:g}, no failed run and no missed impact; usable: at most {USABLE:g}.",
-            *(["The scene states a restitution. It is not used here, as it would rate no engine."] if given else []),
+            f"The block rocks freely for {result.settings['seconds']:g} s, released from rest at φ/γ = {starts}, "
+            f"{grounds}. Restitution is measured by states, φ̇⁺/φ̇⁻ at the impact, without slip, and compared with eq. "
+            f"(7). Error and CPU time come from the same runs. Trusted: an rms error of at most {TRUSTED:g}, no failed "
+            f"run and no missed impact. Usable: the same with at most {USABLE:g}.",
+            *(["The restitution that the scene states is not used here: it would rate no engine."] if given else []),
         ),
         (
             table(
@@ -287,8 +287,8 @@ def restitution_section(result: Result, given: bool = False) -> Section:
 
 
 CAPTION = (
-    "Left: all solvers overlaid. Right: difference from the analytic model, at least 10⁻⁹. Tilt is not drawn where the "
-    "block lifts in no solver."
+    "Left: all solvers overlaid. Right: difference from the analytic model; values below 10⁻⁹ are drawn there. Tilt is "
+    "not drawn where the block lifts in no solver."
 )
 
 
@@ -325,8 +325,8 @@ def earthquake(result: Result) -> Section:
         measured=(
             "Distance of tilt graphs (Hausdorff): the largest distance of a point of one from the other, with time in "
             "units of 2π/ω_r and tilt in units of γ. Friction demand and normal force are taken over the run, without "
-            "the fall of a block that overturns; for engines they are computed from the states by the model's "
-            "equations. The page of the runs has all measurements, including the bearing loops.",
+            "the fall of a block that overturns. For engines they are computed from the states by the model's "
+            "equations. The page of the runs has all measurements and the bearing loops.",
         ),
     )
 
@@ -345,7 +345,7 @@ def _first_page_table(result):
         Column("peak |φ|/γ [-]", lambda row: row.get("peak_tilt_ratio"), 3),
         Column("peak x [m]", lambda row: row.get("peak_base_displacement"), 4),
         *([_slip("largest slip [m]", "peak")] if figures.slides(result.rows) else ()),
-        Column("its error", agreement("peak_displacement_error"), percent=True),
+        Column("error of peak x", agreement("peak_displacement_error"), percent=True),
         Column("distance of tilt graphs [-]", agreement("graph_distance")),
         Column("horizon [s]", agreement("until"), 3),
         Column("warnings", lambda row: len(row.get("warnings") or ())),

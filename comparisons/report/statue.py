@@ -119,24 +119,28 @@ def next_step(scene: Mapping[str, Any], needed: Mapping[str, float | None] | Non
     if needed is None:
         restrained = scene["base"] is None or scene["bearings"]
         ends = (
-            "It does not lift: there is nothing to do."
+            "The block does not lift: there is nothing to do."
             if restrained
-            else "On a base that nothing holds it does not lift."
+            else "On a base that nothing holds, the block does not lift."
         )
-        return margin, f"says how much it has to spare. {ends}"
+        return margin, f"tells how much the block has to spare. {ends}"
     sizes, rubs = _plate_words(scene, needed), scene.get("friction")
     if needed["stroke"] is None:
         does, cure = ("lifting", "widen, fix or lower it") if rubs is None else ("lifting or sliding", "fix it")
-        return margin, f"says what changes the outcome. No bearings are likely to keep it from {does}; {sizes or cure}."
+        words = f"No bearings are likely to keep the block from {does}; {sizes or cure}."
+        return margin, f"tells what changes the outcome. {words}"
     base, given = "", "The stroke [m] is an example: give the room that the base has."
     if scene["base"] is None:
         mass = float(f"{scene['block']['mass']:.3g}")
         base = f" --base-mass {mass:g}"
-        given = "Both numbers are examples: give the mass of the base it would stand on [kg], and its room to move [m]."
+        given = (
+            "Both numbers are examples: give the mass of the base that the block would stand on [kg], and the room "
+            "that this base has to move [m]."
+        )
     elif scene["bearings"] and scene["bearings"]["x_max"]:
         given = "The stroke is the x_max of its bearings."
     aim = "does not lift" if rubs is None else "neither lifts nor slides"
-    words = f"looks for bearings on which it {aim}. {given}{f' Or {sizes}.' if sizes else ''}"
+    words = f"looks for bearings on which the block {aim}. {given}{f' Or {sizes}.' if sizes else ''}"
     return f"rocking design {call}{base} --stroke {needed['stroke']:g}", words
 
 
@@ -145,22 +149,25 @@ def _plate_words(scene, needed):
     held = ""
     if needed.get("friction"):
         limit, mu = number(needed["friction"], 3), number(scene["friction"], 3)
-        held = f"; it needs a friction of {limit} (now {mu}) not to slide"
+        held = f"; it needs a friction coefficient of {limit} (now {mu}) to stay in place"
     if needed["stands"] is None:
         return held.removeprefix("; ")
     now, stands = number(2 * scene["half_width"], 3), number(needed["stands"], 3)
     slip = needed.get("slip") or 0.0
     if slip > needed["stands"] / 2:
         return (
-            f"fix it, as a plate does not do: on one {stands} m wide (now {now} m) it slides by {number(slip, 3)} m, "
-            f"beyond half of that{held}"
+            f"fix it, as a plate does not suffice: on one {stands} m wide (now {now} m) it slides by "
+            f"{number(slip, 3)} m, more than half that width{held}"
         )
     words = "widen, fix or lower it: fixed to a plate"
     held = f", but slides by up to {number(slip, 3)} m{held}" if slip else held
     if needed["upright"] is None:
         return f"{words} {stands} m wide (now {now} m) it does not lift{held}"
     upright = number(needed["upright"], 3)
-    return f"{words} {upright} m wide (now {now} m) it does not overturn, to one of {stands} m it does not lift{held}"
+    return (
+        f"{words} {upright} m wide (now {now} m) it does not overturn; fixed to one {stands} m wide it does not "
+        f"lift{held}"
+    )
 
 
 WORST = ("stands", "slides", "rocks", "failed", *FALLS)  # outcomes from the best to the worst
@@ -458,7 +465,7 @@ def _nearest_changes(margins_found):
         changing = [margin for margin in known if margin[2] is not None]
         if changing:
             quantity, reached, change = min(changing, key=lambda margin: abs(margin[2]))
-            sentences.append((label, f"{'No longer from' if reached else 'From'} {quantity} {signed(change)} on."))
+            sentences.append((label, f"{'Ends' if reached else 'Begins'} at {quantity} {signed(change)}."))
     ends = [f"{margin['quantity']} at {signed(at)} ({why})" for margin in margins_found for at, why in margin["ends"]]
     return [*sentences, ("Ranges that end", f"{'; '.join(ends)}.")] if ends else sentences
 

@@ -233,9 +233,9 @@ def _contents(scenes: Result, stored: list[Stored]) -> list[Part]:
     setting = Section(
         "Scene and equations: a block that rocks about its corners, on a base carried by bearings",
         (
-            "The block is rigid and planar, and impacts are instantaneous. It slides only where the demand "
-            "exceeds a friction coefficient given by the scene: equations (S) and (I). The force of the bearings "
-            "depends on their last reversal. Equation numbers without a letter are those of the paper.",
+            "The block is rigid and planar, and impacts are instantaneous. It slides only if the scene gives a "
+            "friction coefficient, and only where the friction demand exceeds it: equations (S) and (I). The force of "
+            "the bearings depends on their last reversal. Equation numbers without a letter are those of the paper.",
         ),
     )
     parts = [Part("equations", "Scene and equations", setting)]
@@ -262,7 +262,7 @@ def made(origin: str) -> str:
 
 def _computed(result: Result) -> Table:
     return Table(
-        "What each engine computes, and what our adapter imposes beside loads and settings",
+        "What each engine computes, and what our adapter imposes in addition to loads and settings",
         ("engine, variant", "kind", "the engine computes", "the adapter imposes"),
         [
             [f"{solver}, {variant}", kind["tier"], kind["computes"], kind["imposes"]]

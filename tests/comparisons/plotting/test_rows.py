@@ -201,7 +201,7 @@ def test_a_fall_at_another_time_is_no_other_outcome_and_each_run_is_in_one_colum
         "failed [-]",
         "left out near an outcome boundary [-]",
     ]
-    assert left_out(counts) == "left out: 1 near an outcome boundary, 1 otherwise"
+    assert left_out(counts) == "left out: 1 near an outcome boundary, 1 for other reasons"
     assert left_out(bare) == "left out: 0 near an outcome boundary"
 
 

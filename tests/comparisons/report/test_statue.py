@@ -261,7 +261,7 @@ NEEDED = {"stroke": 0.25, "stands": 0.8, "upright": 0.61}
 SAID = [
     (SCENE, None, "rocking margin FILE", "there is nothing to do"),
     (SCENE, NEEDED, "rocking design FILE --base-mass 1550 --stroke 0.25", "Both numbers are examples"),
-    (BASE, None, "rocking margin FILE", "On a base that nothing holds it does not lift"),
+    (BASE, None, "rocking margin FILE", "On a base that nothing holds, the block does not lift"),
     (BASE, NEEDED, "rocking design FILE --stroke 0.25", "The stroke [m] is an example"),
     (
         {**BASE, "bearings": {"x_max": 0.25}},
@@ -269,9 +269,9 @@ SAID = [
         "rocking design FILE --stroke 0.25",
         "is the x_max of its bearings",
     ),
-    (SCENE, NEEDED, "", "0.610 m wide (now 0.550 m) it does not overturn, to one of 0.800 m it does not lift"),
+    (SCENE, NEEDED, "", "0.610 m wide (now 0.550 m) it does not overturn; fixed to one 0.800 m wide it does not lift"),
     (SCENE, {**NEEDED, "upright": None}, "", "fixed to a plate 0.800 m wide (now 0.550 m) it does not lift"),
-    (SCENE, {**NEEDED, "stroke": None}, "rocking margin FILE", "No bearings are likely to keep it from lifting; widen"),
+    (SCENE, {**NEEDED, "stroke": None}, "rocking margin FILE", "likely to keep the block from lifting; widen"),
     (
         {**SCENE, "friction": 0.3},
         {**NEEDED, "upright": None, "friction": 0.4},
@@ -282,20 +282,20 @@ SAID = [
         {**SCENE, "friction": 0.3},
         {"stroke": None, "stands": None, "upright": None, "friction": 0.4},
         "rocking margin FILE",
-        "from lifting or sliding; it needs a friction of 0.400 (now 0.300) not to slide.",
+        "from lifting or sliding; it needs a friction coefficient of 0.400 (now 0.300) to stay in place.",
     ),
     (
         {**SCENE, "friction": 0.3},
         {**NEEDED, "slip": 0.0123, "friction": 0.4},
         "",
-        "to one of 0.800 m it does not lift, but slides by up to 0.0123 m; it needs a friction of 0.400",
+        "one 0.800 m wide it does not lift, but slides by up to 0.0123 m; it needs a friction coefficient of 0.400",
     ),
     (
         {**SCENE, "friction": 0.3},
         {"stroke": None, "stands": 0.8, "upright": None, "slip": 0.41, "friction": 0.4},
         "rocking margin FILE",
-        "or sliding; fix it, as a plate does not do: on one 0.800 m wide (now 0.550 m) it slides by 0.410 m, beyond "
-        "half of that; it needs a friction of 0.400 (now 0.300) not to slide.",
+        "or sliding; fix it, as a plate does not suffice: on one 0.800 m wide (now 0.550 m) it slides by 0.410 m, more "
+        "than half that width; it needs a friction coefficient of 0.400 (now 0.300) to stay in place.",
     ),
     (SCENE, dict.fromkeys(NEEDED), "rocking margin FILE", "lifting; widen, fix or lower it."),
 ]
@@ -317,7 +317,7 @@ def test_a_plate_on_which_the_block_slips_beyond_half_of_it_is_not_advised(ampli
     assert needed["slip"] == pytest.approx(simulate(broad, history=False).sliding.peak, rel=1e-6)
     assert (needed["slip"] > needed["stands"] / 2) == beyond
     words = next_step({**SCENE, "friction": 0.35}, needed, "FILE")[1]
-    assert ("a plate does not do" in words) == beyond and ("fixed to a plate" in words) != beyond
+    assert ("a plate does not suffice" in words) == beyond and ("fixed to a plate" in words) != beyond
 
 
 def test_where_the_friction_is_less_than_the_block_needs_it_is_said_and_how_wide_it_only_slides():
