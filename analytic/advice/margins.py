@@ -289,7 +289,8 @@ def margins(
     only : collection of str
         Some of QUANTITIES; by default all that the scene has.
     workers, progress : int, callable
-        Threads, by default one per core; called with the name of each quantity before its scan.
+        Threads, by default one per core; called with the name of each quantity before its scan, and with a free
+        pedestal before each run, as these take seconds.
 
     Raises
     ------
@@ -319,10 +320,10 @@ def margins(
     for name, value in values.items():
         if progress:
             progress(name)
-        bands, ends = _bands(scene, name, changes, tilt, workers)
+        bands, ends = _bands(scene, name, changes, tilt, workers, progress)
         margin = Margin(name, float(value), QUANTITIES[name].unit, bands, step, **ends)
         if margin.interleaved and not scene.is_stack:
-            bands, ends = _bands(scene, name, _finer(margin, changes), tilt, workers)
+            bands, ends = _bands(scene, name, _finer(margin, changes), tilt, workers, progress)
             margin = replace(margin, bands=bands, **ends)
         results.append(margin)
     return sorted(results, key=lambda margin: math.inf if margin.nearest is None else abs(margin.nearest))
@@ -360,18 +361,18 @@ def _finer(margin, changes):
     return np.union1d(changes, margin.step / FINER * counts[counts % FINER != 0])
 
 
-def _bands(scene, name, changes, tilt, workers):
+def _bands(scene, name, changes, tilt, workers, progress):
     """Return (tuple of `Band` over the changes, why they end).
 
     Boundaries are bisected for each state, as two may lie within one step.
     """
-    changes, states, ends = _scanned(scene, name, changes, tilt, workers)
+    changes, states, ends = _scanned(scene, name, changes, tilt, workers, progress)
     edges, columns = np.nonzero(states[1:] != states[:-1])
     low, high, before = changes[edges], changes[edges + 1], states[edges, columns]
     for _ in range((STACK_BISECTIONS if scene.is_stack else BISECTIONS) if len(edges) else 0):
         middle = 0.5 * (low + high)
         points, where = np.unique(middle, return_inverse=True)
-        middle_states, failed = _states(scene, name, points, None, tilt, workers)
+        middle_states, failed = _states(scene, name, points, None, tilt, workers, progress)
         same = (middle_states[where, columns] == before) & ~failed[where]
         low, high = np.where(same, middle, low), np.where(same, high, middle)
     boundaries = 0.5 * (low + high)
@@ -383,13 +384,13 @@ def _bands(scene, name, changes, tilt, workers):
     return tuple(bands), ends
 
 
-def _scanned(scene, name, changes, tilt, workers):
+def _scanned(scene, name, changes, tilt, workers, progress):
     """Return (the changes about 0 up to the first that cannot be run, their states, why there).
 
     The last is a dict of "ends_down" and "ends_up".
     """
     changes, scenes, ends = _scenes(scene, name, changes)
-    states, failed = _states(scene, name, changes, scenes, tilt, workers)
+    states, failed = _states(scene, name, changes, scenes, tilt, workers, progress)
     if failed[changes == 0].any():
         raise SceneError(
             name, None, f"the analytic model fails on the scene as it is: {why_it_fails(scene)}", "change the scene"
@@ -431,13 +432,13 @@ def _scenes(scene, name, changes):
     return np.array(ordered), [valid[change] for change in ordered], ends
 
 
-def _states(scene, name, changes, scenes, tilt, workers):
+def _states(scene, name, changes, scenes, tilt, workers, progress):
     """Return (states, which runs failed).
 
     states : array (changes, LIMIT_STATES and one more): those reached, and whether the model is valid.
     """
     if scene.is_stack:
-        return _stack_states(scene, name, changes, tilt)
+        return _stack_states(scene, name, changes, tilt, progress)
     if scenes is None:
         scenes = [QUANTITIES[name].changed(scene, 1 + change) for change in changes]
     scales = 1 + changes if name == "motion" else None
@@ -459,11 +460,13 @@ def _states(scene, name, changes, scenes, tilt, workers):
     return reached, outcomes.failed
 
 
-def _stack_states(scene, name, changes, tilt):
+def _stack_states(scene, name, changes, tilt, progress):
     """Return what `_states` does, of a scene with a free pedestal."""
     farthest = scene.bearings.x_max if "stroke" in limit_states(scene) else math.inf
     rows = []
-    for factor in (1 + changes).tolist():
+    for k, factor in enumerate((1 + changes).tolist(), 1):
+        if progress:
+            progress(f"{name}, run {k} of {len(changes)}")
         changed = QUANTITIES[name].changed(scene, factor)
         run = simulate(
             changed.with_(motion=scene.motion.scaled(factor)) if name == "motion" else changed, history=False

@@ -235,15 +235,31 @@ class Chart:
         text = f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}" class="{kind}">{escape(words)}</text>'
         self.over.append(f"{_group(who, False)}{text}</g>" if who else text)
 
+    def lead(self, begin: Sequence[float], end: Sequence[float], who: str) -> None:
+        """Draw a thin line from a name to what it names, in a solver's colour."""
+        path = f"M{begin[0]:.1f} {begin[1]:.1f}L{end[0]:.1f} {end[1]:.1f}"
+        self.over.append(f'{_group(who, False)}<path class="lead" d="{path}"/></g>')
+
     def bar(self, low: float, high: float, place: float, who: str, kind: str, says: str = "") -> None:
         """Draw a bar along x at a place on y; kind: its class."""
         (x0, y), (x1, _) = self.at([low, high], [place, place])
         box = f'x="{x0:.1f}" y="{y - 5.5:.1f}" width="{x1 - x0:.1f}" height="11"'
-        self.over.append(f'{_group(who, False)}<rect class="{kind}" {box}{_pointer_words(says)}/></g>')
+        self.parts.append(f'{_group(who, False)}<rect class="{kind}" {box}{_pointer_words(says)}/></g>')
 
     def label(self, y: float, text: str, who: str = "", tone: str = "", look: Look | None = None) -> None:
         """Write the name of a line in the right margin, at the height where the line ends."""
         self.ends.append((float(self.at([self.x.low], [y])[0][1]), text, _group(who, False, tone, look)))
+
+    def legend(self, keys: Sequence[tuple[str, str]]) -> None:
+        """Write (picture, words) above the panel, which needs `legend_height` more room there (head).
+
+        A picture is drawn about (0, 0), at most 24 wide.
+        """
+        for line, row in enumerate(_legend_rows(keys, self.width), start=bool(self.title)):
+            y = 14 + 20 * line
+            for x, picture, words in row:
+                self.over.append(f'<g transform="translate({x + 14} {y - 4.5})" style="--c:var(--soft)">{picture}</g>')
+                self.over.append(f'<text x="{x + 30}" y="{y}" class="soft">{escape(words)}</text>')
 
     def cell(self, x: float, y: float, kind: str, sign: str, says: str) -> None:
         """Draw a cell of a matrix about (x, y), cells one apart, with a sign in it; kind: its class."""
@@ -301,6 +317,23 @@ class Chart:
             placed[place] = min(y, lowest), text, opening
             lowest = placed[place][0] - LETTER - 2
         return placed
+
+
+def _legend_rows(keys: Sequence[tuple[str, str]], width: int) -> list[list[tuple[int, str, str]]]:
+    """Return rows of (x, picture, words) that fit into a chart's width."""
+    rows, end = list[list[tuple[int, str, str]]](), width
+    for picture, words in keys:
+        long = 40 + round(LETTER * 0.57 * len(words))
+        if end + long > width:
+            rows, end = [*rows, []], 0
+        rows[-1].append((end, picture, words))
+        end += long
+    return rows
+
+
+def legend_height(keys: Sequence[tuple[str, str]], width: int) -> int:
+    """Return the height of a legend above a panel."""
+    return 20 * len(_legend_rows(keys, width))
 
 
 def slanting(words: Sequence[str], width: float) -> bool:
@@ -364,7 +397,8 @@ def alone(svg: str) -> str:
     """Return a chart's element as a file of its own, light or dark by the reader's choice."""
     named = svg.replace("<svg ", '<svg xmlns="http://www.w3.org/2000/svg" ', 1)
     opening, rest = named[: named.index(">") + 1], named[named.index(">") + 1 :]
-    return f"{opening}<style>{STYLE.read_text(encoding='utf-8')}</style>{rest}\n"
+    paper = ":root { background: var(--paper); }"  # readable on any page
+    return f"{opening}<style>{STYLE.read_text(encoding='utf-8')}{paper}</style>{rest}\n"
 
 
 def _scale_of(axis, begin, end):

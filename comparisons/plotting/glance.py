@@ -6,15 +6,14 @@ Each chart is drawn for a wide page and for a phone; a style shows one of them.
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
-
-import numpy as np
-from markupsafe import Markup
+from typing import Any
 
 from ..metrics.statistics import equality
 from ..schemas.columns import percent, short
-from .charts import LETTER, WIDTH, Axis, Chart, broad
+from .charts import LETTER, SHAPES, WIDTH, Axis, Chart, broad, engine_of, legend_height
+from .names import Named, write_names
 from .parts import Figure, Table, grouped
+from .wording import listed
 
 
 @dataclass(frozen=True)
@@ -90,16 +89,17 @@ class Glance:
 WIDE = 590
 WORST = 1.0  # largest error on the axis; a larger one stands at the frame
 FINEST = -6  # power of ten at which the axis of errors ends if no engine has an error
-LINE = 15  # height of a row of the second chart
+LINE = 17  # height of a row of the second chart
 COLUMNS: tuple[tuple[int, str, Callable[[Endings], str]], ...] = (
-    (80, "differ", lambda row: f"{row.differing} of {row.runs}"),
-    (130, "missed", lambda row: _count_text(row, "missed")),
-    (176, "added", lambda row: _count_text(row, "added")),
-    (216, "other", lambda row: _count_text(row, "other")),
-    (248, "late", lambda row: _count_text(row, "late")),
-    (292, "failed", lambda row: _count_text(row, "failed")),
-    (350, "left out", lambda row: _left_out_text(row)),
+    (74, "differ", lambda row: f"{row.differing} of {row.runs}"),
+    (127, "missed", lambda row: _count_text(row, "missed")),
+    (172, "added", lambda row: _count_text(row, "added")),
+    (211, "other", lambda row: _count_text(row, "other")),
+    (240, "late", lambda row: _count_text(row, "late")),
+    (284, "failed", lambda row: _count_text(row, "failed")),
+    (346, "left out", lambda row: _left_out_text(row)),
 )  # beside the bars: where a column ends, its head, its words
+PHONE_COLUMNS = (COLUMNS[0], (138, *COLUMNS[-1][1:]))
 WAYS = {
     "missed": "overturning missed",
     "added": "overturning added",
@@ -108,6 +108,7 @@ WAYS = {
     "failed": "failed",
     "untold": "another outcome or failed",
 }
+SHORT = {"untold": "not told apart"}  # in the legend; the names of the other ways are words
 
 
 def _count_text(row, way):
@@ -142,33 +143,24 @@ def counted(motions: str, rows: Iterable[Mapping[str, Any]]) -> tuple[Endings, .
     return tuple(endings_of)
 
 
-class Box(NamedTuple):
-    """Where a name stands in a chart."""
-
-    left: float
-    top: float
-    right: float
-    bottom: float
-
-    def holds(self, x: float, y: float) -> bool:
-        return self.left - 3 < x < self.right + 3 and self.top - 3 < y < self.bottom + 3
-
-    def meets(self, other: "Box") -> bool:
-        apart = self.right < other.left or other.right < self.left or self.bottom < other.top or other.bottom < self.top
-        return not apart
-
-
 def costs(curves: Sequence[Curve]) -> Figure:
-    """Draw error over cost: a curve through the levels of each solver, its name beside it."""
+    """Draw error over cost: a curve through the levels of each solver, its name beside it.
+
+    A phone has no room for the names of all: there only subject engines and the model are drawn, if there are any.
+    """
     caption = (
-        "Each mark is one step size, stiffness or tolerance. Crosses: levels at which impacts were missed. Open marks: "
-        "defaults that missed none. Marks on the edge lie outside the plot. Lower left is better."
+        "Each mark is one step size, stiffness or tolerance. Marks on the edge lie outside the plot. "
+        "Lower left is better."
     )
-    return broad(_cost_chart(curves, WIDE), [_cost_chart(curves, WIDTH)], caption)
+    drawn = [curve for curve in curves if curve.points]
+    few = [curve for curve in drawn if curve.subject or curve.kind == "model"]
+    few = few if any(curve.subject for curve in few) else drawn
+    others = list(dict.fromkeys(engine_of(curve.who) for curve in drawn if curve not in few))
+    title = f"Without {listed(others)}" if others else ""
+    return broad(_cost_chart(drawn, WIDE), [_cost_chart(few, WIDTH, title)], caption)
 
 
-def _cost_chart(curves: Sequence[Curve], width: int) -> Chart:
-    shown = [curve for curve in curves if curve.points]
+def _cost_chart(shown: Sequence[Curve], width: int, title: str = "") -> Chart:
     values = [cpu for curve in shown for cpu, *_ in curve.points]
     low, high = math.floor(math.log10(min(values))), math.ceil(math.log10(max(values)))
     decades = tuple((10.0**power, _seconds(power)) for power in range(low, high + 1))
@@ -178,10 +170,15 @@ def _cost_chart(curves: Sequence[Curve], width: int) -> Chart:
     x = Axis("CPU time per simulated second", 10.0**low, 10.0**high, "log", decades)
     y = Axis("error of peak tilt / slenderness γ", 10.0**finest, WORST * 1.0001, "log", shares)
     says = f"Error of peak tilt over CPU time of {', '.join(curve.who for curve in shown)}."
-    chart = Chart(x, y, says, height=400 if width == WIDE else 420, width=width, left=72, right=16)
+    keys = _cost_keys(shown)
+    head = legend_height(keys, width)
+    chart = Chart(
+        x, y, says, height=500 + head, width=width, left=72, right=16 + 20 * (width == WIDE), head=head, title=title
+    )
+    chart.legend(keys)
     places, ordered = {}, sorted(shown, key=lambda curve: curve.subject)
     drawn = [
-        [(cpu, min(max(error, 10.0**finest), WORST), sound, says) for cpu, error, sound, says in curve.points]
+        [(cpu, min(max(error, y.low), WORST), sound, says) for cpu, error, sound, says in curve.points]
         for curve in ordered
     ]
     for curve, points in zip(ordered, drawn, strict=True):
@@ -200,11 +197,21 @@ def _cost_chart(curves: Sequence[Curve], width: int) -> Chart:
                 says=[point[3] for point in chosen],
                 mark="x" if missed else None,
             )
-    named = [
-        curve for curve in shown if width == WIDE or curve.subject or curve.kind == "model"
-    ]  # the others: by the pointer
-    _write_names(chart, sorted(named, key=lambda curve: not curve.subject), places)
+    names = [
+        Named(name, members[0].who, members[0].subject, [places[curve.who] for curve in members])
+        for (name,), members in grouped(shown, lambda curve: curve.name).items()
+    ]
+    # the subjects' first, then those with few marks, which leave the least choice
+    write_names(chart, sorted(names, key=lambda named: (not named.bold, sum(map(len, named.curves)))))
     return chart
+
+
+def _cost_keys(shown):
+    """Return (picture, words) of marks that are not the engine's own, where they occur."""
+    missed = any(not sound for curve in shown for *_, sound, _ in curve.points)
+    opened = any(sound for curve in shown if curve.kind == "defaults" for *_, sound, _ in curve.points)
+    keys = (("dot", "x", "impacts missed", missed), ("dot open", "o", "defaults, no impact missed", opened))
+    return [(f'<path class="{kind}" d="{SHAPES[mark]}"/>', words) for kind, mark, words, occurs in keys if occurs]
 
 
 def _seconds(power: int) -> str:
@@ -212,59 +219,13 @@ def _seconds(power: int) -> str:
     return f"{10.0**power:g} s" if power >= 0 else f"{10.0 ** (power + 3):g} ms"
 
 
-def _write_names(chart, curves, places):
-    """Write the name of each curve where it covers least: no other name, and no mark."""
-    taken: list[Box] = []
-    marks = [tuple(mark) for points in places.values() for mark in _points_of_line(points)]
-    for curve in {curve.name: curve for curve in curves}.values():
-        points = np.concatenate([places[each.who] for each in curves if each.name == curve.name])
-        box, place, aside, anchor = min(
-            _name_places(curve, points), key=lambda spot: _covering(chart, spot[0], taken, marks)
-        )
-        taken.append(box)
-        kind = "soft" if curve.subject else "soft plain"
-        chart.named(place, curve.name, curve.who, aside=aside, anchor=anchor, kind=kind)
-
-
-def _name_places(curve, places):
-    """Yield where a name may stand, (box, mark, offset, anchor): beside the last mark, the first, then any."""
-    long = len(curve.name) * LETTER * (0.6 if curve.subject else 0.53)  # the names of subject engines are bold
-    for at in dict.fromkeys([len(places) - 1, 0, *range(len(places))]):
-        x, y = places[at]
-        for aside, anchor, left in (
-            ((8, 4.5), "start", x + 8),
-            ((0, -9), "middle", x - long / 2),
-            ((0, 18), "middle", x - long / 2),
-            ((-8, 4.5), "end", x - 8 - long),
-            ((0, -24), "middle", x - long / 2),
-            ((0, -39), "middle", x - long / 2),
-            ((6, -8), "start", x + 6),
-            ((6, 17), "start", x + 6),
-            ((-6, -8), "end", x - 6 - long),
-            ((-6, 17), "end", x - 6 - long),
-        ):
-            yield Box(left, y + aside[1] - 10, left + long, y + aside[1] + 3), (x, y), aside, anchor
-
-
-def _covering(chart, box, taken, marks):
-    outside = box.left < chart.left or box.right > chart.right or box.top < chart.top or box.bottom > chart.bottom
-    return 1000 * outside + 100 * sum(box.meets(other) for other in taken) + sum(box.holds(*mark) for mark in marks)
-
-
-def _points_of_line(places):
-    """Yield the marks of a curve and points between them, as names must not cover its line either."""
-    for begin, end in zip(places, places[1:], strict=False):
-        for k in range(5):
-            yield tuple(begin + (end - begin) * k / 5)
-    yield tuple(places[-1])
-
-
 def endings(shares: Sequence[Endings]) -> Figure:
     """Draw the shares of runs that end otherwise than the model's, motion by motion."""
     caption = (
         "Lines: 95 % intervals; runs under one motion count as one. Missed: overturns in the model alone. Added: "
         "overturns in the engine alone. Other: stands, slides or rocks instead, or the other one of two blocks "
-        "overturns. Late: both overturn, at different times. Failed: no result, or an unphysical one. Left out in "
+        "overturns. Late: both overturn, at different times. Failed: no result, or an unphysical one. Not told apart: "
+        "another outcome or failed, not stored which. Left out in "
         "every row: runs near an outcome boundary of the model, where a change of the scene by 10⁻⁴ changes its end "
         "(pulses: within 1 % of the boundary); the column says how many of them overturn in engine or model alone, or "
         "fail. –: not tested, or not stored. Defaults were run in fewer scenes. Pulses under which the block would "
@@ -274,22 +235,38 @@ def endings(shares: Sequence[Endings]) -> Figure:
 
 
 def _endings_chart(rows: Sequence[Endings], width: int) -> Chart:
-    groups = grouped(rows, lambda row: row.motions)
-    lines: list[Endings | str] = [line for (motions,), members in groups.items() for line in (motions, *members)]
-    shown = COLUMNS if width == WIDE else COLUMNS[:1]
+    """Draw a bar for each row, counts beside it; on a phone those of its ways stand in a line below it."""
+    wide = width == WIDE
+    columns = COLUMNS if wide else PHONE_COLUMNS
+    keys = [
+        (f'<rect class="ends-{way}" x="-12" y="-5.5" width="24" height="11"/>', SHORT.get(way, way))
+        for way in WAYS
+        if any(getattr(row, way) for row in rows)
+    ]
+    places: list[tuple[float, Endings | str]] = []
+    end = 0.0
+    for (motions,), members in grouped(rows, lambda row: row.motions).items():
+        places.append((end, motions))
+        end += 1
+        for row in members:
+            places.append((end, row))
+            end += 1 if wide or not row.differing else 2
+        end += 0.5  # no head touches the rows above
+    head = legend_height(keys, width) + 14
     chart = Chart(
         Axis("", 0, 1, ticks=((0, "0"), (0.5, "50"), (1, "100 %"))),
-        Axis("", len(lines) - 0.4, -0.6, ticks=()),
+        Axis("", end - 0.8, -0.8, ticks=()),
         f"Share of runs whose outcome differs: {'; '.join(map(_in_words, rows))}.",
-        height=52 + LINE * len(lines),
+        height=40 + head + round(LINE * end),
         width=width,
-        left=12 + round(LETTER * 0.57 * max(len(f"{row.engine}, {row.kind}") for row in rows)),
-        right=shown[-1][0] + 12,
-        head=12,
+        left=8 + round(LETTER * 0.57 * max(len(f"{row.engine}, {row.kind}") for row in rows)),
+        right=columns[-1][0] + 6,
+        head=head,
     )
-    for aside, heading, _ in shown:
-        chart.beside(1, -0.6, heading, aside=(aside, -5), anchor="end")
-    for place, row in enumerate(lines):
+    chart.legend(keys)
+    for aside, heading, _ in columns:
+        chart.beside(1, -0.8, heading, aside=(aside, -5), anchor="end")
+    for place, row in places:
         if isinstance(row, str):
             chart.beside(0, place, row, aside=(4 - chart.left, 4.5), kind="title")
             continue
@@ -301,8 +278,11 @@ def _endings_chart(rows: Sequence[Endings], width: int) -> Chart:
                 chart.bar(at, at + count / row.runs, place, who, f"ends-{way}", f"{count} of {row.runs}: {words}")
                 at += count / row.runs
         chart.reach([at], [place], [row.interval[0]], [row.interval[1]], along="x")
-        for aside, _, text in shown:
+        for aside, _, text in columns:
             chart.beside(1, place, text(row), aside=(aside, 4.5), anchor="end")
+        if row.differing and not wide:
+            ways = ", ".join(f"{count} {SHORT.get(way, way)}" for way in WAYS if (count := getattr(row, way)))
+            chart.beside(1, place + 0.9, ways, aside=(columns[0][0], 4.5), anchor="end", kind="soft clear")
     return chart
 
 
@@ -310,11 +290,3 @@ def _in_words(row: Endings) -> str:
     share = percent(row.differing / row.runs)
     ways = [f"{count} {words}" for way, words in WAYS.items() if (count := getattr(row, way))]
     return f"{row.motions}, {row.engine}, {row.kind}: {'; '.join((f'{share} of {row.runs}', *ways))}"
-
-
-def swatches(shares: Sequence[Endings]) -> list[tuple[Markup, str]]:
-    """Return (picture, words) of each part of bars that occurs."""
-    shape = '<rect class="ends-{}" width="31" height="12" x=".5" y="1"/></svg>'
-    picture = f'<svg class="chart mini" viewBox="0 0 32 14" aria-hidden="true" style="--c:var(--soft)">{shape}'
-    shown = {way: words for way, words in WAYS.items() if any(getattr(row, way) for row in shares)}
-    return [(Markup(picture.format(way)), words) for way, words in shown.items()]

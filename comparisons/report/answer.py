@@ -18,7 +18,7 @@ from engines import ENGINES, missing_words
 from ..execution.by_solver import age, by_engine, date_of, last_check, origins_of, results_in
 from ..execution.results import RESULTS, Result, ResultError
 from ..execution.writing import readable
-from ..plotting.glance import Endings, Glance, costs, endings, swatches
+from ..plotting.glance import Endings, Glance, costs, endings
 from ..plotting.parts import COST, RESTITUTION, Judgement, Mark, Section, grouped
 from ..plotting.wording import listed, outcomes, rating, with_counts
 from ..schemas.columns import number, percent
@@ -301,7 +301,6 @@ def screen(setups: Sequence[Setup], judgements: Sequence[Judgement], glances: It
         "scene": curves and curves.scene,
         "costs": curves and costs(curves.curves),
         "endings": endings(shares) if shares else None,
-        "swatches": swatches(shares),
         "advice": next((glance.advice for glance in given if glance.advice), ()),
     }
 

@@ -131,9 +131,10 @@ def near_boundaries(result: Result) -> str:
     It is "" without tuned engines.
     """
     rows = where(together(result), tier="tuned")
-    missed, added, failed, size, near, on_edge = (
-        sum(row[key] for row in rows) for key in ("only_a", "only_b", "failed", "size", "near", "on_edge")
+    missed, added, failed, size, near = (
+        sum(row[key] for row in rows) for key in ("only_a", "only_b", "failed", "size", "near")
     )
+    on_edge = sum(map(apart_near, rows))
     if not rows:
         return ""
     return (
@@ -151,6 +152,11 @@ def _unsafe(row):
 def apart(row: dict[str, Any]) -> int:
     """Return the number of runs that an engine ends differently from the model, failed ones included."""
     return row["only_a"] + row["only_b"] + row["failed"]
+
+
+def apart_near(row: dict[str, Any]) -> int:
+    """Return the number of these that are near an outcome boundary of the model."""
+    return row["near_missed"] + row["near_added"] + row["near_failed"]
 
 
 def name_of(row: dict[str, Any]) -> str:
@@ -375,45 +381,38 @@ def _pairs(result):
 def judgements(result: Result) -> tuple[Judgement, ...]:
     """Judge whether engines end as the model does under a table's motions, by (engine, variant)."""
     marks = {(row["engine"], row["variant"]): equal_mark(tally_of(row)) for row in together(result)}
-    heading = "runs that differ or fail under shake-table motions, near outcome boundaries too"
-    return (Judgement(heading, marks),) if marks else ()
+    return (Judgement("runs that differ or fail under shake-table motions", marks),) if marks else ()
 
 
 def glance(result: Result) -> Glance:
     """Return the sentences and outcomes for the report's first screen."""
-    endings = tuple(_endings(row, result.settings["records"]) for row in together(result))
+    endings = tuple(map(_endings, together(result)))
     return Glance(says={"real": words} if (words := at_a_glance(result)) else {}, endings=endings)
 
 
-def _endings(row, records):
-    """Outcomes of an engine's runs away from the model's outcome boundaries.
-
-    It is not stored which way the outcomes near a boundary differ. If some do, the directions of all others are unknown
-    too. Each record is taken to have runs away from the boundaries.
-    """
-    runs, differing = row["size"] - row["near"], apart(row) - row["on_edge"]
-    hidden, groups = row["on_edge"] > 0, min(records, runs)
+def _endings(row):
+    """Outcomes of an engine's runs away from the model's outcome boundaries."""
     return Endings(
         "shake-table motions",
         row["engine"],
         row["variant"],
         row["tier"],
-        runs,
-        failed=0 if hidden else row["failed"],
-        missed=0 if hidden else row["only_a"],
-        added=0 if hidden else row["only_b"],
+        row["size"] - row["near"],
+        failed=row["failed"] - row["near_failed"],
+        missed=row["only_a"] - row["near_missed"],
+        added=row["only_b"] - row["near_added"],
         other=0,
-        interval=wilson(differing / runs * groups, groups) if runs else (0.0, 1.0),
-        untold=differing if hidden else 0,
+        interval=tuple(row["interval"]),
         left_out=row["near"],
-        left_differing=row["on_edge"],
+        left_differing=apart_near(row),
     )
 
 
 def tally_of(row: dict[str, Any]) -> dict[str, Any]:
-    """Return the row of an engine in the form that `wording.equal_mark` reads."""
-    tally = {"runs": row["size"], "differing": apart(row), "share": apart(row) / row["size"]}
-    return tally | {key: row[key] for key in ("failed", "equal", "interval")}
+    """Return the runs of an engine away from outcome boundaries, in the form that `wording.equal_mark` reads."""
+    runs, differing = row["size"] - row["near"], apart(row) - apart_near(row)
+    tally = {"runs": runs, "differing": differing, "share": differing / runs if runs else 0.0}
+    return tally | {"failed": row["failed"] - row["near_failed"], **{key: row[key] for key in ("equal", "interval")}}
 
 
 def _score(rows, **wanted):
@@ -461,7 +460,8 @@ def _table_of_engines(result, engines):
     equal = Column("equal", lambda row: "inconclusive" if row["equal"] == TOO_FEW else row["equal"])
     return table(
         "Engines against the model at the same slenderness. At most: the upper end of the 95 % interval (Wilson, by "
-        f"record). {'Equal: at most 5 %. ' if judged else ''}In brackets: the number of records on which most "
+        "record) of the share that differs away from outcome boundaries. "
+        f"{'Equal: at most 5 %. ' if judged else ''}In brackets: the number of records on which most "
         "differences go that way. Last column: differing runs, of those in which a change of the scene by 10⁻⁴ changes "
         "the model’s own outcome or the time of its fall",
         where(engines, specimen=ALL) or engines,
@@ -474,7 +474,7 @@ def _table_of_engines(result, engines):
         Column("added", "{only_b} ({records_b})"),
         COLUMNS["p_records"],
         COLUMNS["failed"],
-        Column("differing near an outcome boundary", "{on_edge} of {near}"),
+        Column("differing near an outcome boundary", lambda row: f"{apart_near(row)} of {row['near']}"),
     )
 
 

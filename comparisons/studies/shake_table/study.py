@@ -29,7 +29,7 @@ from ...execution.plan import Batch, Computed, Plan, Request
 from ...execution.progress import bar
 from ...execution.results import Result
 from ...execution.sweep import Row
-from ...metrics.statistics import EQUAL, Confusion, clustered, confusion, equality, mcnemar
+from ...metrics.statistics import EQUAL, TOO_FEW, Confusion, clustered, confusion, equality, mcnemar
 from ...schemas.columns import declared, list_of, number_of, whole_of, word_of
 from ..rows import SHARED
 from .campaign import ALL, WHERE, Campaign, disclosed, outcomes_of, read_campaign
@@ -86,7 +86,9 @@ COLUMNS = SHARED | declared(
     whole_of(
         "near", "near", "tests in which a change of the scene by 1e-4 changes the model's outcome or time of a fall"
     ),
-    whole_of("on_edge", "on edge", "differing tests among those"),
+    whole_of("near_missed", "near missed", "tests among those that overturn in the model alone"),
+    whole_of("near_added", "near added", "tests among those that overturn in the engine alone"),
+    whole_of("near_failed", "near failed", "runs among those that failed"),
     word_of(
         "equal", "equal", "whether the engine ends as the model does, as comparisons.metrics.statistics.equality says"
     ),
@@ -105,8 +107,8 @@ PARTS = {
     "paired": """engine variant specimen forecast beside difference interval more_right more_interval disagree
             right""",
     "engine": """engine variant tier specimen size failed both_stand both_overturn only_a only_b p_value?
-            records_a records_b p_records? near on_edge equal interval right? low? high? misses? false_alarms?
-            model_right? tilt?""",
+            records_a records_b p_records? near near_missed near_added near_failed equal interval right? low? high?
+            misses? false_alarms? model_right? tilt?""",
     "failure": "engine variant specimen test kind reason message",
     "absent": "engine variant reason",
 }
@@ -197,12 +199,14 @@ def differences(engine: np.ndarray, model: np.ndarray, near: np.ndarray, records
 
     p_value: of a sign test over tests. records_a, records_b, p_records: of a sign test over records, each of which has
     the sign of most of its differences, as those under one record are alike. A failed run has no sign, but differs.
-    near: tests in which the model's own end is sensitive, see `ended_near`; on_edge: differences in these.
+    near: tests in which the model's own end is sensitive, see `ended_near`; near_missed, near_added, near_failed:
+    differences in these. equal and interval are of all others.
     """
     sound, run_tests = np.isin(engine, [STANDS, OVERTURNS]), engine != NOT_RUN
     names = np.array(records)
     pair = confusion(model[sound] == OVERTURNS, engine[sound] == OVERTURNS) if sound.any() else Confusion(0, 0, 0, 0)
-    equal, interval = equality((engine != model)[run_tests], names[run_tests].tolist())
+    away, edge = run_tests & ~near, run_tests & near
+    equal, interval = equality((engine != model)[away], names[away].tolist()) if away.any() else (TOO_FEW, (0.0, 1.0))
     sign = np.where(sound, (model == OVERTURNS).astype(int) - (engine == OVERTURNS), 0)
     by_record = [int(np.sign(sign[names == name].sum())) for name in dict.fromkeys(records)]
     model_alone, engine_alone = by_record.count(1), by_record.count(-1)
@@ -216,8 +220,10 @@ def differences(engine: np.ndarray, model: np.ndarray, near: np.ndarray, records
         "p_records": float(binomtest(model_alone, model_alone + engine_alone).pvalue)
         if model_alone + engine_alone
         else None,
-        "near": int((run_tests & near).sum()),
-        "on_edge": int((run_tests & near & (engine != model)).sum()),
+        "near": int(edge.sum()),
+        "near_missed": int((sign[edge] == 1).sum()),
+        "near_added": int((sign[edge] == -1).sum()),
+        "near_failed": int((engine[edge] == FAILED).sum()),
         "equal": equal,
         "interval": list(interval),
     }

@@ -5,8 +5,9 @@ from itertools import product
 
 import numpy as np
 import pytest
-from stack_scenes import FIGURE, GRAVITY, STACK, random_stack
+from stack_scenes import FIGURE, GRAVITY, STACK, random_stack, rectangle
 
+from analytic import Pedestal, Scene
 from analytic.rocking import RockingModel, momentum_restitution, uplift_of_both
 from analytic.stack.equations import LOWER, UPPER, StackModel
 
@@ -116,6 +117,21 @@ def test_a_statue_on_a_wide_pedestal_lands_by_eqs_7_and_8(base):
         assert not others and answer.sides == [0, 0 if e < 0 else -1]
         assert [answer.rates[1], answer.v - v] == pytest.approx([kept * rate, jump], abs=1e-11)
     assert 0 < flat < 60
+
+
+def test_a_landing_by_hand():
+    """A statue of 120 kg, .2 x .6 m, lands at 1 rad/s on a pedestal .74 m high.
+
+    By eq. (7) e = 1 - 1.5 b^2/R^2 = 1 - .015/.1 = .85. The statue gets m b (1 + e) = 22.2 N s upward and m h (1 - e) =
+    5.4 N s along. So the pedestal stays down if 22.2 (b_1 - .1) > 5.4 x .74: if it is wider than 2 x .28 m.
+    """
+    scene = Scene(block=rectangle(0.2, 0.6, 120.0), pedestal=Pedestal(width=0.561, mass=600.0, height=0.74, free=True))
+    landing = (0, 1), (0.0, 0.0), (0.0, -1.0), 0.0, (True, True)
+    wide, *none = StackModel.of(scene).impact(*landing)
+    assert not none and wide.sides == [0, -1] and wide.rates == pytest.approx((0.0, -0.85), abs=1e-12)
+    assert wide.impulses == pytest.approx((5.4 + 22.2j, 5.4 + 22.2j), abs=1e-10)
+    narrow, *none = StackModel.of(scene.with_(pedestal={"width": 0.559})).impact(*landing)
+    assert not none and narrow.sides == [-1, -1] and -1e-2 < narrow.rates[0] < 0
 
 
 def moment(slab, place, velocity, rate):

@@ -269,7 +269,8 @@ def test_differences_of_an_engine_and_their_sign_by_hand():
     assert (said["size"], said["failed"], said["only_a"], said["only_b"]) == (9, 1, 4, 0)
     assert (said["both_overturn"], said["both_stand"]) == (2, 2) and said["p_value"] == pytest.approx(0.125)
     assert (said["records_a"], said["records_b"], said["p_records"]) == (2, 0, pytest.approx(0.5))
-    assert said["on_edge"] == 2 and said["interval"] == pytest.approx(wilson(5 / 9 * 4, 4))
+    assert (said["near"], said["near_missed"], said["near_added"], said["near_failed"]) == (2, 2, 0, 0)
+    assert said["interval"] == pytest.approx(wilson(3 / 7 * 4, 4))  # of the others: 2 missed, 1 failed, by 4 records
 
 
 @pytest.mark.parametrize("sizes, few", [((5,), False), ((12, 0), False), ((4,), True), ((12, 1), True), ((0, 4), True)])
