@@ -20,10 +20,10 @@ from .wording import listed
 class Endings:
     """Counts of a variant's runs that end otherwise than the model's, under one kind of motion.
 
-    motions: the kind of motion. kind: of the variant. runs: judged runs, away from the model's outcome boundaries. Six
+    motions: the kind of motion. kind: of the variant. runs: judged runs, away from the model's outcome boundaries. Five
     counts of them: failed; missed, the block overturns in the model alone; added, in the engine alone; other, neither
-    overturns and the outcomes differ; late, both overturn, at different times (None: not tested); untold, another
-    outcome or failed, but not known which. interval: 95 % interval of the share of all six.
+    overturns and the outcomes differ; late, both overturn, at different times (None: not tested). interval: 95 %
+    interval of the share of all five.
 
     left_out: further runs, near a boundary. left_differing: those of them that overturn in engine or model alone, or
     failed; None: not known.
@@ -40,14 +40,13 @@ class Endings:
     other: int
     interval: tuple[float, float]
     late: int | None = None
-    untold: int = 0
     left_out: int = 0
     left_differing: int | None = None
 
     @property
     def changed(self) -> int:
         """Number of runs with another outcome, or none."""
-        return self.failed + self.missed + self.added + self.other + self.untold
+        return self.failed + self.missed + self.added + self.other
 
     @property
     def differing(self) -> int:
@@ -75,11 +74,11 @@ class Curve:
 class Glance:
     """A study's part of the report's first screen.
 
-    says: {line of the answer: its sentences}. endings: by motion and variant. curves: of solvers, in the scene named
-    `scene`. advice: tables of which level to use.
+    says: {line of the first screen: (answer, details)}, in sentences. endings: by motion and variant. curves: of
+    solvers, in the scene named `scene`. advice: tables of which level to use.
     """
 
-    says: Mapping[str, str] = field(default_factory=dict)
+    says: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     endings: tuple[Endings, ...] = ()
     curves: tuple[Curve, ...] = ()
     scene: str = ""
@@ -106,15 +105,13 @@ WAYS = {
     "other": "another outcome",
     "late": "falls at another time",
     "failed": "failed",
-    "untold": "another outcome or failed",
 }
-SHORT = {"untold": "not told apart"}  # in the legend; the names of the other ways are words
 
 
 def _count_text(row, way):
     """Return how many runs end in that way; a dash where that is not known."""
     count = getattr(row, way)
-    return "–" if count is None or (row.untold and way != "late") else str(count)
+    return "–" if count is None else str(count)
 
 
 def _left_out_text(row):
@@ -139,7 +136,7 @@ def counted(motions: str, rows: Iterable[Mapping[str, Any]]) -> tuple[Endings, .
         _, interval = equality([row["class"] != "right" for row in runs], [row["group"] for row in runs])
         counts = len(runs), failed, missed, added, len(wrong) - missed - added - late
         near = sum(row["falls"] != row["model_falls"] for row in left)
-        endings_of.append(Endings(motions, engine, variant, kind, *counts, interval, late, 0, len(left), near))
+        endings_of.append(Endings(motions, engine, variant, kind, *counts, interval, late, len(left), near))
     return tuple(endings_of)
 
 
@@ -224,8 +221,7 @@ def endings(shares: Sequence[Endings]) -> Figure:
     caption = (
         "Lines: 95 % intervals; runs under one motion count as one. Missed: overturns in the model alone. Added: "
         "overturns in the engine alone. Other: stands, slides or rocks instead, or the other one of two blocks "
-        "overturns. Late: both overturn, at different times. Failed: no result, or an unphysical one. Not told apart: "
-        "another outcome or failed, not stored which. Left out in "
+        "overturns. Late: both overturn, at different times. Failed: no result, or an unphysical one. Left out in "
         "every row: runs near an outcome boundary of the model, where a change of the scene by 10⁻⁴ changes its end "
         "(pulses: within 1 % of the boundary); the column says how many of them overturn in engine or model alone, or "
         "fail. –: not tested, or not stored. Defaults were run in fewer scenes. Pulses under which the block would "
@@ -239,7 +235,7 @@ def _endings_chart(rows: Sequence[Endings], width: int) -> Chart:
     wide = width == WIDE
     columns = COLUMNS if wide else PHONE_COLUMNS
     keys = [
-        (f'<rect class="ends-{way}" x="-12" y="-5.5" width="24" height="11"/>', SHORT.get(way, way))
+        (f'<rect class="ends-{way}" x="-12" y="-5.5" width="24" height="11"/>', way)
         for way in WAYS
         if any(getattr(row, way) for row in rows)
     ]
@@ -281,7 +277,7 @@ def _endings_chart(rows: Sequence[Endings], width: int) -> Chart:
         for aside, _, text in columns:
             chart.beside(1, place, text(row), aside=(aside, 4.5), anchor="end")
         if row.differing and not wide:
-            ways = ", ".join(f"{count} {SHORT.get(way, way)}" for way in WAYS if (count := getattr(row, way)))
+            ways = ", ".join(f"{count} {way}" for way in WAYS if (count := getattr(row, way)))
             chart.beside(1, place + 0.9, ways, aside=(columns[0][0], 4.5), anchor="end", kind="soft clear")
     return chart
 

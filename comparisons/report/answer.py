@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from operator import attrgetter
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, NamedTuple, Self
 
 from engines import ENGINES, missing_words
 
@@ -284,6 +284,16 @@ def not_to_do(setups: Sequence[Setup]) -> list[str]:
 QUESTION = "How far can a multibody engine be trusted with a rocking body, and at what cost?"
 TUNED, DEFAULTS = "tuned", "defaults"
 LEVEL = "Level"  # a line of the first screen
+NOTHING = "", ""  # answer and details without a result
+
+
+class Line(NamedTuple):
+    """A line of the first screen: subject, id of the section of the page that it is from, answer, details."""
+
+    subject: str
+    section: str
+    answer: str
+    details: str
 
 
 def screen(setups: Sequence[Setup], judgements: Sequence[Judgement], glances: Iterable[Glance]) -> dict[str, Any]:
@@ -333,17 +343,20 @@ def title(shares: Sequence[Endings]) -> str:
 
 
 def lines(
-    setups: Sequence[Setup], judgements: Sequence[Judgement], shares: Sequence[Endings], says: Mapping[str, str]
-) -> list[tuple[str, str]]:
-    """Return up to five lines, (subject, sentences); those without a result are left out."""
-    pairs = [
-        ("Restitution (0 to 1)", _restitution(setups, judgements)),
-        ("Outcomes", " ".join(filter(None, (_outcomes(shares), _left_out(shares))))),
-        (LEVEL, says.get("level", "")),
-        ("Cost", says.get("cost", "")),
-        ("Real blocks", says.get("real", "")),
+    setups: Sequence[Setup],
+    judgements: Sequence[Judgement],
+    shares: Sequence[Endings],
+    says: Mapping[str, tuple[str, str]],
+) -> list[Line]:
+    """Return up to five lines; those without a result are left out."""
+    found = [
+        Line("Restitution (0 to 1)", "impact", *_restitution(setups, judgements)),
+        Line("Outcomes", "recorded", *_outcomes(shares)),
+        Line(LEVEL, "statues", *says.get("level", NOTHING)),
+        Line("Cost", "speed-error", *says.get("cost", NOTHING)),
+        Line("Real blocks", "shake-table", *says.get("real", NOTHING)),
     ]
-    return [pair for pair in pairs if pair[1]]
+    return [line for line in found if line.answer]
 
 
 def _of_kind(shares, tier):
@@ -361,7 +374,7 @@ def _by_engine(counts):
 
 
 def _restitution(setups, judgements):
-    """Return sentences on the error of restitution, from the first judgement on it."""
+    """Return the error of restitution from the first judgement on it, and what it is."""
     head = next((judgement.heading for judgement in judgements if judgement.key == RESTITUTION), None)
     columns = [setup for setup in setups if setup.in_first_table and head]
     parts = []
@@ -373,11 +386,11 @@ def _restitution(setups, judgements):
             who = "both" if len(deaf) == len(known) == 2 else listed(deaf)
             missing = f", and {who} miss{'es' * (len(deaf) == 1)} impacts" if deaf else ""
             parts.append(f"{begin} {_by_engine({who: number(mark.value, 2) for who, mark in known.items()})}{missing}.")
-    return f"{' '.join(parts)} Each value is the {head}." if parts else ""
+    return (" ".join(parts), f"Each value is the {head}.") if parts else NOTHING
 
 
 def _outcomes(shares):
-    """Return sentences on how many outcomes differ: under recorded motions, or the first ones; under all others."""
+    """Return how many outcomes differ under recorded motions, or the first ones, and sentences on times and others."""
     motions = next(
         (share.motions for share in shares if "record" in share.motions), shares[0].motions if shares else ""
     )
@@ -404,7 +417,10 @@ def _outcomes(shares):
             begin = first_words[:1].upper() if sentences else first_words[:1]
             others = "".join(f"; {who}, in {runs}" for who, runs in counts[1:])
             sentences.append(f"{begin}{first_words[1:]}{others}.")
-    return " ".join(sentences)
+    if not sentences:
+        return NOTHING
+    details = [*sentences[1:], "Runs near an outcome boundary are left out; the chart counts them."]
+    return sentences[0], " ".join(details)
 
 
 WHO = {TUNED: "tuned engines", DEFAULTS: "engines with defaults"}
@@ -430,15 +446,6 @@ def _all_motions(shares):
         if count and shares[0].kind == TUNED
     ]
     return f"{changed} of {runs} runs{f' ({listed(counts)})' if counts else ''}"
-
-
-def _left_out(shares):
-    """Return a sentence on how many runs of tuned engines the counts leave out, by motion."""
-    parts = []
-    for (motions,), members in grouped(_of_kind(shares, TUNED), lambda share: share.motions).items():
-        counts = dict.fromkeys(f"{share.left_out} of {share.runs + share.left_out}" for share in members)
-        parts.append(f"{' or '.join(counts)} ({motions})")
-    return f"Runs near an outcome boundary are left out: for each tuned engine {listed(parts)}." if parts else ""
 
 
 MOST_WARNINGS = 3  # of a scene, at the top of the page

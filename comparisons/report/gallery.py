@@ -45,8 +45,12 @@ def first_screen(stored: Sequence[Stored]) -> dict[str, Any]:
 def headlines(first: Mapping[str, Any]) -> str:
     """Return the first screen as Markdown: its lines, its charts, and the recommendation."""
     charts = " ".join(f"![{ALT[name]}](comparisons/report/gallery/{name}.svg)" for name in ALT if first[name])
-    lines = [(about, words) for about, words in first["lines"] if about != LEVEL]  # which the table says
-    items = [line for about, words in lines for line in wrap(f"- **{about}:** {words}", 120, subsequent_indent="  ")]
+    said = [line for line in first["lines"] if line.subject != LEVEL]  # which the table says
+    items = [
+        words
+        for line in said
+        for words in wrap(f"- **{line.subject}:** {line.answer} {line.details}", 120, subsequent_indent="  ")
+    ]
     return spelled(
         "\n".join((*items, "", charts, *(line for advised in first["advice"] for line in _markdown(advised))))
     )

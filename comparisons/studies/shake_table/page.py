@@ -82,28 +82,29 @@ def sentence(result: Result, engines: Sequence[dict[str, Any]]) -> str:
     return " ".join(words)
 
 
-def at_a_glance(result: Result) -> str:
-    """Return sentences on how often the model is right about real blocks; "" where it was not judged.
+def at_a_glance(result: Result) -> tuple[str, str]:
+    """Return how often the model and simpler forecasts are right about real blocks; "" where they were not judged.
 
-    Beside it stand simpler forecasts and, fitted by one rule with the model, engines.
+    Further sentences: whether the model is better, and engines that are fitted with it by one rule.
     """
     specimens = [specimen["name"] for specimen in result.settings["specimens"]]
     held = where(result.rows, part="score", judged=BY_RECORD)
     if not (model := where(held, forecast=MODEL)):
-        return ""
+        return "", ""
     rivals = {CURVE: "a curve in PGA and PGV predicts", THRESHOLD: "a threshold of PGV,", FREQUENT: f"{FREQUENT},"}
     rivals_right = [f"{words} {_right_in_words(where(held, forecast=name))}" for name, words in rivals.items()]
     same_rule = where(result.rows, part="score", judged=IN_SAMPLE, forecast=ONE)
     engines = grouped(where(result.rows, part="engine", specimen=set(specimens)), "engine", "variant").values()
     fitted = [f"{name_of(rows[0])}, {_right_in_words(rows)}" for rows in engines]
-    words = (
+    answer = (
         f"on records held out of its fit, the model predicts {_right_in_words(model)} of {model[0]['size']} "
         f"outcomes on a shake table ({listed(specimens)}). Judged in the same way, {'; '.join(rivals_right)}."
     )
-    if pairs := where(result.rows, part="paired", forecast=MODEL, beside=CURVE):
-        words += f" {_against_curve((where(pairs, specimen=ALL) or pairs)[-1], sum(row['size'] for row in model))}"
+    pairs = where(result.rows, part="paired", forecast=MODEL, beside=CURVE)
+    pair = (where(pairs, specimen=ALL) or pairs)[-1:]
+    better = [_against_curve(row, sum(each["size"] for each in model)) for row in pair]
     by_one_rule = "; ".join([f"model, {_right_in_words(same_rule)}", *fitted])
-    return f"{words} With one slenderness fitted to all tests: {by_one_rule}."
+    return answer, " ".join((*better, f"With one slenderness fitted to all tests: {by_one_rule}."))
 
 
 def _right_in_words(rows):
@@ -387,7 +388,7 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
 def glance(result: Result) -> Glance:
     """Return the sentences and outcomes for the report's first screen."""
     endings = tuple(map(_endings, together(result)))
-    return Glance(says={"real": words} if (words := at_a_glance(result)) else {}, endings=endings)
+    return Glance(says={"real": at_a_glance(result)}, endings=endings)
 
 
 def _endings(row):

@@ -178,7 +178,7 @@ def glance(result: Result) -> Glance | None:
     if not rows:
         return None
     return Glance(
-        says={"cost": words} if (words := at_a_glance(result)) else {},
+        says={"cost": at_a_glance(result)},
         curves=tuple(_curves(result, rows)),
         scene=result.settings["scenes"][PLAIN]["title"],
     )
@@ -245,21 +245,22 @@ def times(result: Result) -> str:
     return f"{listed(ratios)} times the analytic model’s CPU time" if ratios else ""
 
 
-def at_a_glance(result: Result) -> str:
-    """Return sentences on the CPU times at the error `ASKED`, and on what a script costs; "" where none reaches it."""
+def at_a_glance(result: Result) -> tuple[str, str]:
+    """Return the CPU times at the error `ASKED`, and further sentences; "" where none reaches it."""
     costs = _costs_at_asked(result)
     if not costs:
-        return ""
+        return "", ""
     engine_costs = listed([f"{number(1e3 * cost, 2)} ms ({engine})" for engine, cost, _ in costs])
     over = listed([number(cost / model, 2) for _, cost, model in costs])
     alike = max(cost for _, cost, _ in costs) <= noise(result) * min(cost for _, cost, _ in costs)
-    words = (
+    answer = (
         f"for a peak tilt within {percent(ASKED, 1)} of the slenderness, tuned engines take {engine_costs} of CPU time "
         f"per simulated second. The analytic model takes {number(1e3 * costs[0][2], 2)} ms, {over} times less."
     )
+    details = []
     if alike and len(costs) > 1:
-        words += (
-            " The engines do not differ in cost: the measured times do not distinguish costs within a factor of "
+        details.append(
+            "The engines do not differ in cost: the measured times do not distinguish costs within a factor of "
             f"{number(noise(result), 2)}."
         )
     scripts = [
@@ -267,7 +268,9 @@ def at_a_glance(result: Result) -> str:
         for row in _main_scene_rows(result)
         if row["variant"] == SCRIPT and row["error"] is not None
     ]
-    return f"{words} The scripts that rocking script writes take {listed(scripts)}." if scripts else words
+    if scripts:
+        details.append(f"The scripts that rocking script writes take {listed(scripts)}.")
+    return answer, " ".join(details)
 
 
 def _costs_at_asked(result):

@@ -41,20 +41,16 @@ def advised_levels(result: Result) -> tuple[Table, ...]:
     )
 
 
-def at_a_glance(result: Result) -> str:
-    """Return sentences on how often the levels to use keep `ASKED`; "" without rows of levels."""
-    if not where(result.rows, part="level"):
-        return ""
-    sentences = []
-    for accuracy in ASKED:
+def at_a_glance(result: Result) -> tuple[str, str]:
+    """Return how often the levels to use keep `ASKED`, and what the others are; "" without rows of levels."""
+    answer, details = [], []
+    for accuracy in ASKED if where(result.rows, part="level") else ():
         rows = [*_advised_rows(result, accuracy)]
         kept = listed([f"{_kept(row)} ({row['engine']}, {setting_of(row)})" for row in rows])
-        near = listed([str(row["missed_near"]) for row in rows])
-        sentences.append(
-            f"{percent(accuracy, 1)} accuracy is kept on {kept} of the drawn statues that stay upright. Of the others, "
-            f"{near} are near an outcome boundary."
-        )
-    return " ".join(sentences)
+        near = listed([f"{row['missed_near']} of {row['missed']}" for row in rows])
+        answer.append(f"{percent(accuracy, 1)} accuracy is kept on {kept} of the drawn statues that stay upright.")
+        details.append(f"{near} of the misses of {percent(accuracy, 1)} are near an outcome boundary.")
+    return " ".join(answer), " ".join(details)
 
 
 def _kept(row):

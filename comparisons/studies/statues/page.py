@@ -284,7 +284,7 @@ def glance(result: Result) -> Glance:
         if row["friction"] is not None
     ]
     return Glance(
-        says={"level": words} if (words := at_a_glance(result)) else {},
+        says={"level": at_a_glance(result)},
         endings=counted("blocks that may slide", runs),
         advice=advised_levels(result),
     )

@@ -111,4 +111,4 @@ def test_a_shake_table_is_counted_away_from_boundaries_too():
     ],
 )
 def test_the_model_is_better_than_the_curve_only_where_the_interval_says_so(more, words):
-    assert f"The model is {words} the curve: it is right in" in shaken(more=more).says["real"]
+    assert f"The model is {words} the curve: it is right in" in shaken(more=more).says["real"][1]
