@@ -60,7 +60,7 @@ def _markdown(shown):
 
 def origins(results: Mapping[str, Result]) -> str:
     """Return a table, in Markdown, of the origin of results {name: result}."""
-    rows = [["result", "computed", "commit", "processor, cores, memory", "engines", "runs that held when done again"]]
+    rows = [["result", "computed", "commit", "processor, cores, memory", "engines", "runs that held when repeated"]]
     rows += [["---"] * len(rows[0])]
     for name, result in results.items():
         engines = sorted({row["engine"] for row in result.rows if row.get("engine") in ENGINES})
