@@ -22,7 +22,10 @@ from .answer import LEVEL, Stored, commit_of, judgements_of, screen, setups_of, 
 GALLERY, README = Path(__file__).with_name("gallery"), PROJECT_FOLDER / "README.md"
 RESULTS_README = RESULTS / "README.md"
 BEGIN, END = "<!-- findings of the stored studies -->", "<!-- end of findings -->"
-ALT = {"costs": "Error of peak tilt over CPU time of every solver", "endings": "Share of outcomes that differ"}
+ALT = {
+    "costs": "Error of peak tilt over CPU time of every solver",
+    "endings": "Share of runs that differ from the model or fail",
+}
 
 
 def gallery(first: Mapping[str, Any]) -> dict[str, str]:
