@@ -74,9 +74,9 @@ def choose(
 ) -> None:
     """Find the cheapest engine variant that is accurate enough.
 
-    Each variant is run at its levels on the scene and on neighbours of it, whose start and motion are scaled by up to
-    5 %. The runs are compared with the analytic model; tilt and displacement only up to the sensitivity horizon. The
-    command also lists what need not be modelled. Status 1: no level passes.
+    Each variant is run at its levels on the scene, and on neighbours of it whose start and motion are scaled by up to
+    5 %. The runs are compared with the analytic model; tilt and displacement are compared only up to the sensitivity
+    horizon. The command also lists what need not be modelled. Status 1: no level passes.
 
     Example: rocking choose caryatid-isolated --for displacement --error 1e-3
     """
@@ -146,9 +146,10 @@ def margin(
     and finds the changes at which the block lifts or overturns. Two further limit states are a peak tilt above --tilt
     and a base displacement beyond the x_max of the bearings.
 
-    The steps are 1/400 of the span. On a free pedestal only motion or start is changed, by 1 %. A range ends where a
-    change gives no valid scene (a restitution above 1, ka below kb) or the model is no longer valid. Bearings are taken
-    as rigid in the vertical direction. Status 1: the model failed on the scene or under one of its motions.
+    The steps are 1/400 of the span. On a free pedestal only motion or start is changed, in steps of at least 1 %. The
+    range of a quantity ends where a change gives no valid scene (a restitution above 1, ka below kb), or where the
+    model is no longer valid. Bearings are taken as rigid in the vertical direction. Status 1: the model failed on the
+    scene or under one of its motions.
 
     Example: rocking margin caryatid-isolated --plot margins.svg
     """
@@ -268,11 +269,11 @@ def design(
     """Find suitable bearings, or compute bearing constants.
 
     With a scene: find bearings on which the block does not lift and the base stays within the stroke. If the scene
-    gives a friction, the block must not slide on its base either. For a block on the ground, also give the mass of a
-    base; --write adds it to the file. Status 1: on the bearings found, the model failed under a motion.
+    gives a friction coefficient, the block must not slide on its base either. For a block on the ground, also give the
+    mass of a base; --write adds it to the file. Status 1: on the bearings found, the model failed under a motion.
 
-    Without a scene: compute the constants of the bearings from a target period, damping, displacement and mass; or
-    those of pendulum bearings from radius, friction, displacement and mass.
+    Without a scene: compute the constants of lead-rubber bearings from a target period, damping, displacement and mass,
+    or those of pendulum bearings from radius, friction, displacement and mass.
 
     Example: rocking design bust.toml --stroke 0.25 --plot bearings.svg --write least-stroke
 

@@ -63,7 +63,8 @@ def new(
         float | None, typer.Option(help="Width of a pedestal under the block [m]: a block that slides falls off it.")
     ] = None,
     pedestal_mass: Annotated[
-        float | None, typer.Option(help="Mass of the pedestal [kg]; with its height, whether it stays is checked.")
+        float | None,
+        typer.Option(help="Mass of the pedestal [kg]; with its height, the command checks whether it stays."),
     ] = None,
     pedestal_height: Annotated[float | None, typer.Option(help="Height of the pedestal [m].")] = None,
     slides_freely: Annotated[

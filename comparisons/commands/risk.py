@@ -50,34 +50,36 @@ def risk(
         list[str] | None,
         typer.Option(
             metavar="NAME=COV",
-            help="Coefficient of variation of slenderness, restitution, friction, ka or kb; 0: not drawn. May be "
-            "repeated. The defaults are shown with the answer.",
+            help="Coefficient of variation of slenderness, restitution, friction, ka or kb; with 0 the value is not "
+            "drawn. May be repeated. The answer shows the defaults.",
         ),
     ] = None,
     draws: Annotated[
         int | None,
         typer.Option(
             metavar="NUMBER",
-            help=f"Draws of the values for each record. Default: {draws_of.DRAWS}, or {ALONE} under the scene's own "
-            "motion alone.",
+            help=f"Number of draws of the values for each motion. Default: {draws_of.DRAWS}, or {ALONE} under the "
+            "scene's own motion alone.",
         ),
     ] = None,
     motions: Annotated[
         int | None,
         typer.Option(
             metavar="NUMBER",
-            help=f"Synthetic motions in place of the scene's; 0: the scene's own alone. Default: {MOTIONS}; 0 if the "
-            "scene has a pulse or no motion.",
+            help="Number of synthetic motions in place of the scene's; with 0 the scene's own motion alone is used. "
+            f"Default: {MOTIONS}; 0 if the scene has a pulse or no motion.",
         ),
     ] = None,
     records: Annotated[
-        str | None, typer.Option(metavar="FOLDER", help="Records in place of synthetic motions: all in this folder.")
+        str | None, typer.Option(metavar="FOLDER", help="Use all records in this folder in place of synthetic motions.")
     ] = None,
     both_signs: BothSigns = False,
     directions: Directions = None,
     units: Units = None,
     pga: Annotated[float | None, typer.Option(metavar="G", help="Scale each motion to this peak, in g.")] = None,
-    pgv: Annotated[float | None, typer.Option(metavar="M/S", help="Scale each to this peak velocity, in m/s.")] = None,
+    pgv: Annotated[
+        float | None, typer.Option(metavar="M/S", help="Scale each motion to this peak velocity, in m/s.")
+    ] = None,
     seed: Annotated[int, typer.Option(help="Seed of the draws and of the synthetic motions.")] = 0,
     plot: Annotated[
         str | None, typer.Option(metavar="FILE", help="Draw the odds over the scale of the motions (.png, .svg, .pdf).")
@@ -86,10 +88,10 @@ def risk(
 ) -> None:
     """Find the odds of overturning if values are uncertain.
 
-    The command draws slenderness, restitution, friction, and ka and kb of the bearings about their values in the scene,
-    and runs the analytic model under many motions. It gives the probability of each limit state with a 95 % interval,
-    and the value on which it depends most. Synthetic motions have a PGA of 0.515 g and a PGV of some 0.8 m/s, unless
-    --pga or --pgv scales them. Status 1: the model failed on the unchanged scene under one of the motions.
+    The command draws slenderness, restitution, friction, and ka and kb of the bearings at random about their values in
+    the scene, and runs the analytic model under many motions. It gives the probability of each limit state with a 95 %
+    interval, and the value on which it depends most. Synthetic motions have a PGA of 0.515 g and a PGV of about
+    0.8 m/s, unless --pga or --pgv scales them. Status 1: the model failed on the unchanged scene under a motion.
 
     Example: rocking risk bust.toml --pga 0.4 --spread slenderness=0.05 --plot odds.svg
     """

@@ -64,8 +64,8 @@ Check = Annotated[
     typer.Option(
         metavar="N",
         min=1,
-        help="Rerun N randomly chosen stored runs and report how many agree. They are of the shipped result, or with "
-        "--output of the one in DIR. Status 1: not all agree.",
+        help="Rerun N randomly chosen stored runs and report how many agree. They are those of the shipped result, or "
+        "with --output of the result in DIR. Status 1: not all agree.",
     ),
 ]
 Write = Annotated[

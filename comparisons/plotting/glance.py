@@ -219,13 +219,14 @@ def _seconds(power: int) -> str:
 def endings(shares: Sequence[Endings]) -> Figure:
     """Draw the shares of runs that end otherwise than the model's, motion by motion."""
     caption = (
-        "Lines: 95 % intervals; runs under one motion count as one. Missed: overturns in the model alone. Added: "
-        "overturns in the engine alone. Other: stands, slides or rocks instead, or the other one of two blocks "
-        "overturns. Late: both overturn, at different times. Failed: no result, or an unphysical one. Left out in "
-        "every row: runs near an outcome boundary of the model, where a change of the scene by 10⁻⁴ changes its end "
-        "(pulses: within 1 % of the boundary); the column says how many of them overturn in engine or model alone, or "
-        "fail. –: not tested, or not stored. Defaults were run in fewer scenes. Pulses under which the block would "
-        "jump, and stacked blocks that leave the model, are not counted."
+        "Lines: 95 % intervals, in which runs under one motion count as one. Missed: the block overturns in the model "
+        "alone. Added: it overturns in the engine alone. Other: it stands, slides or rocks instead, or the other one "
+        "of two blocks overturns. Late: it overturns in both, at different times. Failed: no result, or an unphysical "
+        "one. Left out: runs near an outcome boundary, "
+        "which no other column counts. There, a change of the scene by 10⁻⁴ changes how the model ends (pulses: within "
+        "1 % of the boundary). Of these runs the column tells how many fail, or overturn in engine or model alone. –: "
+        "not tested, or not stored. Defaults were run in fewer scenes. Pulses under which the block would jump, and "
+        "stacked blocks that leave the model, are not counted."
     )
     return broad(_endings_chart(shares, WIDE), [_endings_chart(shares, WIDTH)], caption)
 

@@ -406,7 +406,7 @@ def print_bearings(
         chosen = {" and ".join(chosen): next(iter(chosen.values()))}
     swings = any(design["sizes"] and design["sizes"].kind == "pendulum" for design in chosen.values())
     unmade = [name for name, design in chosen.items() if design["sizes"] and design["sizes"].reasons]
-    held = "hold" if unmade else "hold and are made"
+    held = "meet this aim" if unmade else "meet this aim and are made"
     if unmade:
         echo(f"Warning: no such bearings are made: {' and '.join(unmade)}; the reasons are below the table.", wrap=True)
     rows = {
@@ -455,7 +455,7 @@ def nothing_holds(scene: Scene, scan: BearingScan, stroke: float, tilt: float, m
         f"{period:.3g} s with {damping:.3g}."
     )
     cure = f"Allow more stroke{_or_tilt(scene)}; or widen, fix or lower the block."
-    return f"no bearings {_scan_words(scan)} hold. {near} {cure}"
+    return f"no bearings {_scan_words(scan)} meet this aim. {near} {cure}"
 
 
 def _or_tilt(scene):
@@ -532,7 +532,8 @@ def risk_headline(odds: Sequence[Odds], under: str, draws: int, pga: float | Non
     sentences = [f"{shares[0]} of {draws} draws of its values {under}{scaled}", *shares[1:]]
     if beyond:
         words = (
-            "beyond x_max bearings may tear or hit a stop: what happens then is not known, nor in the odds that follow"
+            "beyond x_max bearings may tear or hit a stop: what happens then is not known, and the odds that follow "
+            "leave it out"
         )
         sentences.insert(1, words)
     return " ".join(f"{words[0].upper()}{words[1:]}." for words in sentences)
@@ -565,15 +566,14 @@ def print_risk(scene: Scene, risk: Risk, rows: Sequence[Mapping[str, Any]]) -> N
         "The intervals are over draws alone: under other motions odds may be quite different (--motions, --records)."
         if len(risk.records) == 1
         else "The intervals take records, not runs, as independent.",
-        "These are odds under such a motion, not for a year.",
+        "These odds are those under such a motion, not per year.",
         *map(_travel, risk.travel, risk.travel.values()),
-        f"Runs that failed, and count neither way: {risk.failed}. The first: {readable(risk.why)}."
-        if risk.failed
-        else "",
+        f"Runs that failed, and do not count: {risk.failed}. The first: {readable(risk.why)}." if risk.failed else "",
         *(f"Warning: {readable(warning.text)}" for warning in risk.warnings),
         *motion_warnings(rows),
         grid(["drawn", "value", "spread", *names], quantities) if quantities else "",
-        "Columns: change of the odds, in percentage points, if the value is higher by one spread; a dot: within noise."
+        "Columns on the right: change of the odds, in percentage points, if the value is higher by one spread. A dot: "
+        "the change is within the noise."
         if quantities
         else "",
         *map(_most_important, risk.odds),

@@ -22,7 +22,10 @@ from .answer import LEVEL, Stored, commit_of, judgements_of, screen, setups_of, 
 GALLERY, README = Path(__file__).with_name("gallery"), PROJECT_FOLDER / "README.md"
 RESULTS_README = RESULTS / "README.md"
 BEGIN, END = "<!-- findings of the stored studies -->", "<!-- end of findings -->"
-ALT = {"costs": "Error of peak tilt over CPU time of every solver", "endings": "Share of outcomes that differ"}
+ALT = {
+    "costs": "Error of peak tilt over CPU time of every solver",
+    "endings": "Share of runs that differ from the model or fail",
+}
 
 
 def gallery(first: Mapping[str, Any]) -> dict[str, str]:
@@ -64,7 +67,7 @@ def _markdown(shown):
 
 def origins(results: Mapping[str, Result]) -> str:
     """Return a table, in Markdown, of the origin of results {name: result}."""
-    rows = [["result", "computed", "commit", "processor, cores, memory", "engines", "runs that held when done again"]]
+    rows = [["result", "computed", "commit", "processor, cores, memory", "engines", "runs that held when repeated"]]
     rows += [["---"] * len(rows[0])]
     for name, result in results.items():
         engines = sorted({row["engine"] for row in result.rows if row.get("engine") in ENGINES})

@@ -52,8 +52,8 @@ PACKAGE = "comparisons.studies"
 # in ``rocking study --help``: at most 60 characters.
 QUESTIONS = {
     "restitution": (
-        "Errors of the restitution at an impact, and their causes. How do they and the base velocity jump depend on "
-        "slenderness, base mass and level, and what does a run cost?"
+        "Errors of the restitution at an impact, and their causes. How do the errors of restitution and of the base "
+        "velocity jump depend on slenderness, base mass and level, and what does a run cost?"
     ),
     "overturning": (
         "Overturning boundaries under pulses. Where does each solver put them, on rigid ground and isolated?"
@@ -66,8 +66,8 @@ QUESTIONS = {
         "Predictions of shake-table tests. How often are the model, the engines and simpler measures right?"
     ),
     "sensitivity": (
-        "Effects that change the outcome more than engines do. How often does vertical motion change it, or one per "
-        "cent of slenderness?"
+        "Effects that change the outcome more than engines do. How often is it changed by vertical motion, or by one "
+        "per cent of slenderness?"
     ),
     "statues": (
         "Statues drawn at random in the promised range. How often is an engine right, with and without friction? "
@@ -86,8 +86,8 @@ QUESTIONS = {
         "the engines and their variants."
     ),
     "caryatid": (
-        "The Caryatid paper, reproduced or corrected. Every equation, figure and table is checked, and what the paper "
-        "leaves out."
+        "The Caryatid paper, reproduced or corrected. Every equation, figure and table is checked, and so is what the "
+        "paper leaves out."
     ),
     "mistakes": (
         "The cost of typical mistakes in an engine's script. Each script models a rocking block in the engine's own "

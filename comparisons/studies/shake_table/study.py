@@ -269,7 +269,8 @@ KINDS: tuple[dict[str, float], ...] = (
 )
 
 Data = Annotated[
-    str | None, typer.Option(metavar="FOLDER", help="The tests: as their authors publish them, or your own.")
+    str | None,
+    typer.Option(metavar="FOLDER", help="Folder of the tests, as their authors publish them, or of your own."),
 ]
 
 

@@ -369,8 +369,10 @@ EVIDENCE = 600  # characters of an engine's message that a row keeps
 # impact falls, which differs from run to run: the root mean square of the last positions stands for it.
 STRAY, LAST = 0.025, 3
 
-Repeats = Annotated[int | None, typer.Option(min=1, max=1000, help="Fresh processes in turn. Default 5, quick 3.")]
-Only = Annotated[str | None, typer.Option("--scene", metavar="NAME", help='One scene alone, as "problem A".')]
+Repeats = Annotated[
+    int | None, typer.Option(min=1, max=1000, help="Number of rounds, each a fresh process. Default 5, quick 3.")
+]
+Only = Annotated[str | None, typer.Option("--scene", metavar="NAME", help='Run this scene alone, such as "problem A".')]
 
 
 def load(case: Case, response: Response) -> dict[str, Any]:

@@ -122,10 +122,19 @@ CHUNK = 500  # scenes held at once
 
 SEED = "Of the scenes, without it of the commit; with --check of the draw of runs."
 Seed = Annotated[int | None, typer.Option(min=0, max=2**63, help=SEED)]
-Number = Annotated[int | None, typer.Option(min=1, max=10**6, help="Without friction. Default 500, quick 20.")]
-Sliders = Annotated[int | None, typer.Option(min=1, max=10**7, help="With friction. Default 20000, quick 400.")]
+Number = Annotated[
+    int | None, typer.Option(min=1, max=10**6, help="Number of scenes without friction. Default 500, quick 20.")
+]
+Sliders = Annotated[
+    int | None, typer.Option(min=1, max=10**7, help="Number of scenes with friction. Default 20000, quick 400.")
+]
 
-Drawn = Annotated[int | None, typer.Option("--levels", min=1, max=10**4, help="Per draw, at all levels. Default 200.")]
+Drawn = Annotated[
+    int | None,
+    typer.Option(
+        "--levels", min=1, max=10**4, help="Number of statues in each draw that are run at all levels. Default 200."
+    ),
+]
 
 
 # Long, because a plan is best read in one piece, from the first run to the last row.

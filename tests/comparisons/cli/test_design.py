@@ -181,7 +181,7 @@ def test_bearings_that_are_made_are_preferred_and_otherwise_the_first_line_warns
     status, out, _ = rocking("design", tmp_path / "s.toml", "--stroke", 0.35, "--json", tmp_path / "s.json")
     words = " ".join(out.split())
     assert status == 0 and ("Warning: no such bearings are made: least-stroke" in words) != made
-    assert ("hold and are made." in words) == made and "under 0 of 1 motion," in words
+    assert ("meet this aim and are made." in words) == made and "under 0 of 1 motion," in words
     chosen = json.loads((tmp_path / "s.json").read_text())["chosen"]
     assert [not design["sizes"]["reasons"] for design in chosen.values()] == [made, made]
 
