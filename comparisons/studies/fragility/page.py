@@ -8,8 +8,8 @@ from scipy.stats import norm
 from engines.comparison import FALL
 
 from ...execution.results import Result
-from ...plotting.charts import REFERENCE, Axis, Chart, figure
-from ...plotting.figures import as_it_comes, beside, leading, ranks, subject
+from ...plotting.charts import Axis, Chart, figure
+from ...plotting.figures import leading, ranks
 from ...plotting.glance import Glance, counted
 from ...plotting.parts import Head, Judgement, Page, grouped, table, where
 from ...plotting.wording import ends, ends_in_words, equal_mark, least_shown, left_out, tally
@@ -47,8 +47,6 @@ def page(result: Result) -> Page:
     """Return the page of a result."""
     fits, effects = where(result.rows, part="fit"), where(result.rows, part="effect")
     costs = {(row["scene"], NAME.of(row)): row["cpu_per_run"] for row in where(result.rows, part="cost")}
-    measures = {row["scene"]: row["measure"] for row in where(fits, state=OVERTURNING)}
-    chosen = [row for row in fits if row["measure"] == measures[row["scene"]]]
     tones = dict(zip(dict.fromkeys(row["state"] for row in fits), TONES, strict=False))
     counts = tallies(result)
     return Page(
@@ -60,8 +58,8 @@ def page(result: Result) -> Page:
             f"impacts. A failed run counts as differing. Even if no run differs, {least_shown(counts, 'motions')} "
             "(upper 95 % limit).",
         ),
-        first=_summary(chosen, tones, counts),
-        more=_details(result, fits, effects, costs, chosen, tones),
+        first=(_ends(counts),),
+        more=_details(result, fits, effects, costs, tones),
         how=_how(result.settings),
         evidence=tuple(
             (f"{NAME.of(row)}, {row['scene']}, seed {row['seed']}", f"{row['reason']}\n{row.get('message') or ''}")
@@ -70,33 +68,20 @@ def page(result: Result) -> Page:
     )
 
 
-def _summary(chosen, tones, counts):
-    """Parts that the report's first page shows too."""
-    return (
-        beside(
-            _shares(
-                chosen,
-                tones,
-                "Left and middle: share of the analytic model's runs that exceed each limit state, over the intensity "
-                "measure used for overturning, with 95 % Wilson intervals. A lognormal curve is drawn where it fits (p "
-                f"≥ {LEVEL:g}). Small marks: overturning.",
-            ),
-            _differing(counts),
-        ),
-        table(
-            "How runs end compared with the analytic model’s, all scenes together, with 95 % Wilson intervals by "
-            "motion",
-            counts,
-            NAME,
-            COLUMNS["runs"],
-            Column("that differ or fail [-]", "differing"),
-            *ends(counts),
-            Column("share that differs or fails", "share", percent=True, within="interval"),
-        ),
+def _ends(counts):
+    """Table of how runs end; the first screen draws it."""
+    return table(
+        "How runs end compared with the analytic model’s, all scenes together, with 95 % Wilson intervals by motion",
+        counts,
+        NAME,
+        COLUMNS["runs"],
+        Column("that differ or fail [-]", "differing"),
+        *ends(counts),
+        Column("share that differs or fails", "share", percent=True, within="interval"),
     )
 
 
-def _details(result, fits, effects, costs, chosen, tones):
+def _details(result, fits, effects, costs, tones):
     """Parts that only the study's own page shows."""
     return (
         table(
@@ -127,11 +112,7 @@ def _details(result, fits, effects, costs, chosen, tones):
             *EFFECT,
         ),
         Head("The analytic model"),
-        _shares(
-            [row for row in fits if row not in chosen],
-            tones,
-            "The other limit states, each over its own intensity measure.",
-        ),
+        _shares(fits, tones),
         table(
             "Lognormal curves of the analytic model, with 95 % intervals by bootstrap over runs",
             fits,
@@ -191,27 +172,13 @@ def glance(result: Result) -> Glance:
     return Glance(endings=counted("synthetic earthquakes", runs))
 
 
-def _differing(counts):
-    """Figure of the share of each variant's runs that differ from the model's or fail, subject engines first."""
-    return ranks(
-        sorted((row for row in counts if row["runs"]), key=lambda row: (not subject(row), row["engine"] == REFERENCE)),
-        NAME,
-        Column("runs that differ or fail", "share", percent=True, within="interval"),
-        "Right: share of each variant's runs that differ from the model or fail, all scenes together. Open marks: "
-        "defaults.",
-        Axis("runs that differ or fail", 0.0, 1.0, ticks=tuple((k / 4, f"{25 * k} %") for k in range(5))),
-        panel=lambda row: "all scenes: engines",
-        opened=as_it_comes,
-    )
-
-
 def _fits(row):
     """Return whether a curve fits: its p is at least `LEVEL`."""
     return row["p_value"] is not None and row["p_value"] >= LEVEL
 
 
-def _shares(rows, tones, caption):
-    """Figure of shares of runs over intensity, a panel for each scene and measure.
+def _shares(rows, tones):
+    """Figure of shares of the model's runs over intensity, a panel for each scene and measure.
 
     tones: {limit state: its colour}.
     """
@@ -240,6 +207,10 @@ def _shares(rows, tones, caption):
                 chart.line(fine, norm.cdf(np.log(fine / row["median"]) / row["dispersion"]), tone=tone)
             chart.label(ys[-1], STATE.of(row), tone=tone)
         charts.append(chart)
+    caption = (
+        "Share of the analytic model's runs that exceed each limit state, over its own intensity measure, with 95 % "
+        f"Wilson intervals. A lognormal curve is drawn where it fits (p ≥ {LEVEL:g}). Small marks: overturning."
+    )
     return figure(charts, caption)
 
 

@@ -313,10 +313,14 @@ def noise(result: Result) -> float:
 LEVELS = (1e-2, 1e-3, 1e-4, 1e-5)  # errors in the tables of costs
 DRAWN, ROUNDING = 1e-9, 1e-13  # errors below the first are drawn there; those below the second give no order
 # (scene, error) of the figure on the report's first page; its first screen has that of the peak tilt
-FIRST = (("free-rigid", "restitution"), (PLAIN, "restitution"), ("near-overturning", "boundary_shift"),
-         ("near-overturning-jump", "boundary_shift"))  # fmt: skip
-PANELS = {"restitution": "restitution", "peak_tilt": "peak tilt", "peak_displacement": "displacement",
-          "boundary_shift": "amplitude", FINE: "tilt"}  # fmt: skip
+FIRST = ((PLAIN, "restitution"), ("near-overturning", "boundary_shift"))
+PANELS = {
+    "restitution": "restitution",
+    "peak_tilt": "peak tilt",
+    "peak_displacement": "displacement",
+    "boundary_shift": "amplitude",
+    FINE: "tilt",
+}
 
 NAME_COLUMN = Column("solver", "name")
 SCENE = Column("scene", "title")
