@@ -568,7 +568,7 @@ def judged(result: Result, what: str) -> Judgement:
     """Return the study's row of the table of trust. what: the motions of the boundaries, in the plural."""
     marks = {}
     for row in rated(result):
-        counts = f"{row['found']} of {row['of'] + row['beyond']} {what}"
+        counts = f"{row['found']} of {row['of']} {what}"
         words = f"none found ({what})" if row["largest"] is None else f"{percent(row['largest'])} ({counts})"
         note = f"{what}: median {percent(row['median'])}; {row['of'] - row['found']} not found"
         if row["beyond"]:
