@@ -90,12 +90,12 @@ WORST = 1.0  # largest error on the axis; a larger one stands at the frame
 FINEST = -6  # power of ten at which the axis of errors ends if no engine has an error
 LINE = 17  # height of a row of the second chart
 COLUMNS: tuple[tuple[int, str, Callable[[Endings], str]], ...] = (
-    (74, "differ", lambda row: f"{row.differing} of {row.runs}"),
+    (74, "outcome", lambda row: f"{row.changed} of {row.runs}"),
     (127, "missed", lambda row: _count_text(row, "missed")),
     (172, "added", lambda row: _count_text(row, "added")),
     (211, "other", lambda row: _count_text(row, "other")),
-    (240, "late", lambda row: _count_text(row, "late")),
-    (284, "failed", lambda row: _count_text(row, "failed")),
+    (255, "failed", lambda row: _count_text(row, "failed")),
+    (284, "late", lambda row: _count_text(row, "late")),
     (346, "left out", lambda row: _left_out_text(row)),
 )  # beside the bars: where a column ends, its head, its words
 PHONE_COLUMNS = (COLUMNS[0], (138, *COLUMNS[-1][1:]))
@@ -103,8 +103,8 @@ WAYS = {
     "missed": "overturning missed",
     "added": "overturning added",
     "other": "another outcome",
-    "late": "falls at another time",
     "failed": "failed",
+    "late": "falls at another time",
 }
 
 
@@ -219,14 +219,14 @@ def _seconds(power: int) -> str:
 def endings(shares: Sequence[Endings]) -> Figure:
     """Draw the shares of runs that end otherwise than the model's, motion by motion."""
     caption = (
-        "Lines: 95 % intervals, in which runs under one motion count as one. Missed: the block overturns in the model "
-        "alone. Added: it overturns in the engine alone. Other: it stands, slides or rocks instead, or the other one "
-        "of two blocks overturns. Late: it overturns in both, at different times. Failed: no result, or an unphysical "
-        "one. Left out: runs near an outcome boundary, "
-        "which no other column counts. There, a change of the scene by 10⁻⁴ changes how the model ends (pulses: within "
-        "1 % of the boundary). Of these runs the column tells how many fail, or overturn in engine or model alone. –: "
-        "not tested, or not stored. Defaults were run in fewer scenes. Pulses under which the block would jump, and "
-        "stacked blocks that leave the model, are not counted."
+        "Outcome: another one than the model’s, or failed. Its parts: missed, the block overturns in the model alone; "
+        "added, in the engine alone; other; failed, no result or an unphysical one. Late: the block overturns in both, "
+        "at another time or after another number of impacts. Lines: 95 % intervals of outcome and late together, in "
+        "which runs under one motion count as one. Left out of all: runs near an outcome boundary, where a change of "
+        "the scene by 10⁻⁴ (of a pulse by 1 %) changes how the model ends; before “of”: how many of these fail, or "
+        "overturn in engine or model alone. –: not tested, or not stored. Defaults were run in fewer scenes. Not "
+        "counted: pulses under which the block would jump, stacked blocks that leave the model, random statues without "
+        "friction, and hard cases."
     )
     return broad(_endings_chart(shares, WIDE), [_endings_chart(shares, WIDTH)], caption)
 

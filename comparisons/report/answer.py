@@ -335,10 +335,10 @@ def title(shares: Sequence[Endings]) -> str:
     if not all(runs for _, runs in counts):
         return QUESTION
     names = listed(list(dict.fromkeys(share.engine for share in _of_kind(shares, TUNED))))
-    tuned, plain = (f"{changed} of {runs}" for changed, runs in counts)
+    tuned, plain = (f"{changed} of {runs} runs ({percent(changed / runs, 2)})" for changed, runs in counts)
     return (
-        f"Away from outcome boundaries, tuned {names} reach another outcome than the model, or fail, in {tuned} runs; "
-        f"with defaults, in {plain}."
+        f"Away from outcome boundaries, tuned {names} reach another outcome than the model, or fail, in {tuned}; with "
+        f"defaults, in {plain}."
     )
 
 
@@ -350,7 +350,7 @@ def lines(
 ) -> list[Line]:
     """Return up to five lines; those without a result are left out."""
     found = [
-        Line("Restitution (0 to 1)", "impact", *_restitution(setups, judgements)),
+        Line("Restitution (0 to 1)", "impact", *_restitution(setups, judgements, says.get("slip", NOTHING)[1])),
         Line("Outcomes", "recorded", *_outcomes(shares)),
         Line(LEVEL, "statues", *says.get("level", NOTHING)),
         Line("Cost", "speed-error", *says.get("cost", NOTHING)),
@@ -373,12 +373,16 @@ def _by_engine(counts):
     return listed([f"{words} ({engine})" for engine, words in counts.items()])
 
 
-def _restitution(setups, judgements):
-    """Return the error of restitution from the first judgement on it, and what it is."""
+def _restitution(setups, judgements, slip):
+    """Return the error of restitution from the first judgement on it, and what it is.
+
+    slip: a sentence on impacts with slip, or "".
+    """
     head = next((judgement.heading for judgement in judgements if judgement.key == RESTITUTION), None)
     columns = [setup for setup in setups if setup.in_first_table and head]
     parts = []
-    for tier, begin in ((TUNED, "tuned engines are off by"), (DEFAULTS, "With defaults, engines are off by")):
+    begins = {TUNED: "at impacts, tuned engines differ from the model by", DEFAULTS: "With defaults, engines differ by"}
+    for tier, begin in begins.items():
         marks = {setup.engine: setup.marks[head] for setup in columns if setup.tier == tier}
         known = {engine: mark for engine, mark in marks.items() if mark.value is not None}
         if known:
@@ -386,7 +390,7 @@ def _restitution(setups, judgements):
             who = "both" if len(deaf) == len(known) == 2 else listed(deaf)
             missing = f", and {who} miss{'es' * (len(deaf) == 1)} impacts" if deaf else ""
             parts.append(f"{begin} {_by_engine({who: number(mark.value, 2) for who, mark in known.items()})}{missing}.")
-    return (" ".join(parts), f"Each value is the {head}.") if parts else NOTHING
+    return (" ".join(parts), f"Each value is the {head}. {slip}".strip()) if parts else NOTHING
 
 
 def _outcomes(shares):
@@ -419,8 +423,23 @@ def _outcomes(shares):
             sentences.append(f"{begin}{first_words[1:]}{others}.")
     if not sentences:
         return NOTHING
-    details = [*sentences[1:], "Runs near an outcome boundary are left out; the chart counts them."]
-    return sentences[0], " ".join(details)
+    return sentences[0], " ".join((*sentences[1:], *_limits(shares)))
+
+
+def _limits(shares):
+    """Yield sentences on what the counts do not say: limits, failures, and runs near a boundary."""
+    tuned, plain = (_of_kind(shares, kind) for kind in WHO)
+    if tuned:
+        limits = sorted(share.interval[1] for share in tuned)
+        yield (
+            f"Runs share motions, so that the upper 95 % limits of tuned engines are {percent(limits[0], 2)} to "
+            f"{percent(limits[-1], 2)}, by kind of motion and with times of falls."
+        )
+    if failed := sum(share.failed for share in plain):
+        yield f"Of the runs with defaults that are counted, {failed} failed."
+    if known := [share for share in tuned if share.left_differing is not None and share.left_out]:
+        differing, out = (sum(getattr(share, name) for share in known) for name in ("left_differing", "left_out"))
+        yield f"Left out are runs near an outcome boundary: of those of tuned engines, {differing} of {out} differ."
 
 
 WHO = {TUNED: "tuned engines", DEFAULTS: "engines with defaults"}

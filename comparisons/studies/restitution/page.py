@@ -433,7 +433,7 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
     return (
         Judgement(
             "rms error of restitution by states (tilt rate after an impact over that before), in free rocking without "
-            "slip, on the worse of two grounds",
+            "slip, on rigid ground or a sliding base, whichever is worse",
             {(row["engine"], row["variant"]): _free_mark(row) for row in rows},
             RESTITUTION,
         ),

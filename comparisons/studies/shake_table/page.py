@@ -12,7 +12,7 @@ from ...plotting.charts import Axis, Chart, curve, figure, key_of
 from ...plotting.figures import SUBJECTS, as_it_comes, ranks
 from ...plotting.glance import Endings, Glance
 from ...plotting.parts import Figure, Head, Judgement, Page, Table, grouped, table, where
-from ...plotting.wording import equal_mark, listed
+from ...plotting.wording import equal_mark, listed, with_counts
 from ...schemas.columns import NAME, Column, number, percent, short
 from .campaign import ALL, CORNER, TABLE
 from .judging import AS_IT_IS, AUTHORS, BEYOND, BY_RECORD, CURVE, EACH, FREQUENT, IN_SAMPLE, MODEL, ONE, THRESHOLD
@@ -91,33 +91,54 @@ def at_a_glance(result: Result) -> tuple[str, str]:
     held = where(result.rows, part="score", judged=BY_RECORD)
     if not (model := where(held, forecast=MODEL)):
         return "", ""
-    rivals = {CURVE: "a curve in PGA and PGV predicts", THRESHOLD: "a threshold of PGV,", FREQUENT: f"{FREQUENT},"}
-    rivals_right = [f"{words} {_right_in_words(where(held, forecast=name))}" for name, words in rivals.items()]
+    size, records = sum(row["size"] for row in model), result.settings["records"]
+    missing = result.settings["missing"]["tests"]
+    rivals = {CURVE: "a curve in PGA and PGV", THRESHOLD: "a threshold of PGV", FREQUENT: FREQUENT}
+    rivals_right = [f"{words} in {_right_in_words(where(held, forecast=name))}" for name, words in rivals.items()]
+    better = [
+        _beside(pair, words)
+        for name, words in ((CURVE, "the curve"), (THRESHOLD, "the threshold"))
+        for pair in _of_all(where(result.rows, part="paired", forecast=MODEL, beside=name))
+    ]
+    answer = (
+        f"on records held out of its fit, the model is right in {_right_in_words(model)} of {size} shake-table tests "
+        f"({listed(specimens)}); {listed(rivals_right)}."
+    )
+    if better:
+        answer += f" It is {listed(better)}."
     same_rule = where(result.rows, part="score", judged=IN_SAMPLE, forecast=ONE)
     engines = grouped(where(result.rows, part="engine", specimen=set(specimens)), "engine", "variant").values()
-    fitted = [f"{name_of(rows[0])}, {_right_in_words(rows)}" for rows in engines]
-    answer = (
-        f"on records held out of its fit, the model predicts {_right_in_words(model)} of {model[0]['size']} "
-        f"outcomes on a shake table ({listed(specimens)}). Judged in the same way, {'; '.join(rivals_right)}."
+    fitted = [
+        f"{name_of(rows[0])} in {with_counts(_right_in_words(rows), {'failed': sum(row['failed'] for row in rows)})}"
+        for rows in engines
+    ]
+    return answer, " ".join(
+        (
+            f"With one slenderness for each block, fitted to all of its tests with the model: model in "
+            f"{_right_in_words(same_rule)}; {'; '.join(fitted)}.",
+            f"The tests share {records} records; intervals are by record.",
+            *([f"{missing} tests are left out, as their motions are not at hand."] if missing else ()),
+        )
     )
-    pairs = where(result.rows, part="paired", forecast=MODEL, beside=CURVE)
-    pair = (where(pairs, specimen=ALL) or pairs)[-1:]
-    better = [_against_curve(row, sum(each["size"] for each in model)) for row in pair]
-    by_one_rule = "; ".join([f"model, {_right_in_words(same_rule)}", *fitted])
-    return answer, " ".join((*better, f"With one slenderness fitted to all tests: {by_one_rule}."))
 
 
 def _right_in_words(rows):
-    """Right answers of each specimen in words; "–" where they are not disclosed."""
-    return listed(["–" if row["right"] is None else str(row["right"]) for row in rows])
+    """Right answers of all specimens together, and their share; "–" where one is not disclosed."""
+    right, size = [row["right"] for row in rows], sum(row["size"] for row in rows)
+    return "–" if None in right or not size else f"{sum(right)} ({percent(sum(right) / size, 2)})"
 
 
-def _against_curve(pair, size):
-    """Sentence on whether the model is shown to be better than the curve."""
+def _of_all(rows):
+    """Row of all specimens together, or of the only one."""
+    return (where(rows, specimen=ALL) or rows)[-1:]
+
+
+def _beside(pair, words):
+    """Clause on whether the model is shown to be better than another forecast."""
     low, high = pair["more_interval"]
-    words = "better" if low > 0 else "worse" if high < 0 else "not shown to be better"
-    more = f"{pair['more_right']} more of {size} (95 % interval {low:.0f} to {high:.0f})".replace("-", "−")
-    return f"The model is {words} than the curve: it is right in {more}."
+    verdict = "better" if low > 0 else "worse" if high < 0 else "not shown to be better"
+    more = f"{pair['more_right']} more, 95 % interval {low:.0f} to {high:.0f}".replace("-", "−")
+    return f"{verdict} than {words} ({more})"
 
 
 def together(result: Result) -> list[dict[str, Any]]:

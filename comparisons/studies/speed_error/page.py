@@ -250,18 +250,20 @@ def at_a_glance(result: Result) -> tuple[str, str]:
     costs = _costs_at_asked(result)
     if not costs:
         return "", ""
+    levels = listed([f"{level_words(row)} ({row['engine']})" for row in reached(result)])
     engine_costs = listed([f"{number(1e3 * cost, 2)} ms ({engine})" for engine, cost, _ in costs])
-    over = listed([number(cost / model, 2) for _, cost, model in costs])
+    over = listed([f"{float(f'{cost / model:.2g}'):g}" for _, cost, model in costs])
     alike = max(cost for _, cost, _ in costs) <= noise(result) * min(cost for _, cost, _ in costs)
     answer = (
-        f"for a peak tilt within {percent(ASKED, 1)} of the slenderness, tuned engines take {engine_costs} of CPU time "
-        f"per simulated second. The analytic model takes {number(1e3 * costs[0][2], 2)} ms, {over} times less."
+        f"in one isolated scene, a peak tilt within {percent(ASKED, 1)} of the slenderness takes tuned engines "
+        f"{engine_costs} of CPU time per simulated second: about {over} times the {number(1e3 * costs[0][2], 2)} ms of "
+        "the analytic model."
     )
-    details = []
+    details = [f"Levels: {levels}."]
     if alike and len(costs) > 1:
         details.append(
-            "The engines do not differ in cost: the measured times do not distinguish costs within a factor of "
-            f"{number(noise(result), 2)}."
+            f"Measured times vary by a factor of {number(noise(result), 2)}, so that the engines are not shown to "
+            "differ in cost."
         )
     scripts = [
         f"{number(1e3 * row['cpu_per_second'], 2)} ms ({row['engine']}, error {percent(row['error'])})"

@@ -195,10 +195,15 @@ def _friction_sentences(rows):
         yield (
             "With friction, engines were run only in scenes where the block actually slides. All measures are right "
             f"in {each(lambda row: '{right} of {runs}'.format(**row))} runs. The outcome is wrong or missing in "
-            f"{each(lambda row: row['runs'] - row['alike'])} runs. At impacts with slip, the rms error of restitution "
-            f"by states is {each(lambda row: number(row['slipping'], 2))}. The limit for a trusted engine, "
+            f"{each(lambda row: row['runs'] - row['alike'])} runs. {_slipping(rows)} The limit for a trusted engine, "
             f"{TRUSTED:g}, applies to impacts without slip."
         )
+
+
+def _slipping(rows):
+    """Sentence on the error of restitution at impacts with slip."""
+    errors = listed([f"{number(row['slipping'], 2)} ({row['engine']})" for row in rows])
+    return f"At impacts with slip, the rms error of restitution by states is {errors}."
 
 
 def tallies(result: Result) -> list[dict[str, Any]]:
@@ -261,7 +266,7 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
             words = f"{row['right']} of {row['runs']}"
             mark = Mark(words, level, f"{note}; {left_out(row)}", row["share"])
             marks[row["friction"]][row["engine"], row["variant"]] = mark
-    return (judged(result, "drawn statues"), *(Judgement(head, marks[name]) for name, head in heads.items()))
+    return (judged(result, "random statues"), *(Judgement(head, marks[name]) for name, head in heads.items()))
 
 
 def glance(result: Result) -> Glance:
@@ -283,8 +288,18 @@ def glance(result: Result) -> Glance:
         for row in _runs(result)
         if row["friction"] is not None
     ]
+    slipping = [
+        {"engine": engine, "slipping": rms([error for row in rows for error in row["slipping"]])}
+        for (engine,), rows in grouped(
+            leading(
+                [row for row in runs if row.get("slipping") and row["class"] in ("right", "differs")],
+                result.settings["variants"],
+            ),
+            "engine",
+        ).items()
+    ]
     return Glance(
-        says={"level": at_a_glance(result)},
+        says={"level": at_a_glance(result), "slip": ("", _slipping(slipping) if slipping else "")},
         endings=counted("blocks that may slide", runs),
         advice=advised_levels(result),
     )

@@ -61,7 +61,7 @@ def test_sliding_blocks_count_alike_and_a_slip_that_differs_is_the_same_end():
     rows = [{**one, "index": k, "friction": 0.3} for k, one in enumerate(runs)]
     scenes = [{"part": "scene", "index": row["index"], "outcome": row["model_outcome"]} for row in rows]
     free = [{**one, "friction": None} for one in rows]  # which do not count there
-    (first, *counts), left_out = ends("statues", [*scenes, *rows, *free])
+    (first, *counts), left_out = ends("statues", [*scenes, *rows, *free], variants=[])
     assert (first, left_out) == (7, COUNTED[1]) and tuple(counts) == COUNTED[0][1:]
 
 
@@ -92,7 +92,12 @@ def shaken(*engines, more=(3, -1.0, 7.0)):
     alike = [row | {"forecast": ONE, "judged": IN_SAMPLE, "right": row["right"] - 1} for row in scores[:2]]
     pair = {"part": "paired", "forecast": MODEL, "beside": CURVE, "specimen": ALL}
     pair |= {"more_right": more[0], "more_interval": list(more[1:])}
-    settings = {"records": 10, "tests": ["t"] * 50, "specimens": [{"name": "one"}, {"name": "two"}]}
+    settings = {
+        "records": 10,
+        "missing": {"tests": 3},
+        "tests": ["t"] * 50,
+        "specimens": [{"name": "one"}, {"name": "two"}],
+    }
     return glance("shake-table", [*scores, *alike, pair, *engines], **settings)
 
 
@@ -111,4 +116,6 @@ def test_a_shake_table_is_counted_away_from_boundaries_too():
     ],
 )
 def test_the_model_is_better_than_the_curve_only_where_the_interval_says_so(more, words):
-    assert f"The model is {words} the curve: it is right in" in shaken(more=more).says["real"][1]
+    assert (
+        f"It is {words} the curve ({more[0]} more, 95 % interval".replace("-", "−") in shaken(more=more).says["real"][0]
+    )

@@ -273,7 +273,7 @@ def test_the_second_draw_says_whether_an_advised_level_passes():
     assert unreached[3].startswith("no;") and unreached[3].endswith("none held on the first draw")
     assert [row[2] for row in second.rows] == ["3 of 40 (7.5 %)", "0 of 40 (0 %)"]
     (short,) = advised_levels(made)
-    assert [row[0] for row in short.rows] == ["1 %: 37 of 40 ✗", "0.1 %: 0 of 40 ✗"]
+    assert [row[0] for row in short.rows] == ["1 %: 3 of 40 ✗ (at most 20 %)", "0.1 %: 40 of 40 ✗ (at most 100 %)"]
     assert "rocking run caryatid-isolated --engine exudyn --set stiffness=1e+09" in short.rows[0]
     assert alarms(made).rows[1] == ["2", "80", "1 of 77 (1.3 %)", "3 of 3 (100 %)"]
     empty = SimpleNamespace(rows=[], settings={})
