@@ -46,13 +46,13 @@ def first_screen(stored: Sequence[Stored]) -> dict[str, Any]:
 
 
 def headlines(first: Mapping[str, Any]) -> str:
-    """Return the first screen as Markdown: its lines, its charts, and the recommendation."""
+    """Return the first screen as Markdown: its title, the answers, its charts, and the recommendation."""
     charts = " ".join(f"![{ALT[name]}](comparisons/report/gallery/{name}.svg)" for name in ALT if first[name])
-    said = [line for line in first["lines"] if line.subject != LEVEL]  # which the table says
+    said = [f"- **{line.subject}:** {line.answer}" for line in first["lines"] if line.subject != LEVEL]  # see the table
     items = [
-        words
-        for line in said
-        for words in wrap(f"- **{line.subject}:** {line.answer} {line.details}", 120, subsequent_indent="  ")
+        *wrap(first["title"], 120),
+        "",
+        *(words for each in said for words in wrap(each, 120, subsequent_indent="  ")),
     ]
     return spelled(
         "\n".join((*items, "", charts, *(line for advised in first["advice"] for line in _markdown(advised))))
