@@ -354,7 +354,7 @@ def drawn_in(kind):
 
 def odds_are_told(answer, out):
     """Their sentences are printed; an interval holds its probability; failed runs are counted."""
-    assert shown(answer["headline"], out) and (f"way: {answer['failed']}." in out) == bool(answer["failed"])
+    assert shown(answer["headline"], out) and (f"do not count: {answer['failed']}." in out) == bool(answer["failed"])
     assert all(0 <= each["low"] <= each["probability"] <= each["high"] <= 1 for each in answer["odds"])
     states = [each["state"] for each in answer["odds"]]
     assert all(list(shares) == states for shares in answer["records"].values())
