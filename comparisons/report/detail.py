@@ -153,7 +153,7 @@ GLOSSARY = {
 
 REFERENCES = (
     "“Seismic protection of cultural heritage artefacts by means of elastomeric isolators: a case study”: the paper "
-    "whose equation numbers, table and figures are used here. The page of the Caryatid paper compares what it prints.",
+    "whose equation numbers, table and figures are used here. What it prints is compared in a study of its own.",
     "G. W. Housner (1963), The behavior of inverted pendulum structures during earthquakes, Bulletin of the "
     "Seismological Society of America 53(2), 403–417.",
     "H. W. Shenton (1996), Criteria for initiation of slide, rock, and slide-rock rigid-body modes, Journal of "
