@@ -184,7 +184,7 @@ def test_boundaries_of_drawn_statues_are_rated(tmp_path):
     assert all(row["shift"] == pytest.approx(3e-3, abs=1.01 * row["half_width"]) for row in shifts)
     judged, page = STUDY.judgements(result)[0], STUDY.page(result)
     assert {mark.words for mark in judged.marks.values()} == {"0.30 % (2 of 2 random statues)"}
-    assert "0.30 % at most" in page.title
+    assert "at most 0.30 %" in page.title
 
 
 def run_at(level, index, error, draw=1, model="rocks", outcome=None, comparable=COMPARED, **more):
