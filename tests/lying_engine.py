@@ -68,11 +68,9 @@ def _slip(scene, run):
 
 
 def _pedestal(scene, run):
-    return (
-        run
-        if run.stack is None
-        else replace(run, stack=replace(run.stack, peak_tilt=1.03 * run.stack.peak_tilt + LEAST))
-    )
+    if run.stack is None:
+        return run
+    return replace(run, stack=replace(run.stack, peak_tilt=1.03 * run.stack.peak_tilt + LEAST))
 
 
 def _later(name, periods):

@@ -21,6 +21,7 @@ import itertools
 import math
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
+from functools import partial
 from operator import attrgetter
 from typing import TYPE_CHECKING, Self
 
@@ -320,10 +321,11 @@ def margins(
     for name, value in values.items():
         if progress:
             progress(name)
-        bands, ends = _bands(scene, name, changes, tilt, workers, progress)
+        states = partial(_states, scene, name, tilt, workers, progress)
+        bands, ends = _bands(scene, name, changes, states)
         margin = Margin(name, float(value), QUANTITIES[name].unit, bands, step, **ends)
         if margin.interleaved and not scene.is_stack:
-            bands, ends = _bands(scene, name, _finer(margin, changes), tilt, workers, progress)
+            bands, ends = _bands(scene, name, _finer(margin, changes), states)
             margin = replace(margin, bands=bands, **ends)
         results.append(margin)
     return sorted(results, key=lambda margin: math.inf if margin.nearest is None else abs(margin.nearest))
@@ -361,18 +363,18 @@ def _finer(margin, changes):
     return np.union1d(changes, margin.step / FINER * counts[counts % FINER != 0])
 
 
-def _bands(scene, name, changes, tilt, workers, progress):
-    """Return (tuple of `Band` over the changes, why they end).
+def _bands(scene, name, changes, states_of):
+    """Return (tuple of `Band` over the changes, why they end). states_of: `_states` of changes.
 
     Boundaries are bisected for each state, as two may lie within one step.
     """
-    changes, states, ends = _scanned(scene, name, changes, tilt, workers, progress)
+    changes, states, ends = _scanned(scene, name, changes, states_of)
     edges, columns = np.nonzero(states[1:] != states[:-1])
     low, high, before = changes[edges], changes[edges + 1], states[edges, columns]
     for _ in range((STACK_BISECTIONS if scene.is_stack else BISECTIONS) if len(edges) else 0):
         middle = 0.5 * (low + high)
         points, where = np.unique(middle, return_inverse=True)
-        middle_states, failed = _states(scene, name, points, None, tilt, workers, progress)
+        middle_states, failed = states_of(points)
         same = (middle_states[where, columns] == before) & ~failed[where]
         low, high = np.where(same, middle, low), np.where(same, high, middle)
     boundaries = 0.5 * (low + high)
@@ -384,13 +386,13 @@ def _bands(scene, name, changes, tilt, workers, progress):
     return tuple(bands), ends
 
 
-def _scanned(scene, name, changes, tilt, workers, progress):
+def _scanned(scene, name, changes, states_of):
     """Return (the changes about 0 up to the first that cannot be run, their states, why there).
 
     The last is a dict of "ends_down" and "ends_up".
     """
     changes, scenes, ends = _scenes(scene, name, changes)
-    states, failed = _states(scene, name, changes, scenes, tilt, workers, progress)
+    states, failed = states_of(changes, scenes)
     if failed[changes == 0].any():
         raise SceneError(
             name, None, f"the analytic model fails on the scene as it is: {why_it_fails(scene)}", "change the scene"
@@ -432,13 +434,13 @@ def _scenes(scene, name, changes):
     return np.array(ordered), [valid[change] for change in ordered], ends
 
 
-def _states(scene, name, changes, scenes, tilt, workers, progress):
+def _states(scene, name, tilt, workers, progress, changes, scenes=None):
     """Return (states, which runs failed).
 
     states : array (changes, LIMIT_STATES and one more): those reached, and whether the model is valid.
     """
     if scene.is_stack:
-        return _stack_states(scene, name, changes, tilt, progress)
+        return _stack_states(scene, name, tilt, progress, changes)
     if scenes is None:
         scenes = [QUANTITIES[name].changed(scene, 1 + change) for change in changes]
     scales = 1 + changes if name == "motion" else None
@@ -460,7 +462,7 @@ def _states(scene, name, changes, scenes, tilt, workers, progress):
     return reached, outcomes.failed
 
 
-def _stack_states(scene, name, changes, tilt, progress):
+def _stack_states(scene, name, tilt, progress, changes):
     """Return what `_states` does, of a scene with a free pedestal."""
     farthest = scene.bearings.x_max if "stroke" in limit_states(scene) else math.inf
     rows = []

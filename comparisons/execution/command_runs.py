@@ -184,7 +184,7 @@ def near_motion(scene: Scene) -> tuple[Caution, ...]:
     """Return the warnings of `near` and show a line meanwhile; none without a motion."""
     if scene.motion is None:
         return ()
-    if scene.is_stack:  # a run takes seconds
+    if scene.is_stack:  # which is not tested
         return near(scene)
     with spinner(f"{scene.name}: within {SHARE:.0%} of the motion"):
         return near(scene)
@@ -195,11 +195,8 @@ def near(scene: Scene) -> tuple[Caution, ...]:
     try:
         return cliffs(scene, *nearby(scene))
     except SceneError as error:
-        if scene.is_stack:
-            text = f"How the outcome depends on {SHARE:.0%} of the motion was not tested: see rocking margin."
-            return (Caution("motion", text),)
-        text = f"How the outcome depends on {SHARE:.0%} of the motion was not tested: {error.remedy}."
-        return (Caution("motion", text),)
+        remedy = "see rocking margin" if scene.is_stack else error.remedy
+        return (Caution("motion", f"How the outcome depends on {SHARE:.0%} of the motion was not tested: {remedy}."),)
 
 
 def with_near(scene: Scene, response: Response) -> Response:

@@ -75,7 +75,8 @@ class Glance:
     """A study's part of the report's first screen.
 
     says: {line of the first screen: (answer, details)}, in sentences. endings: by motion and variant. curves: of
-    solvers, in the scene named `scene`. advice: tables of which level to use.
+    solvers, in the scene named `scene`. advice: tables of which level to use. chart: `costs` of the curves, which the
+    report draws and keeps.
     """
 
     says: Mapping[str, tuple[str, str]] = field(default_factory=dict)
@@ -83,6 +84,7 @@ class Glance:
     curves: tuple[Curve, ...] = ()
     scene: str = ""
     advice: tuple[Table, ...] = ()
+    chart: Figure | None = None
 
 
 WIDE = 590

@@ -140,6 +140,8 @@ def _stored(path, key):
         page = study.page(result)  # drawn once
         judgements, variants, glance = study.judgements(result), _variants(result.settings), study.glance(result)
         section, finding = replace(page.whole(), age=old), page.opening()
+        if glance and glance.curves:  # placing its names takes a while
+            glance = replace(glance, chart=costs(glance.curves))
     except Exception as error:  # settings of another version, or another package's page: the report goes on
         words = f"{name} cannot be shown: its page fails ({readable(repr(error))}); --replot shows where."
         return Stored.damaged(name, f"Study {result.kind}", words, age=old, origin=origin)
@@ -309,7 +311,7 @@ def screen(setups: Sequence[Setup], judgements: Sequence[Judgement], glances: It
         "title": title(shares),
         "lines": lines(setups, judgements, shares, says),
         "scene": curves and curves.scene,
-        "costs": curves and costs(curves.curves),
+        "costs": curves and curves.chart,
         "endings": endings(shares) if shares else None,
         "advice": next((glance.advice for glance in given if glance.advice), ()),
     }

@@ -63,7 +63,7 @@ def sentence(result: Result, engines: Sequence[dict[str, Any]]) -> str:
     wrong = listed([str(row["size"] - row["right"]) for row in scores])
     names = listed([row["specimen"] for row in scores])
     words = [f"The model is wrong in {wrong} of {len(result.settings['tests'])} tests ({names})."]
-    engine_rows = where(engines, specimen=ALL) or engines
+    engine_rows = of_all(engines)
     if tuned := where(engine_rows, tier="tuned"):
         counts = [f"{apart(row)} of {row['size']} ({row['engine']})" for row in tuned]
         fits = [count for row in where(result.rows, part="fit", change=AS_IT_IS) for count in row["neighbours"]]
@@ -98,7 +98,7 @@ def at_a_glance(result: Result) -> tuple[str, str]:
     better = [
         _beside(pair, words)
         for name, words in ((CURVE, "the curve"), (THRESHOLD, "the threshold"))
-        for pair in _of_all(where(result.rows, part="paired", forecast=MODEL, beside=name))
+        for pair in of_all(where(result.rows, part="paired", forecast=MODEL, beside=name))[-1:]
     ]
     answer = (
         f"on records held out of its fit, the model is right in {_right_in_words(model)} of {size} shake-table tests "
@@ -128,9 +128,9 @@ def _right_in_words(rows):
     return "–" if None in right or not size else f"{sum(right)} ({percent(sum(right) / size, 2)})"
 
 
-def _of_all(rows):
-    """Row of all specimens together, or of the only one."""
-    return (where(rows, specimen=ALL) or rows)[-1:]
+def of_all(rows: Sequence[dict[str, Any]]) -> Sequence[dict[str, Any]]:
+    """Return the rows of all specimens together, or of the only one."""
+    return where(rows, specimen=ALL) or rows
 
 
 def _beside(pair, words):
@@ -141,10 +141,9 @@ def _beside(pair, words):
     return f"{verdict} than {words} ({more})"
 
 
-def together(result: Result) -> list[dict[str, Any]]:
+def together(result: Result) -> Sequence[dict[str, Any]]:
     """Return the rows of engines for all specimens together."""
-    rows = where(result.rows, part="engine")
-    return where(rows, specimen=ALL) or rows
+    return of_all(where(result.rows, part="engine"))
 
 
 def near_boundaries(result: Result) -> str:
@@ -486,7 +485,7 @@ def _table_of_engines(result, engines):
         f"{'Equal: at most 5 %. ' if judged else ''}In brackets: the number of records on which most "
         "differences go that way. Last column: differing runs, of those in which a change of the scene by 10⁻⁴ changes "
         "the model’s own outcome or the time of its fall",
-        where(engines, specimen=ALL) or engines,
+        of_all(engines),
         NAME,
         COLUMNS["tier"],
         Column("outcomes that differ", lambda row: f"{apart(row)} of {row['size']}"),

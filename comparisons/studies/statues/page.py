@@ -288,16 +288,8 @@ def glance(result: Result) -> Glance:
         for row in _runs(result)
         if row["friction"] is not None
     ]
-    slipping = [
-        {"engine": engine, "slipping": rms([error for row in rows for error in row["slipping"]])}
-        for (engine,), rows in grouped(
-            leading(
-                [row for row in runs if row.get("slipping") and row["class"] in ("right", "differs")],
-                result.settings["variants"],
-            ),
-            "engine",
-        ).items()
-    ]
+    sliders = leading(where(tallies(result), friction=DRAWN), result.settings["variants"])
+    slipping = [row for row in sliders if row["slipping"] is not None]
     return Glance(
         says={"level": at_a_glance(result), "slip": ("", _slipping(slipping) if slipping else "")},
         endings=counted("blocks that may slide", runs),

@@ -58,7 +58,8 @@ def test_synthetic_motions_count_alike():
 
 def test_sliding_blocks_count_alike_and_a_slip_that_differs_is_the_same_end():
     runs = (*RUNS, run("differs", "slides", "slides", "peak_slip"))
-    rows = [{**one, "index": k, "friction": 0.3} for k, one in enumerate(runs)]
+    more = {"friction": 0.3, "differences": [], "comparable": "yes", "lost": 0}
+    rows = [{**one, **more, "index": k} for k, one in enumerate(runs)]
     scenes = [{"part": "scene", "index": row["index"], "outcome": row["model_outcome"]} for row in rows]
     free = [{**one, "friction": None} for one in rows]  # which do not count there
     (first, *counts), left_out = ends("statues", [*scenes, *rows, *free], variants=[])
