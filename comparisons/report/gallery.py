@@ -17,11 +17,24 @@ from ..execution.writing import write, write_all
 from ..plotting.charts import alone
 from ..schemas.columns import spelled, spelled_page
 from ..studies.rows import read_study
-from .answer import LEVEL, Stored, commit_of, judgements_of, screen, setups_of, stored_studies, variants_of
+from .answer import LEVEL, Stored, commit_of, judgements_of, screen, setups_of, shown, stored_studies, variants_of
 
 GALLERY, README = Path(__file__).with_name("gallery"), PROJECT_FOLDER / "README.md"
 RESULTS_README = RESULTS / "README.md"
 BEGIN, END = "<!-- findings of the stored studies -->", "<!-- end of findings -->"
+CLAIMED = "<!-- claims and the stored runs behind them -->"
+# (claim, result, command, its minutes on two cores)
+CLAIMS = (
+    ("restitution at impacts", "restitution", "study restitution --check 30", "1"),
+    ("outcomes under pulses", "overturning", "study overturning --check 30", "1"),
+    ("outcomes under recorded earthquakes", "recorded", "study recorded", "60"),
+    ("outcomes under synthetic earthquakes", "fragility", "study fragility --check 30", "1"),
+    ("real blocks, outcomes under shake-table motions", "shake-table", "study shake-table --data FOLDER", "120"),
+    ("drawn statues: levels, outcomes with sliding", "statues", "study statues --check 30", "1"),
+    ("two stacked blocks", "stack", "study stack --check 30", "1"),
+    ("hard cases", "stability", "study stability --check 30", "1"),
+    ("cost", "speed-error", "study speed-error --check 30", "1"),
+)
 ALT = {
     "costs": "Error of peak tilt over CPU time of every solver",
     "endings": "Share of runs that differ from the model or fail",
@@ -59,10 +72,29 @@ def headlines(first: Mapping[str, Any]) -> str:
     )
 
 
-def _markdown(shown):
+def _markdown(table):
     """Return a table as lines of Markdown, with its caption above."""
-    rows = [shown.columns, ["---"] * len(shown.columns), *shown.rows]
-    return ["", *wrap(f"{shown.caption}:", 120), "", *(f"| {' | '.join(row)} |" for row in rows)]
+    rows = [table.columns, ["---"] * len(table.columns), *table.rows]
+    return ["", *wrap(f"{table.caption}:", 120), "", _lines(rows)]
+
+
+def _lines(rows):
+    return "\n".join(f"| {' | '.join(row)} |" for row in rows)
+
+
+def claims(stored: Sequence[Stored], results: Mapping[str, Result]) -> str:
+    """Return a table, in Markdown, of what checks each claim: runs of all solvers, outcomes compared, those left out.
+
+    Outcomes compared are those of the first screen: of subject engines, away from outcome boundaries.
+    """
+    setups = setups_of(variants_of(stored), judgements_of(stored))
+    judged = {study.name: shown(study.glance.endings, setups) for study in stored if study.glance}
+    rows = [["claim", "all runs", "outcomes compared", "left out near a boundary", "command", "minutes"], ["---"] * 6]
+    for claim, name, command, minutes in CLAIMS:
+        shares = judged.get(name)
+        counts = [sum(share.runs for share in shares), sum(share.left_out for share in shares)] if shares else ["–"] * 2
+        rows.append([claim, *map(str, (results[name].run_count, *counts)), f"`rocking {command}`", minutes])
+    return _lines(rows)
 
 
 def origins(results: Mapping[str, Result]) -> str:
@@ -75,7 +107,7 @@ def origins(results: Mapping[str, Result]) -> str:
         again = f"{held(last)}, {last['date']}" if last else "none"
         cells = (by_engine(result, words) for words in (date_of, commit_of, _machine))
         rows.append([f"`{name}`", *cells, ", ".join(engines) or "none", again])
-    return "\n".join(f"| {' | '.join(row)} |" for row in rows)
+    return _lines(rows)
 
 
 def _machine(origin):
@@ -83,9 +115,9 @@ def _machine(origin):
     return f"{machine['processor']}, {machine['logical_cores']}, {machine['memory_gib']:g} GiB"
 
 
-def with_findings(readme: str, words: str) -> str:
-    """Return the text of a README with these words between its marks."""
-    before, begin, rest = readme.partition(BEGIN)
+def with_findings(readme: str, words: str, mark: str = BEGIN) -> str:
+    """Return the text of a README with these words between a mark and the end after it."""
+    before, begin, rest = readme.partition(mark)
     _, end, after = rest.partition(END)
     return f"{before}{begin}\n{words}\n{end}{after}"
 
@@ -93,7 +125,13 @@ def with_findings(readme: str, words: str) -> str:
 if __name__ == "__main__":
     # read all results before writing: an unreadable one must not leave a README without its rows
     results = {path.name: read_study(path) for path in results_in(RESULTS)}
-    first = first_screen(stored_studies())
-    for readme, words in ((README, headlines(first)), (RESULTS_README, origins(results))):
-        write(readme, with_findings(readme.read_text(encoding="utf-8"), words))
+    stored = stored_studies()
+    first = first_screen(stored)
+    parts = (
+        (README, headlines(first), BEGIN),
+        (README, claims(stored, results), CLAIMED),
+        (RESULTS_README, origins(results), BEGIN),
+    )
+    for readme, words, mark in parts:
+        write(readme, with_findings(readme.read_text(encoding="utf-8"), words, mark))
     write_all(GALLERY, gallery(first))

@@ -10,9 +10,12 @@ from comparisons.execution.by_solver import read, results_in
 from comparisons.execution.results import RESULTS
 from comparisons.report.answer import stored_studies
 from comparisons.report.gallery import (
+    CLAIMED,
+    CLAIMS,
     GALLERY,
     README,
     RESULTS_README,
+    claims,
     first_screen,
     gallery,
     headlines,
@@ -52,6 +55,10 @@ def test_the_readme_shows_and_says_what_the_stored_results_do(studies):
         assert f"comparisons/report/gallery/{name}" in readme and ElementTree.fromstring(svg).get("aria-label")
         assert "prefers-color-scheme" in svg and "http://" not in svg.replace("http://www.w3.org", "")
     assert words in readme and with_findings(readme, words) == readme != with_findings(readme, "- something else")
+    results = {path.name: read(path) for path in results_in(RESULTS)}
+    assert with_findings(readme, claims(studies, results), CLAIMED) == readme
+    counted = {name: results[name].run_count for _, name, *_ in CLAIMS}
+    assert all(f"| {runs} | " in readme for runs in counted.values()) and min(counted.values()) > 0
 
 
 def test_the_readme_of_the_results_says_where_each_of_them_comes_from():
