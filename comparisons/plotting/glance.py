@@ -75,8 +75,9 @@ class Glance:
     """A study's part of the report's first screen.
 
     says: {line of the first screen: (answer, details)}, in sentences. endings: by motion and variant. curves: of
-    solvers, in the scene named `scene`. advice: tables of which level to use. chart: `costs` of the curves, which the
-    report draws and keeps.
+    solvers, in the scene named `scene`. advice: tables of which level to use. levels: (engine, level) of the cost that
+    is given. missed: {(engine, level): (random statues on which it misses the accuracy of that cost, all that stay
+    upright)}. chart: `costs` of the curves, which the report draws and keeps.
     """
 
     says: Mapping[str, tuple[str, str]] = field(default_factory=dict)
@@ -84,6 +85,8 @@ class Glance:
     curves: tuple[Curve, ...] = ()
     scene: str = ""
     advice: tuple[Table, ...] = ()
+    levels: tuple[tuple[str, float], ...] = ()
+    missed: Mapping[tuple[str, float], tuple[int, int]] = field(default_factory=dict)
     chart: Figure | None = None
 
 
@@ -96,9 +99,9 @@ COLUMNS: tuple[tuple[int, str, Callable[[Endings], str]], ...] = (
     (127, "missed", lambda row: _count_text(row, "missed")),
     (172, "added", lambda row: _count_text(row, "added")),
     (211, "other", lambda row: _count_text(row, "other")),
-    (255, "failed", lambda row: _count_text(row, "failed")),
-    (284, "late", lambda row: _count_text(row, "late")),
-    (346, "left out", lambda row: _left_out_text(row)),
+    (258, "failed", lambda row: _count_text(row, "failed")),
+    (293, "time", lambda row: _count_text(row, "late")),
+    (355, "left out", lambda row: _left_out_text(row)),
 )  # beside the bars: where a column ends, its head, its words
 PHONE_COLUMNS = (COLUMNS[0], (138, *COLUMNS[-1][1:]))
 WAYS = {
@@ -109,15 +112,17 @@ WAYS = {
     "late": "falls at another time",
 }
 
+NAMES = {"late": "time"}  # of ways that are not called as their field
+
 
 def _count_text(row, way):
     """Return how many runs end in that way; a dash where that is not known."""
     count = getattr(row, way)
-    return "–" if count is None else str(count)
+    return "?" if count is None else str(count)
 
 
 def _left_out_text(row):
-    return f"{'–' if row.left_differing is None else row.left_differing} of {row.left_out}" if row.left_out else "0"
+    return f"{'?' if row.left_differing is None else row.left_differing} of {row.left_out}" if row.left_out else "0"
 
 
 def counted(motions: str, rows: Iterable[Mapping[str, Any]]) -> tuple[Endings, ...]:
@@ -222,13 +227,13 @@ def endings(shares: Sequence[Endings]) -> Figure:
     """Draw the shares of runs that end otherwise than the model's, motion by motion."""
     caption = (
         "Outcome: another one than the model’s, or failed. Its parts: missed, the block overturns in the model alone; "
-        "added, in the engine alone; other; failed, no result or an unphysical one. Late: the block overturns in both, "
-        "at another time or after another number of impacts. Lines: 95 % intervals of outcome and late together, in "
-        "which runs under one motion count as one. Left out of all: runs near an outcome boundary, where a change of "
-        "the scene by 10⁻⁴ (of a pulse by 1 %) changes how the model ends; before “of”: how many of these fail, or "
-        "overturn in engine or model alone. –: not tested, or not stored. Defaults were run in fewer scenes. Not "
-        "counted: pulses under which the block would jump, stacked blocks that leave the model, random statues without "
-        "friction, and hard cases."
+        "added, in the engine alone; other; failed, no result or an unphysical one. Time: the block overturns in "
+        "both, at another time or after another number of impacts. Lines: 95 % intervals of outcome and time "
+        "together, in which runs under one motion count as one. Left out of all: runs near an outcome boundary, where "
+        "a change of the scene by 10⁻⁴ (of a pulse by 1 %) changes how the model ends; before “of”: how many of these "
+        "fail, or overturn in engine or model alone. ?: not tested, or not stored. Defaults were run in fewer scenes. "
+        "Not counted: pulses under which the block would jump, stacked blocks that leave the model, random statues "
+        "without friction, and hard cases."
     )
     return broad(_endings_chart(shares, WIDE), [_endings_chart(shares, WIDTH)], caption)
 
@@ -238,7 +243,7 @@ def _endings_chart(rows: Sequence[Endings], width: int) -> Chart:
     wide = width == WIDE
     columns = COLUMNS if wide else PHONE_COLUMNS
     keys = [
-        (f'<rect class="ends-{way}" x="-12" y="-5.5" width="24" height="11"/>', way)
+        (f'<rect class="ends-{way}" x="-12" y="-5.5" width="24" height="11"/>', NAMES.get(way, way))
         for way in WAYS
         if any(getattr(row, way) for row in rows)
     ]
@@ -280,7 +285,7 @@ def _endings_chart(rows: Sequence[Endings], width: int) -> Chart:
         for aside, _, text in columns:
             chart.beside(1, place, text(row), aside=(aside, 4.5), anchor="end")
         if row.differing and not wide:
-            ways = ", ".join(f"{count} {way}" for way in WAYS if (count := getattr(row, way)))
+            ways = ", ".join(f"{count} {NAMES.get(way, way)}" for way in WAYS if (count := getattr(row, way)))
             chart.beside(1, place + 0.9, ways, aside=(columns[0][0], 4.5), anchor="end", kind="soft clear")
     return chart
 

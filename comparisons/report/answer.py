@@ -307,6 +307,9 @@ def screen(setups: Sequence[Setup], judgements: Sequence[Judgement], glances: It
     curves = next((glance for glance in given if glance.curves), None)
     shares = shown([ending for glance in given for ending in glance.endings], setups)
     says = {key: words for glance in given for key, words in glance.says.items()}
+    if "cost" in says:
+        answer, details = says["cost"]
+        says["cost"] = answer, f"{_on_statues(given)} {details}".strip()
     return {
         "title": title(shares),
         "lines": lines(setups, judgements, shares, says),
@@ -353,7 +356,7 @@ def lines(
     """Return up to five lines; those without a result are left out."""
     found = [
         Line("Restitution (0 to 1)", "impact", *_restitution(setups, judgements, says.get("slip", NOTHING)[1])),
-        Line("Outcomes", "recorded", *_outcomes(shares)),
+        Line("Outcomes", "recorded", *_outcomes(shares, says.get("matters", NOTHING)[1])),
         Line(LEVEL, "statues", *says.get("level", NOTHING)),
         Line("Cost", "speed-error", *says.get("cost", NOTHING)),
         Line("Real blocks", "shake-table", *says.get("real", NOTHING)),
@@ -383,7 +386,7 @@ def _restitution(setups, judgements, slip):
     head = next((judgement.heading for judgement in judgements if judgement.key == RESTITUTION), None)
     columns = [setup for setup in setups if setup.in_first_table and head]
     parts = []
-    begins = {TUNED: "at impacts, tuned engines differ from the model by", DEFAULTS: "With defaults, engines differ by"}
+    begins = {TUNED: "at impacts, the rms error of tuned engines is", DEFAULTS: "That of engines with defaults is"}
     for tier, begin in begins.items():
         marks = {setup.engine: setup.marks[head] for setup in columns if setup.tier == tier}
         known = {engine: mark for engine, mark in marks.items() if mark.value is not None}
@@ -395,8 +398,21 @@ def _restitution(setups, judgements, slip):
     return (" ".join(parts), f"Each value is the {head}. {slip}".strip()) if parts else NOTHING
 
 
-def _outcomes(shares):
-    """Return how many outcomes differ under recorded motions, or the first ones, and sentences on times and others."""
+def _on_statues(glances):
+    """Return a sentence on how often the levels whose cost is given miss their accuracy on random statues; or ""."""
+    missed = {key: counts for glance in glances for key, counts in glance.missed.items()}
+    levels = [key for glance in glances for key in glance.levels]
+    if not levels or not all(key in missed for key in levels):
+        return ""
+    counts = {engine: "{} of {}".format(*missed[engine, level]) for engine, level in levels}
+    return f"On the random statues, the levels used here miss that accuracy on {_by_engine(counts)}."
+
+
+def _outcomes(shares, matters):
+    """Return how many outcomes differ under recorded motions, or the first ones, and sentences on times and others.
+
+    matters: a sentence on what changes outcomes more than engines do, or "".
+    """
     motions = next(
         (share.motions for share in shares if "record" in share.motions), shares[0].motions if shares else ""
     )
@@ -425,7 +441,7 @@ def _outcomes(shares):
             sentences.append(f"{begin}{first_words[1:]}{others}.")
     if not sentences:
         return NOTHING
-    return sentences[0], " ".join((*sentences[1:], *_limits(shares)))
+    return sentences[0], " ".join((*sentences[1:], *_limits(shares), matters)).strip()
 
 
 def _limits(shares):
@@ -441,7 +457,12 @@ def _limits(shares):
         yield f"Of the runs with defaults that are counted, {failed} failed."
     if known := [share for share in tuned if share.left_differing is not None and share.left_out]:
         differing, out = (sum(getattr(share, name) for share in known) for name in ("left_differing", "left_out"))
-        yield f"Left out are runs near an outcome boundary: of those of tuned engines, {differing} of {out} differ."
+        changed, runs = _changed(tuned)
+        differing_all, runs_all = changed + differing, runs + out
+        yield (
+            f"Left out are runs near an outcome boundary: of those of tuned engines, {differing} of {out} differ; with "
+            f"them, {differing_all} of {runs_all} ({percent(differing_all / runs_all, 2)}) do."
+        )
 
 
 WHO = {TUNED: "tuned engines", DEFAULTS: "engines with defaults"}

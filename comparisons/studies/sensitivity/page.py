@@ -4,7 +4,9 @@ from ...execution.results import Result
 from ...metrics.statistics import wilson
 from ...plotting.charts import REFERENCE, Axis
 from ...plotting.figures import ranks, shades
+from ...plotting.glance import Glance
 from ...plotting.parts import Head, Page, grouped, table, where
+from ...plotting.wording import listed
 from ...schemas.columns import NAME, Column, percent, short
 from .study import COLUMNS
 
@@ -13,6 +15,7 @@ TICKS = ((LEAST, "0"), (0.01, "1 %"), (0.1, "10 %"), (1.0, "100 %"))
 BOUNDS = (0.01, 0.03, 0.1, 0.2, 0.3)
 
 SCENE, RUNS = COLUMNS["scene"], COLUMNS["runs"].called("runs")
+TOLD = ("motion rotated by 30°", "slenderness ±1 %")  # on the first screen
 ROTATED = {"direction turned by 30°": "motion rotated by 30°"}  # {name of a change in rows: its name on the page}
 WHAT = Column("change or engine", lambda row: ROTATED.get(row["change"], row["change"]) or NAME.of(row))
 SHARE = Column(
@@ -72,6 +75,15 @@ def page(result: Result) -> Page:
         more=_details(vertical, tables),
         how=_how(result.settings),
     )
+
+
+def glance(result: Result) -> Glance:
+    """Return a sentence for the report's first screen: what else changes the outcomes of the first scene, how often."""
+    scene = next(iter(result.settings["scenes"]))
+    shares = {WHAT.of(row): SHARE.of(row) for row in where(result.rows, part="change", scene=scene)}
+    told = [f"{percent(shares[change])} ({change})" for change in TOLD if shares.get(change)]
+    words = f"For comparison, near overturning the model's outcome changes in {listed(told)} of runs." if told else ""
+    return Glance(says={"matters": ("", words)})
 
 
 def _details(vertical, tables):

@@ -105,7 +105,7 @@ def at_a_glance(result: Result) -> tuple[str, str]:
         f"({listed(specimens)}); {listed(rivals_right)}."
     )
     if better:
-        answer += f" It is {listed(better)}."
+        answer += f" It is {'; it is '.join(better)}."
     same_rule = where(result.rows, part="score", judged=IN_SAMPLE, forecast=ONE)
     engines = grouped(where(result.rows, part="engine", specimen=set(specimens)), "engine", "variant").values()
     fitted = [
@@ -117,6 +117,7 @@ def at_a_glance(result: Result) -> tuple[str, str]:
             f"With one slenderness for each block, fitted to all of its tests with the model: model in "
             f"{_right_in_words(same_rule)}; {'; '.join(fitted)}.",
             f"The tests share {records} records; intervals are by record.",
+            "The blocks stood on the table itself: no test validates bearings.",
             *([f"{missing} tests are left out, as their motions are not at hand."] if missing else ()),
         )
     )
@@ -136,7 +137,7 @@ def of_all(rows: Sequence[dict[str, Any]]) -> Sequence[dict[str, Any]]:
 def _beside(pair, words):
     """Clause on whether the model is shown to be better than another forecast."""
     low, high = pair["more_interval"]
-    verdict = "better" if low > 0 else "worse" if high < 0 else "not shown to be better"
+    verdict = "shown to be better" if low > 0 else "shown to be worse" if high < 0 else "not shown to be better"
     more = f"{pair['more_right']} more, 95 % interval {low:.0f} to {high:.0f}".replace("-", "−")
     return f"{verdict} than {words} ({more})"
 

@@ -179,6 +179,7 @@ def glance(result: Result) -> Glance | None:
         return None
     return Glance(
         says={"cost": at_a_glance(result)},
+        levels=tuple((row["engine"], row["level"]) for row in reached(result)),
         curves=tuple(_curves(result, rows)),
         scene=result.settings["scenes"][PLAIN]["title"],
     )
@@ -259,7 +260,7 @@ def at_a_glance(result: Result) -> tuple[str, str]:
         f"{engine_costs} of CPU time per simulated second: about {over} times the {number(1e3 * costs[0][2], 2)} ms of "
         "the analytic model."
     )
-    details = [f"Levels: {levels}."]
+    details = [f"Levels: {levels}.", *_elsewhere(result)]
     if alike and len(costs) > 1:
         details.append(
             f"Measured times vary by a factor of {number(noise(result), 2)}, so that the engines are not shown to "
@@ -273,6 +274,19 @@ def at_a_glance(result: Result) -> tuple[str, str]:
     if scripts:
         details.append(f"The scripts that rocking script writes take {listed(scripts)}.")
     return answer, " ".join(details)
+
+
+def _elsewhere(result):
+    """Yield a sentence on the other scenes in which no level reaches the error `ASKED`."""
+    others = [
+        {*passing(rows, ASKED)}
+        for (scene, measure), rows in grouped(as_needed(result), "scene", "measure").items()
+        if measure == PEAK and scene != PLAIN
+    ]
+    unreached = {row["engine"]: sum(NAME.of(row) not in names for names in others) for row in reached(result)}
+    if any(unreached.values()):
+        counts = listed([f"{count} ({engine})" for engine, count in unreached.items()])
+        yield f"In {counts} of {len(others)} other scenes, close to overturning, no level reaches it."
 
 
 def _costs_at_asked(result):

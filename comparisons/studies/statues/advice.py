@@ -24,8 +24,10 @@ def advised_levels(result: Result) -> tuple[Table, ...]:
     """Return the first screen's table of the levels to use; none without rows of levels."""
     if not where(result.rows, part="level"):
         return ()
-    statues = len({row["index"] for row in where(result.rows, part="level", draw=2)})
+    second = where(result.rows, part="level", draw=2)
+    statues, upright = len({row["index"] for row in second}), _upright(second)
     rows = [row for accuracy in ASKED for row in _advised_rows(result, accuracy)]
+    finest = "" if any(row["held"] for row in rows) else ": here the finest, as none passed a first draw"
     lines = [
         {
             **members[0],
@@ -37,11 +39,11 @@ def advised_levels(result: Result) -> tuple[Table, ...]:
     ]
     return (
         table(
-            f"Which level to use, tested on {statues} random statues. An accuracy is missed if the outcome is not the "
-            "model's, or if the error of peak tilt (over the slenderness) or of base displacement is larger. ✓: it is "
-            f"missed on at most {percent(SECOND, 1)} of the statues that stay upright, and no outcome changes away "
-            "from an outcome boundary. ✗: it is missed more often, also at the finest level tested. At most: the upper "
-            "95 % limit. CPU times are per simulated second",
+            f"Which level to use{finest}. It was tested on {statues} random statues, of which {upright} stay upright. "
+            "An accuracy is missed if the outcome is not the model's, or if the error of peak tilt (over the "
+            f"slenderness) or of base displacement exceeds it. ✓: it is missed on at most {percent(SECOND, 1)} of the "
+            "statues that stay upright, and no outcome changes away from an outcome boundary; ✗: it is not so. At "
+            "most: the upper 95 % limit. CPU times are per simulated second",
             lines,
             Column("accuracy, missed on", "missed on"),
             NAME,
@@ -75,7 +77,7 @@ def at_a_glance(result: Result) -> tuple[str, str]:
 
 
 def _at_defaults(result):
-    """Yield a sentence on the default levels, with which the other studies are run."""
+    """Yield a sentence on the variants' own levels, with which the other studies are run."""
     rows = [
         (variant, tally(_row(result, variant, variant["default"])[1], ASKED[0]))
         for variant, levels in _levels(result)
@@ -88,8 +90,8 @@ def _at_defaults(result):
     ]
     if missed:
         yield (
-            "Restitution, outcomes and real blocks are those of the default levels, at which "
-            f"{percent(ASKED[0], 1)} is missed on {listed(missed)}."
+            "Restitution, outcomes and real blocks are those of the levels that tuned variants take unless told "
+            f"otherwise, at which {percent(ASKED[0], 1)} is missed on {listed(missed)}."
         )
 
 
@@ -103,13 +105,27 @@ def _most(row):
     return percent(wilson(row["missed"], row["upright"])[1]) if row["upright"] else "–"
 
 
+def missed_at_levels(result: Result) -> dict[tuple[str, float], tuple[int, int]]:
+    """Return {(engine, level): (statues that stay upright on which `ASKED[-1]` is missed, all of these)}."""
+    counts = {
+        (variant["engine"], level): tally(_row(result, variant, level)[1], ASKED[-1])
+        for variant, levels in _levels(result)
+        for level in levels
+    }
+    return {key: (count["missed"], count["upright"]) for key, count in counts.items()}
+
+
+def _upright(rows):
+    """Return how many statues stay upright in the model."""
+    return len({row["index"] for row in rows if row["model_outcome"] != FALLS})
+
+
 def level_tables(result: Result) -> tuple[Table, ...]:
     """Return the tables of the advised levels and of all levels on the second draw; none without rows of levels."""
     if not where(result.rows, part="level"):
         return ()
     second = where(result.rows, part="level", draw=2)
-    statues = len({row["index"] for row in second})
-    upright = len({row["index"] for row in second if row["model_outcome"] != FALLS})
+    statues, upright = len({row["index"] for row in second}), _upright(second)
     return (
         table(
             f"Which level of a tuned variant to use, tested on {statues} random statues. An accuracy is kept if the "
@@ -210,6 +226,7 @@ def _advised_rows(result, accuracy):
             "accuracy": accuracy,
             "edges": f"{within} of {len(shifts)}" if shifts else "not searched for",
             "verdict": _verdict(counts, held),
+            "held": held,
             "command": f"rocking run SCENE --engine {row['engine']} --set {row['parameter']}={level:g}",
         }
 

@@ -37,7 +37,7 @@ from ...plotting.glance import Glance, counted
 from ...plotting.parts import Figure, Judgement, Mark, Page, grouped, table, where
 from ...plotting.wording import TRUSTED, ends, left_out, listed, tally
 from ...schemas.columns import NAME, Column, number, percent, typeset
-from .advice import advised_levels, alarms, at_a_glance, level_tables
+from .advice import advised_levels, alarms, at_a_glance, level_tables, missed_at_levels
 from .levels import FALLS, SEEDS
 from .study import APART, COLUMNS, FREQUENCY
 
@@ -294,6 +294,7 @@ def glance(result: Result) -> Glance:
         says={"level": at_a_glance(result), "slip": ("", _slipping(slipping) if slipping else "")},
         endings=counted("blocks that may slide", runs),
         advice=advised_levels(result),
+        missed=missed_at_levels(result),
     )
 
 

@@ -174,7 +174,7 @@ def test_words_of_both_charts_are_apart_and_inside(curves, form):
 def test_a_phone_says_in_words_how_runs_end():
     row = Endings("pulses", "exudyn", "v", "tuned", 100, 1, 2, 3, 4, (0.0, 0.1), late=5, left_out=9, left_differing=8)
     words = [words for _, words, _ in texts(chart(endings([row]), "phone"))]
-    assert {"10 of 100", "8 of 9", "2 missed, 3 added, 4 other, 1 failed, 5 late"} <= {*words}
+    assert {"10 of 100", "8 of 9", "2 missed, 3 added, 4 other, 1 failed, 5 time"} <= {*words}
 
 
 def test_a_chart_with_no_room_for_a_name_is_drawn_all_the_same():

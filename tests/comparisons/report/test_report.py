@@ -54,7 +54,7 @@ def test_pages_need_nothing_but_themselves_and_each_link_leads_to_its_place(plac
 def test_outside_the_range_no_engine_is_recommended(tmp_path):
     file = tmp_path / runs.SCENES
     content = json.loads((ROWS / WITH_STUDIES / runs.SCENES).read_text(encoding="utf-8"))
-    recommended = "Which level to use, tested on"
+    recommended = "Which level to use"
     for words in ("", "No engine is recommended here: R 20 is outside."):
         content["rows"][1]["warnings"] = [{"kind": "engine", "quantity": "radius", "text": "R 20 is outside"}] * bool(
             words
