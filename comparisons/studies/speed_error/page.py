@@ -133,7 +133,7 @@ def equal_cost_tables(result: Result) -> list[Table | None]:
                 return "–"
             if (cost := row["costs"][place].get(error)) is None:
                 return "not reached"
-            over = f" ({number(cost / model, 2)} ×)" if model and row["name"] != KERNEL else ""
+            over = f" ({ratio_words(cost / model)} ×)" if model and row["name"] != KERNEL else ""
             over = f" ({APART})" if row["name"].split(", ")[0] in apart else over
             return f"{number(1e3 * cost, 2)}{over}"
 
@@ -161,10 +161,15 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
             name in cheapest_rows and cheapest_rows[name]["cpu_per_second"] / cheapest_rows[KERNEL]["cpu_per_second"]
         )
         if name in {NAME.of(variant) for variant in result.settings["variants"]}:
-            mark = Mark(f"{number(ratio, 2)} ×", "none", value=ratio) if ratio else NOT_REACHED
+            mark = Mark(f"{ratio_words(ratio)} ×", "none", value=ratio) if ratio else NOT_REACHED
             marks[tuple(pair)] = Mark(APART, "none", apart[pair[0]]) if ratio and pair[0] in apart else mark
     heading = f"CPU time over the analytic model's for a peak tilt within {percent(ASKED, 1)}, isolated rocking"
     return (Judgement(heading, marks, COST),) if marks else ()
+
+
+def ratio_words(ratio: float) -> str:
+    """Return a ratio of CPU times in two digits, more than which their scatter does not allow."""
+    return number(float(f"{ratio:.2g}"), 2)
 
 
 def level_words(row: Row) -> str:
@@ -242,7 +247,7 @@ def times(result: Result) -> str:
 
     For example "94 (a) and 200 (b) times the analytic model’s CPU time"; "" where none reaches the error.
     """
-    ratios = [f"{number(cost / model, 2)} ({engine})" for engine, cost, model in _costs_at_asked(result)]
+    ratios = [f"{ratio_words(cost / model)} ({engine})" for engine, cost, model in _costs_at_asked(result)]
     return f"{listed(ratios)} times the analytic model’s CPU time" if ratios else ""
 
 
@@ -253,7 +258,7 @@ def at_a_glance(result: Result) -> tuple[str, str]:
         return "", ""
     levels = listed([f"{level_words(row)} ({row['engine']})" for row in reached(result)])
     engine_costs = listed([f"{number(1e3 * cost, 2)} ms ({engine})" for engine, cost, _ in costs])
-    over = listed([f"{float(f'{cost / model:.2g}'):g}" for _, cost, model in costs])
+    over = listed([ratio_words(cost / model) for _, cost, model in costs])
     alike = max(cost for _, cost, _ in costs) <= noise(result) * min(cost for _, cost, _ in costs)
     answer = (
         f"in one isolated scene, a peak tilt within {percent(ASKED, 1)} of the slenderness takes tuned engines "
@@ -483,7 +488,7 @@ def _costs(result, rows):
             if (best := cheapest_rows.get(row["name"])) is None:
                 return None
             fine = rows[0]["measure"] == FINE and KERNEL in cheapest_rows  # other errors have tables at an equal error
-            ratio = f"{number(CPU.of(best) / CPU.of(cheapest_rows[KERNEL]), 2)} ×; " if fine else ""
+            ratio = f"{ratio_words(CPU.of(best) / CPU.of(cheapest_rows[KERNEL]))} ×; " if fine else ""
             return f"{number(1e3 * CPU.of(best), 2)} ({ratio}{level_words(best)})"
 
         return Column(f"≤ {short(level)}", text)
