@@ -268,7 +268,7 @@ def at_a_glance(result: Result) -> tuple[str, str]:
     details = [f"Levels: {levels}.", *_elsewhere(result)]
     if alike and len(costs) > 1:
         details.append(
-            f"Measured times vary by a factor of {number(noise(result), 2)}, so that the engines are not shown to "
+            f"Measured times vary by a factor of {number(noise(result))}, so that the engines are not shown to "
             "differ in cost."
         )
     scripts = [
@@ -360,7 +360,7 @@ def page(result: Result) -> Page:
         (
             "Every solver is run at several levels of its accuracy parameter. Error and CPU time come from the same "
             "runs. The cost at a given error is that of the cheapest level that keeps it, provided that all finer "
-            f"levels keep it too. Costs within a factor of {number(noise(result), 2)} are not distinguished."
+            f"levels keep it too. Costs within a factor of {number(noise(result))} are not distinguished."
             + "".join(f" {engine} was timed {why}: no ratio is given." for engine, why in timed_apart(result).items()),
         ),
         first=(_figure([row for key in first for row in errors[key]], CPU, MAIN_CAPTION, rows, _leads(result)), usual),
@@ -631,7 +631,7 @@ def _how(result, rows):
     return (
         f"{result.settings['rounds']} fresh processes run one after the other, one round each. In each, every solver "
         "is warmed up and timed. A CPU time is that of the fastest round, without import, compilation and building of "
-        f"the scene. For {NOISE} % of the levels, the median round took at most {number(noise(result), 2)} times as "
+        f"the scene. For {NOISE} % of the levels, the median round took at most {number(noise(result))} times as "
         f"long as the fastest, so closer costs are not distinguished. Machine: {machine['processor']}, "
         f"{machine['logical_cores']} cores.{beside}",
         "References are computed by the kernel at its tightest tolerance. An independent solution by scipy differs "
