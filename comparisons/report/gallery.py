@@ -23,17 +23,17 @@ GALLERY, README = Path(__file__).with_name("gallery"), PROJECT_FOLDER / "README.
 RESULTS_README = RESULTS / "README.md"
 BEGIN, END = "<!-- findings of the stored studies -->", "<!-- end of findings -->"
 CLAIMED = "<!-- claims and the stored runs behind them -->"
-# (claim, result, command, its minutes on two cores)
+# (claim, result, command, its minutes on two cores); runs under records are not stored and are repeated as a whole
 CLAIMS = (
-    ("restitution at impacts", "restitution", "study restitution --check 30", "1"),
-    ("outcomes under pulses", "overturning", "study overturning --check 30", "1"),
-    ("outcomes under recorded earthquakes", "recorded", "study recorded", "60"),
-    ("outcomes under synthetic earthquakes", "fragility", "study fragility --check 30", "1"),
-    ("real blocks, outcomes under shake-table motions", "shake-table", "study shake-table --data FOLDER", "120"),
+    ("restitution at impacts", "restitution", "study restitution --check 30", "< 1"),
+    ("outcomes under pulses", "overturning", "study overturning --check 30", "< 1"),
+    ("outcomes under recorded earthquakes", "recorded", "study recorded", "25"),
+    ("outcomes under synthetic earthquakes", "fragility", "study fragility --check 30", "< 1"),
+    ("real blocks, outcomes under shake-table motions", "shake-table", "study shake-table --data FOLDER", "90"),
     ("drawn statues: levels, outcomes with sliding", "statues", "study statues --check 30", "1"),
-    ("two stacked blocks", "stack", "study stack --check 30", "1"),
-    ("hard cases", "stability", "study stability --check 30", "1"),
-    ("cost", "speed-error", "study speed-error --check 30", "1"),
+    ("two stacked blocks", "stack", "study stack --check 30", "< 1"),
+    ("hard cases", "stability", "study stability --check 30", "< 1"),
+    ("cost", "speed-error", "study speed-error --check 30", "< 1"),
 )
 ALT = {
     "costs": "Error of peak tilt over CPU time of every solver",
