@@ -112,8 +112,8 @@ def test_a_shake_table_is_counted_away_from_boundaries_too():
     "more, words",
     [
         ((3, 0.0, 7.0), "not shown to be better than"),
-        ((8, 1.0, 15.0), "better than"),
-        ((-8, -15.0, -1.0), "worse than"),
+        ((8, 1.0, 15.0), "shown to be better than"),
+        ((-8, -15.0, -1.0), "shown to be worse than"),
     ],
 )
 def test_the_model_is_better_than_the_curve_only_where_the_interval_says_so(more, words):
