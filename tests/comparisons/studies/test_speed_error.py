@@ -274,6 +274,17 @@ def test_a_level_keeps_an_error_if_it_keeps_peak_tilt_and_boundary():
     assert name not in keeping(costly(boundary_shift=2e-3), 1e-3)
 
 
+@pytest.mark.parametrize("error, said", [(5e-4, False), (5e-3, True)])
+def test_other_scenes_in_which_no_level_reaches_the_error_are_told(error, said):
+    result = costly()
+    result.settings["scenes"]["near-overturning"]["measures"] = ["boundary_shift", "peak_tilt"]
+    for line in where(result.rows, scene="near-overturning", level=1e-3):
+        line["errors"]["peak_tilt"] = error
+    glance = STUDY.glance(result)
+    assert ("In 1 (exudyn) of 1 other scenes" in glance.says["cost"][1]) == said
+    assert glance.levels == (("exudyn", 1e-3),)
+
+
 @pytest.mark.parametrize("cost, same", [(280.0, True), (330.0, False)])
 def test_engines_that_cost_the_same_are_said_to(cost, same):
     """Medians are one and a half times the least: costs nearer than that are not told apart."""

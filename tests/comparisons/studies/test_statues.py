@@ -18,7 +18,7 @@ from comparisons.metrics.boundaries import pulse
 from comparisons.plotting.parts import where
 from comparisons.studies import get_study
 from comparisons.studies.statues import study
-from comparisons.studies.statues.advice import advised_levels, alarms, level_tables
+from comparisons.studies.statues.advice import advised_levels, alarms, level_tables, missed_at_levels
 from comparisons.studies.statues.levels import advised, holds, level_settings, misses, tally
 from comparisons.studies.statues.study import fates
 from engines import ENGINES, get_engine
@@ -276,5 +276,6 @@ def test_the_second_draw_says_whether_an_advised_level_passes():
     assert [row[0] for row in short.rows] == ["1 %: 3 of 40 ✗ (at most 20 %)", "0.1 %: 40 of 40 ✗ (at most 100 %)"]
     assert "rocking run caryatid-isolated --engine exudyn --set stiffness=1e+09" in short.rows[0]
     assert alarms(made).rows[1] == ["2", "80", "1 of 77 (1.3 %)", "3 of 3 (100 %)"]
+    assert missed_at_levels(made) == {("exudyn", 1e9): (40, 40), ("exudyn", 1e10): (40, 40)}
     empty = SimpleNamespace(rows=[], settings={})
-    assert level_tables(empty) == advised_levels(empty) == ()
+    assert level_tables(empty) == advised_levels(empty) == () and missed_at_levels(empty) == {}
