@@ -226,6 +226,7 @@ def scenes_computed(folder: Path, rows: Sequence[Row], scenes: Mapping[str, Scen
             "block": scene.block.model_dump(),
             "base": scene.base and scene.base.model_dump(),
             "bearings": scene.bearings and scene.bearings.model_dump(),
+            "pedestal": scene.pedestal and scene.pedestal.model_dump(),
             "friction": scene.friction,
             "half_width": scene.block.half_width,
             "half_height": scene.block.half_height,

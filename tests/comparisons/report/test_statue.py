@@ -156,6 +156,21 @@ def test_a_record_takes_the_place_of_the_scenes_motions(tmp_path):
         load_scenes([str(tmp_path / "none.toml")])
 
 
+@pytest.mark.parametrize(
+    "foot, based", [({"width": 0.8, "mass": 600.0, "height": 0.7}, True), ({"width": 0.8, "height": None}, False)]
+)
+def test_a_pedestal_stands_between_block_and_base_or_ground(foot, based):
+    block = {"name": "s", "half_width": 0.2, "half_height": 0.9, "block": {"mass": 400.0}, "bearings": None}
+    draw = environment().get_template("statue.html").module.block
+    shown = draw({**block, "base": {"mass": 900.0} if based else None, "pedestal": foot})
+    rows = re.findall(r'class="(\w+)" x="(\S+)" y="(\S+)" width="(\S+)" height="(\S+)"', shown)
+    rects = [(kind, *map(float, numbers)) for kind, *numbers in rows]
+    assert [kind for kind, *_ in rects] == [*["steel"] * based, "steel", "stone"]
+    *lower, (_, x, y, width, height), (_, _, top, _, tall) = rects
+    assert (x, width) == (-0.4, 0.8) and top + tall == pytest.approx(y) and height == (foot.get("height") or 0.216)
+    assert y + height == pytest.approx(lower[0][2] if based else 0.0) and "pedestal 0.800 m" in shown
+
+
 def test_every_outcome_has_a_colour_in_the_bar_of_a_margin():
     draw = environment().get_template("statue.html").module.bar
     for outcome in OUTCOMES:
