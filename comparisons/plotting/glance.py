@@ -231,9 +231,9 @@ def endings(shares: Sequence[Endings]) -> Figure:
         "both, at another time or after another number of impacts. Lines: 95 % intervals of outcome and time "
         "together, in which runs under one motion count as one. Left out of all: runs near an outcome boundary, where "
         "a change of the scene by 10⁻⁴ (of a pulse by 1 %) changes how the model ends; before “of”: how many of these "
-        "fail, or overturn in engine or model alone. ?: not tested, or not stored. Defaults were run in fewer scenes. "
-        "Not counted: pulses under which the block would jump, stacked blocks that leave the model, random statues "
-        "without friction, and hard cases."
+        "fail, or overturn in engine or model alone. ?: not tested, or not stored. Under some motions defaults were "
+        "run in fewer scenes. Not counted: pulses under which the block would jump, stacked blocks that leave the "
+        "model, random statues without friction, and hard cases."
     )
     return broad(_endings_chart(shares, WIDE), [_endings_chart(shares, WIDTH)], caption)
 

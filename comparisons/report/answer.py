@@ -392,8 +392,10 @@ def _restitution(setups, judgements, slip):
         known = {engine: mark for engine, mark in marks.items() if mark.value is not None}
         if known:
             deaf = [engine for engine, mark in known.items() if "missed" in mark.words]
+            failing = [engine for engine, mark in known.items() if "failed" in mark.words]
+            also = f" ({listed(failing)} also fail{'s' * (len(failing) == 1)})" if failing else ""
             who = "both" if len(deaf) == len(known) == 2 else listed(deaf)
-            missing = f", and {who} miss{'es' * (len(deaf) == 1)} impacts" if deaf else ""
+            missing = f", and {who} miss{'es' * (len(deaf) == 1)} impacts{also}" if deaf else ""
             parts.append(f"{begin} {_by_engine({who: number(mark.value, 2) for who, mark in known.items()})}{missing}.")
     return (" ".join(parts), f"Each value is the {head}. {slip}".strip()) if parts else NOTHING
 
@@ -463,6 +465,8 @@ def _limits(shares):
             f"Left out are runs near an outcome boundary: of those of tuned engines, {differing} of {out} differ; with "
             f"them, {differing_all} of {runs_all} ({percent(differing_all / runs_all, 2)}) do."
         )
+    if unknown := sum(share.left_out for share in tuned if share.left_differing is None):
+        yield f"Of {unknown} further ones it is not stored."
 
 
 WHO = {TUNED: "tuned engines", DEFAULTS: "engines with defaults"}

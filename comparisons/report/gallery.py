@@ -89,7 +89,7 @@ def claims(stored: Sequence[Stored], results: Mapping[str, Result]) -> str:
     """
     setups = setups_of(variants_of(stored), judgements_of(stored))
     judged = {study.name: shown(study.glance.endings, setups) for study in stored if study.glance}
-    rows = [["claim", "all runs", "outcomes compared", "left out near a boundary", "command", "minutes"], ["---"] * 6]
+    rows = [["claim", "runs", "outcomes compared", "left out near a boundary", "command", "minutes"], ["---"] * 6]
     for claim, name, command, minutes in CLAIMS:
         shares = judged.get(name)
         counts = [sum(share.runs for share in shares), sum(share.left_out for share in shares)] if shares else ["–"] * 2

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from analytic.records.content import PREFIX
+from engines import ENGINES
 from engines.comparison import FALL
 
 from ...execution.results import Result
@@ -257,6 +258,8 @@ def _how(result: Result) -> tuple[str, ...]:
     )
     why = [row["comparable"] for row in where(result.rows, part="scene") if row["comparable"] != "yes"]
     left = [NOT_COMPARED.get(reason, reason) for reason in why]
+    run = [row for row in result.rows if row.get("engine") in ENGINES]
+    others = "" if all(map(subject, run)) else ", and other tuned engines,"
     reasons = ", ".join(f"{left.count(reason)} {reason}" for reason in dict.fromkeys(left)) or "none"
     return (
         f"The motions are {settings['records']} records ({settings['source']}). Each component is run by itself, "
@@ -265,8 +268,8 @@ def _how(result: Result) -> tuple[str, ...]:
         "the base mass over the block mass. Both are drawn evenly over their logarithm. Period [s] and damping of the "
         f"bearings are those at {settings['x_max']:g} m; the bearing law is one of {', '.join(settings['laws'])}. The "
         f"ranges were chosen once, by the outcomes of the model alone: {mix}.",
-        f"The tuned variants of {SUBJECTS} run all records. Their defaults, and other tuned engines, run both "
-        f"components of {settings['records_of_others']} records. Left out of all engines: {reasons}. A scene is near "
+        f"The tuned variants of {SUBJECTS} run all records. Their defaults{others} run both components of "
+        f" {settings['records_of_others']} records. Left out of all engines: {reasons}. A scene is near "
         "an outcome boundary if a change of it by 10⁻⁴ changes how the block ends in the model. Components and "
         "configurations of a record are not independent, so Wilson’s interval counts records, not runs.",
         "The common horizon is the time at which a change of the model by 10⁻⁴ has moved its tilt by a hundredth of "

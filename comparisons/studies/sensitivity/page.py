@@ -82,8 +82,8 @@ def glance(result: Result) -> Glance:
     scene = next(iter(result.settings["scenes"]))
     shares = {WHAT.of(row): SHARE.of(row) for row in where(result.rows, part="change", scene=scene)}
     told = [f"{percent(shares[change])} ({change})" for change in TOLD if shares.get(change)]
-    words = f"For comparison, near overturning the model's outcome changes in {listed(told)} of runs." if told else ""
-    return Glance(says={"matters": ("", words)})
+    words = f"For comparison, near overturning the model's outcome changes in {listed(told)} of runs ({scene})."
+    return Glance(says={"matters": ("", words if told else "")})
 
 
 def _details(vertical, tables):

@@ -9,7 +9,7 @@ import numpy as np
 from ...execution.results import Result
 from ...metrics.statistics import EQUAL, TOO_FEW, wilson
 from ...plotting.charts import Axis, Chart, curve, figure, key_of
-from ...plotting.figures import SUBJECTS, as_it_comes, ranks
+from ...plotting.figures import SUBJECTS, as_it_comes, ranks, subject
 from ...plotting.glance import Endings, Glance
 from ...plotting.parts import Figure, Head, Judgement, Page, Table, grouped, table, where
 from ...plotting.wording import equal_mark, listed, with_counts
@@ -118,7 +118,7 @@ def at_a_glance(result: Result) -> tuple[str, str]:
             f"{_right_in_words(same_rule)}; {'; '.join(fitted)}.",
             f"The tests share {records} records; intervals are by record.",
             "The blocks stood on the table itself: no test validates bearings.",
-            *([f"{missing} tests are left out, as their motions are not at hand."] if missing else ()),
+            *([f"{missing} tests of each block are left out, as their motions are not at hand."] if missing else ()),
         )
     )
 
@@ -288,9 +288,12 @@ def how(result: Result) -> tuple[str, ...]:
         f"Intervals are percentiles of a bootstrap over records (seed {result.provenance['seed']}). With “fitted to "
         "every other test”, tests under one record may be in the fit and among those judged."
     )
+    others = ""
+    if not all(map(subject, where(result.rows, part="engine"))):
+        others = f", one in {settings['others']} in other engines"
     runs = (
-        f"All tests are run in {SUBJECTS}, one in {settings['others']} in other engines, with the slenderness at which "
-        "the model is right most often. A failed run counts as wrong and as differing."
+        f"All tests are run in {SUBJECTS}{others}, with the slenderness at which the model is right most often. A "
+        "failed run counts as wrong and as differing."
     )
     if not settings["cite"]:
         return (

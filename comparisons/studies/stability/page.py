@@ -3,6 +3,7 @@
 import re
 from itertools import product
 
+from engines import ENGINES
 from engines.simulating import in_words
 
 from ...execution.results import Result
@@ -55,7 +56,7 @@ def page(result: Result) -> Page:
     counts = sorted(_counts(result, cells), key=lambda row: -row[RIGHT])
     wrong = where(cells.values(), result={DIFFERS, FAILED})
     return Page(
-        _title(cells, inside, outside, where(variants, kind="stepping", best=True)),
+        _title(cells, inside, outside, [row for row in variants if row["best"] and row["engine"] in ENGINES]),
         (
             "Real integrators have failed on these scenes. A result is right if every measure is within its tolerance; "
             "otherwise it differs. It fails if the solver gives up, exceeds its time limit or moves the block in a "

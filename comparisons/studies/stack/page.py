@@ -133,7 +133,7 @@ def _first_falls(caption: str, mountings: Sequence[Row], by: Column) -> Table:
         f"{caption}, by the {by.head}",
         ways,
         COLUMNS["way"],
-        *(Column(text, text) for (text,) in sorted(grouped(mountings, by.text))),
+        *(Column(text, text, digits=None) for (text,) in sorted(grouped(mountings, by.text))),
     )
 
 

@@ -170,14 +170,15 @@ def _kind_of_scene(row):
 
 
 def _title(result, counts):
-    tuned = where(counts, tier="tuned")
+    best = result.settings["default_variants"]
+    tuned = [row for row in where(counts, tier="tuned") if best.get(row["engine"]) == row["variant"]]
     right, whole = (
         {name: sum(row[key] for row in where(tuned, friction=name)) for name in (NONE, DRAWN)}
         for key in ("right", "runs")
     )
     return (
-        f"Random statues: {right[NONE]} of {whole[NONE]} runs of tuned engines are right where blocks cannot slide, "
-        f"{right[DRAWN]} of {whole[DRAWN]} where they slide; {largest(result)}"
+        f"Random statues: {right[NONE]} of {whole[NONE]} runs of tuned engines (main variants) are right where blocks "
+        f"cannot slide, {right[DRAWN]} of {whole[DRAWN]} where they slide; {largest(result)}"
     )
 
 
