@@ -156,6 +156,7 @@ def test_where_bounces_end_does_not_matter(monkeypatch):
     assert runs[1] == pytest.approx(runs[2], abs=1e-11) and runs[0] == pytest.approx(runs[2], abs=1e-8)
 
 
+@pytest.mark.slow
 def test_without_a_duration_it_ends_when_nothing_can_grow():
     for scene in (STACK.with_(motion=sine(0.35, 1.5)), STACK.with_(motion=sine(0.2, 1.0)), SIX["soft base"][0]):
         open_end = simulate(scene.with_(duration=None))
