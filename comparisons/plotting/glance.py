@@ -94,13 +94,14 @@ WIDE = 590
 WORST = 1.0  # largest error on the axis; a larger one stands at the frame
 FINEST = -6  # power of ten at which the axis of errors ends if no engine has an error
 LINE = 17  # height of a row of the second chart
+NAMES = {"late": "time"}  # of ways that are not called as their field
 COLUMNS: tuple[tuple[int, str, Callable[[Endings], str]], ...] = (
     (74, "outcome", lambda row: f"{row.changed} of {row.runs}"),
     (127, "missed", lambda row: _count_text(row, "missed")),
     (172, "added", lambda row: _count_text(row, "added")),
     (211, "other", lambda row: _count_text(row, "other")),
     (258, "failed", lambda row: _count_text(row, "failed")),
-    (293, "time", lambda row: _count_text(row, "late")),
+    (293, NAMES["late"], lambda row: _count_text(row, "late")),
     (355, "left out", lambda row: _left_out_text(row)),
 )  # beside the bars: where a column ends, its head, its words
 PHONE_COLUMNS = (COLUMNS[0], (138, *COLUMNS[-1][1:]))
@@ -112,11 +113,9 @@ WAYS = {
     "late": "falls at another time",
 }
 
-NAMES = {"late": "time"}  # of ways that are not called as their field
-
 
 def _count_text(row, way):
-    """Return how many runs end in that way; a dash where that is not known."""
+    """Return how many runs end in that way; a question mark where that is not known."""
     count = getattr(row, way)
     return "?" if count is None else str(count)
 

@@ -269,7 +269,7 @@ def _how(result: Result) -> tuple[str, ...]:
         f"bearings are those at {settings['x_max']:g} m; the bearing law is one of {', '.join(settings['laws'])}. The "
         f"ranges were chosen once, by the outcomes of the model alone: {mix}.",
         f"The tuned variants of {SUBJECTS} run all records. Their defaults{others} run both components of "
-        f" {settings['records_of_others']} records. Left out of all engines: {reasons}. A scene is near "
+        f"{settings['records_of_others']} records. Left out of all engines: {reasons}. A scene is near "
         "an outcome boundary if a change of it by 10⁻⁴ changes how the block ends in the model. Components and "
         "configurations of a record are not independent, so Wilson’s interval counts records, not runs.",
         "The common horizon is the time at which a change of the model by 10⁻⁴ has moved its tilt by a hundredth of "

@@ -252,7 +252,7 @@ def _left_out(settings):
     missing, names = settings["missing"], listed([item["name"] for item in settings["specimens"]])
     if not missing["tests"]:
         return ""
-    words = f"{missing['tests']} tests are left out because their motion is not at hand. "
+    words = f"{missing['tests']} tests of each block are left out because their motion is not at hand. "
     if missing["overturned"]:
         count = len(settings["tests"])
         shares = [percent(item / missing["tests"]) for item in missing["overturned"]]

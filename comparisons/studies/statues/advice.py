@@ -107,12 +107,8 @@ def _most(row):
 
 def missed_at_levels(result: Result) -> dict[tuple[str, float], tuple[int, int]]:
     """Return {(engine, level): (statues that stay upright on which `ASKED[-1]` is missed, all of these)}."""
-    counts = {
-        (variant["engine"], level): tally(_row(result, variant, level)[1], ASKED[-1])
-        for variant, levels in _levels(result)
-        for level in levels
-    }
-    return {key: (count["missed"], count["upright"]) for key, count in counts.items()}
+    counts = {(row["engine"], row["level"]): row["by"][ASKED[-1]] for row in _all_rows(result)}
+    return {level: (count["missed"], count["upright"]) for level, count in counts.items()}
 
 
 def _upright(rows):

@@ -170,8 +170,7 @@ def _kind_of_scene(row):
 
 
 def _title(result, counts):
-    best = result.settings["default_variants"]
-    tuned = [row for row in where(counts, tier="tuned") if best.get(row["engine"]) == row["variant"]]
+    tuned = where(leading(counts, result.settings["variants"]), tier="tuned")
     right, whole = (
         {name: sum(row[key] for row in where(tuned, friction=name)) for name in (NONE, DRAWN)}
         for key in ("right", "runs")
