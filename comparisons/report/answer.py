@@ -407,7 +407,7 @@ def _on_statues(glances):
     if not levels or not all(key in missed for key in levels):
         return ""
     counts = {engine: "{} of {}".format(*missed[engine, level]) for engine, level in levels}
-    return f"On the random statues, the levels used here miss that accuracy on {_by_engine(counts)}."
+    return f"On the random statues, the levels of this scene miss that accuracy on {_by_engine(counts)}."
 
 
 def _outcomes(shares, matters):
@@ -452,8 +452,8 @@ def _limits(shares):
     if tuned:
         limits = sorted(share.interval[1] for share in tuned)
         yield (
-            f"Runs share motions, so that the upper 95 % limits of tuned engines are {percent(limits[0], 2)} to "
-            f"{percent(limits[-1], 2)}, by kind of motion and with times of falls."
+            f"Runs share motions. By kind of motion, upper 95 % limits of tuned engines are {percent(limits[0], 2)} to "
+            f"{percent(limits[-1], 2)}, with times of falls where these are compared."
         )
     if failed := sum(share.failed for share in plain):
         yield f"Of the runs with defaults that are counted, {failed} failed."
@@ -466,7 +466,7 @@ def _limits(shares):
             f"them, {differing_all} of {runs_all} ({percent(differing_all / runs_all, 2)}) do."
         )
     if unknown := sum(share.left_out for share in tuned if share.left_differing is None):
-        yield f"Of {unknown} further ones it is not stored."
+        yield f"For {unknown} further runs near a boundary it is not known."
 
 
 WHO = {TUNED: "tuned engines", DEFAULTS: "engines with defaults"}

@@ -114,7 +114,7 @@ def at_a_glance(result: Result) -> tuple[str, str]:
     ]
     return answer, " ".join(
         (
-            f"With one slenderness for each block, fitted to all of its tests with the model: model in "
+            f"By another fit, not held out (one slenderness for each block, from all of its tests): model in "
             f"{_right_in_words(same_rule)}; {'; '.join(fitted)}.",
             f"The tests share {records} records; intervals are by record.",
             "The blocks stood on the table itself: no test validates bearings.",

@@ -19,7 +19,20 @@ from ...execution.results import Result
 from ...metrics.scripts import NAME as SCRIPT
 from ...plotting.figures import Series, beside, lines, mains
 from ...plotting.glance import Curve, Glance
-from ...plotting.parts import COST, Head, Judgement, Mark, Page, Table, cheapest, grouped, kept_from, table, where
+from ...plotting.parts import (
+    COST,
+    Head,
+    Judgement,
+    Mark,
+    Page,
+    Table,
+    cheapest,
+    grouped,
+    kept_from,
+    setting_of,
+    table,
+    where,
+)
 from ...plotting.wording import listed
 from ...schemas.columns import NAME, Column, Row, number, percent, short
 from ...schemas.columns import NAME as SOLVER
@@ -173,8 +186,8 @@ def ratio_words(ratio: float) -> str:
 
 
 def level_words(row: Row) -> str:
-    """Return the accuracy parameter of a row and its level, in words."""
-    return f"{row['parameter'].replace('_', ' ')} {short(row['level'])}" if row["parameter"] else "as written"
+    """Return the accuracy parameter of a row and its level with its unit, in words."""
+    return setting_of(row) if row["parameter"] else "as written"
 
 
 def glance(result: Result) -> Glance | None:

@@ -27,7 +27,7 @@ def advised_levels(result: Result) -> tuple[Table, ...]:
     second = where(result.rows, part="level", draw=2)
     statues, upright = len({row["index"] for row in second}), _upright(second)
     rows = [row for accuracy in ASKED for row in _advised_rows(result, accuracy)]
-    finest = "" if any(row["held"] for row in rows) else ": here the finest, as none passed a first draw"
+    finest = "." if any(row["held"] for row in rows) else ": here the finest, as none passed on a first draw."
     lines = [
         {
             **members[0],
@@ -39,11 +39,11 @@ def advised_levels(result: Result) -> tuple[Table, ...]:
     ]
     return (
         table(
-            f"Which level to use{finest}. It was tested on {statues} random statues, of which {upright} stay upright. "
-            "An accuracy is missed if the outcome is not the model's, or if the error of peak tilt (over the "
-            f"slenderness) or of base displacement exceeds it. ✓: it is missed on at most {percent(SECOND, 1)} of the "
-            "statues that stay upright, and no outcome changes away from an outcome boundary; ✗: it is not so. At "
-            "most: the upper 95 % limit. CPU times are per simulated second",
+            f"Which level to use{finest} It was tested on {statues} other random statues; {upright} stay upright. An "
+            "accuracy is missed if the outcome is not the model's, or if the error of peak tilt (over the slenderness) "
+            f"or of base displacement exceeds it. ✓: it is missed on {percent(SECOND, 1)} or fewer of the {upright}, "
+            "and no outcome changes away from an outcome boundary; ✗: it is not so. At most: the upper 95 % limit. CPU "
+            "times are per simulated second",
             lines,
             Column("accuracy, missed on", "missed on"),
             NAME,
@@ -72,7 +72,10 @@ def at_a_glance(result: Result) -> tuple[str, str]:
         near = listed([f"{row['missed_near']} of {row['missed']} ({row['engine']})" for row in rows])
         details.append(f"Of the misses of {share}, {near} are near an outcome boundary.")
     if answer:
-        details += [f"✓: at most {percent(SECOND, 1)}, by a rule fixed in advance.", *_at_defaults(result)]
+        details += [
+            f"✓: {percent(SECOND, 1)} or fewer; the rule stands at the table, and was fixed in advance.",
+            *_at_defaults(result),
+        ]
     return " ".join(answer), " ".join(details)
 
 
@@ -90,8 +93,8 @@ def _at_defaults(result):
     ]
     if missed:
         yield (
-            "Restitution, outcomes and real blocks are those of the levels that tuned variants take unless told "
-            f"otherwise, at which {percent(ASKED[0], 1)} is missed on {listed(missed)}."
+            "Restitution, outcomes and real blocks use the levels that tuned variants take unless told otherwise. At "
+            f"these, {percent(ASKED[0], 1)} is missed on {listed(missed)}."
         )
 
 

@@ -120,9 +120,9 @@ def checked(file):
     return answer
 
 
-def half(first, kinds=KINDS):
-    """All kinds; every other one is of the second command, so that each is run by two commands in the first."""
-    return [pytest.param(kind, marks=[pytest.mark.slow] * (k % 2 != first)) for k, kind in enumerate(kinds)]
+def half(first, kinds=KINDS, later=pytest.mark.slow):
+    """All kinds; every other one is run later, so that each is run by two commands in the first tests."""
+    return [pytest.param(kind, marks=[later] * (k % 2 != first)) for k, kind in enumerate(kinds)]
 
 
 def shown(words, out):
@@ -571,7 +571,7 @@ def test_run_and_compare_of_a_free_pedestal(road, kind):
         differences_are_told(lie, out)
 
 
-@pytest.mark.parametrize("kind", half(1, STACKS))
+@pytest.mark.parametrize("kind", half(1, STACKS, pytest.mark.long))
 def test_margin_of_a_free_pedestal(road, tmp_path, kind):
     """What changes at a boundary differs in two runs beside it."""
     status, answer, out, _ = road("margin", kind, "--span", 60)

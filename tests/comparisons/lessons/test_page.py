@@ -10,7 +10,7 @@ from comparisons.lessons import export
 from comparisons.lessons.export import PAGE, playground_page
 from comparisons.lessons.topics import lessons
 
-pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("lessons in a browser")]
+pytestmark = pytest.mark.xdist_group("lessons in a browser")
 
 
 @pytest.fixture
@@ -35,6 +35,7 @@ def value(page, name):
     return float(page.get_attribute(f"#{name}", "data-value"))
 
 
+@pytest.mark.slow
 def test_a_moved_slider_gives_the_kernels_number(opened):
     page = opened("#amplitude=0.35&period=0.5")
     page.fill("#s-slenderness", "0.2")
@@ -46,6 +47,7 @@ def test_a_moved_slider_gives_the_kernels_number(opened):
     assert page.inner_text("#verdict") == response.outcome
 
 
+@pytest.mark.slow
 def test_the_isolated_caryatid_stands_and_a_phone_does_not_scroll_sideways(opened):
     page = opened("#motion=synthetic&base=true&engine=soft", viewport={"width": 390, "height": 844})
     assert page.evaluate("document.documentElement.scrollWidth") == 390
@@ -59,6 +61,7 @@ def test_the_isolated_caryatid_stands_and_a_phone_does_not_scroll_sideways(opene
     assert page.evaluate("document.documentElement.scrollWidth") == 390
 
 
+@pytest.mark.slow
 def test_presets_keys_and_clicks_move_slider_map_and_time(opened):
     page = opened("#amplitude=0.35", viewport={"width": 1280, "height": 1100})
     assert page.inner_text("#play") == "Play"  # reduced motion stands still
@@ -90,6 +93,7 @@ def pages(tmp_path_factory):
     return folder
 
 
+@pytest.mark.long  # the export runs all lessons
 def test_the_other_pages(browser, pages):
     for name in ("index", "derivations", "teacher"):
         for image in visit(browser, pages / f"{name}.html").query_selector_all("img"):
@@ -99,6 +103,7 @@ def test_the_other_pages(browser, pages):
     assert export.LICENCE in (pages / "figures/lesson-2.svg").read_text()
 
 
+@pytest.mark.long  # the export runs all lessons
 def test_a_moved_slider_of_every_lesson_shows_the_kernels_number(browser, pages):
     for lesson in lessons():
         page = visit(browser, pages / f"lesson-{lesson.number}.html")
