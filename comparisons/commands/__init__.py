@@ -7,6 +7,7 @@ commands' docstrings.
 import ast
 import importlib
 from pathlib import Path
+from typing import Annotated
 
 import typer
 from typer.core import TyperCommand, TyperGroup
@@ -22,6 +23,7 @@ GROUPS = {
 }
 MODULES = {name: module for group in GROUPS.values() for name, module in group.items()}
 
+DISTRIBUTION = "rocking"  # as pip knows it
 SHORT = 60  # characters of a command's line: none is cut in a terminal of 80 columns
 
 
@@ -64,6 +66,18 @@ app = typer.Typer(
 )
 
 
+def _print_version(asked: bool):
+    if asked:
+        from importlib.metadata import version  # needed here alone
+
+        print(version(DISTRIBUTION))
+        raise typer.Exit
+
+
 @app.callback()
-def _about():
+def _about(
+    version: Annotated[
+        bool, typer.Option("--version", help="Print the version and exit.", callback=_print_version, is_eager=True)
+    ] = False,
+):
     """How far a multibody engine can be trusted with a rocking block on lead-rubber bearings, and at what cost."""

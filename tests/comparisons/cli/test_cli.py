@@ -8,6 +8,8 @@ import os
 import subprocess
 import sys
 import time
+import tomllib
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -278,6 +280,13 @@ def test_what_little_of_the_motion_changes_is_said_last_and_once_and_only_where_
         warning for warning in content.get("responses", [content])[0]["warnings"] if warning["kind"] == "motion"
     ]
     assert [(warning["quantity"], warning["limit"]) for warning in warnings] == [("outcome", 0.05)] * (scale == CLIFF)
+
+
+def test_the_version_is_that_of_the_installation(rocking):
+    status, out, err = rocking("--version")
+    project = tomllib.loads((Path(cli.__file__).parents[2] / "pyproject.toml").read_text())["project"]
+    assert (status, out.strip(), err) == (0, project["version"], "")
+    assert rocking("--version", "run")[0] == 0
 
 
 def test_help_shows_every_command_in_one_group_with_a_line_and_an_example(rocking):
