@@ -66,7 +66,7 @@ app = typer.Typer(
 )
 
 
-def _print_version(asked: bool):
+def _print_version(asked: bool) -> None:
     if asked:
         from importlib.metadata import version  # needed here alone
 
@@ -79,5 +79,5 @@ def _about(
     version: Annotated[
         bool, typer.Option("--version", help="Print the version and exit.", callback=_print_version, is_eager=True)
     ] = False,
-):
+) -> None:
     """How far a multibody engine can be trusted with a rocking block on lead-rubber bearings, and at what cost."""
