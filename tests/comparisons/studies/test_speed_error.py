@@ -211,7 +211,7 @@ def test_solvers_come_cheapest_first():
 def test_more_than_needed_stands_beside_what_is_needed():
     rows = [row("a", 2.0, 1e-4), row("a", 6.0, 1e-2, model="more", lost=1), row("a", 3.0, 1e-4, law="bouc-wen")]
     more, law = (table.rows for table in STUDY.page(result_of(*rows)).whole().tables[-2:])
-    assert more == [["more", "exudyn, a", "step 0.001", "a scene", "3.00", "1.0·10⁻⁴", "0.010 (missed: 1)"]]
+    assert more == [["more", "exudyn, a", "step = 0.001 s", "a scene", "3.00", "1.0·10⁻⁴", "0.010 (missed: 1)"]]
     assert [one[2:6] for one in law] == [["1.50", "1.50", "1.50", "1.0 %"]]  # the ratio's median and range
 
 
