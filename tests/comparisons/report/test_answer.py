@@ -162,7 +162,7 @@ def test_runs_near_a_boundary_are_counted_in_and_what_else_changes_outcomes_stan
 def test_the_level_whose_cost_is_given_is_seen_on_the_random_statues():
     cost = Glance(says={"cost": ("36 ms.", "Levels: 4.")}, levels=(("exudyn", 4.0), ("pybullet", 0.1)))
     missed = {("exudyn", 4.0): (23, 61), ("exudyn", 5.0): (1, 61), ("pybullet", 0.1): (18, 61)}
-    for statues, begin in ((missed, "On the random statues, the levels of this scene miss that accuracy on "), ({}, "Le")):
+    for statues, begin in ((missed, "On the random statues, the levels of this scene miss "), ({}, "Le")):
         (line,) = screen(SETUPS, (), [cost, Glance(missed=statues)])["lines"]
         assert line.answer == "36 ms." and line.details.startswith(begin) and line.details.endswith("Levels: 4.")
         assert ("23 of 61 (exudyn) and 18 of 61 (pybullet)." in line.details) == bool(statues)
