@@ -23,7 +23,6 @@ GROUPS = {
 }
 MODULES = {name: module for group in GROUPS.values() for name, module in group.items()}
 
-DISTRIBUTION = "rocking"  # as pip knows it
 SHORT = 60  # characters of a command's line: none is cut in a terminal of 80 columns
 
 
@@ -68,9 +67,9 @@ app = typer.Typer(
 
 def _print_version(asked: bool) -> None:
     if asked:
-        from importlib.metadata import version  # needed here alone
+        from ..execution.code_digests import version_of  # needed here alone
 
-        print(version(DISTRIBUTION))
+        print(version_of("rocking") or "not installed")
         raise typer.Exit
 
 

@@ -42,8 +42,8 @@ def advised_levels(result: Result) -> tuple[Table, ...]:
             f"Which level to use{finest} It was tested on {statues} other random statues; {upright} stay upright. An "
             "accuracy is missed if the outcome is not the model's, or if the error of peak tilt (over the slenderness) "
             f"or of base displacement exceeds it. ✓: it is missed on {percent(SECOND, 1)} or fewer of the {upright}, "
-            "and no outcome changes away from an outcome boundary; ✗: it is not so. At most: the upper 95 % limit. CPU "
-            "times are per simulated second",
+            "and no outcome changes away from an outcome boundary; ✗: otherwise. At most: the upper 95 % limit. CPU "
+            "times (of runs side by side) are per simulated second",
             lines,
             Column("accuracy, missed on", "missed on"),
             NAME,

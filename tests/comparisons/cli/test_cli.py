@@ -9,7 +9,6 @@ import subprocess
 import sys
 import time
 import tomllib
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -22,6 +21,7 @@ from analytic import Caution, Failure, load_scene, simulate, solver
 from comparisons import cli, commands
 from comparisons.commands import app
 from comparisons.execution import command_runs, progress
+from comparisons.execution.results import PROJECT_FOLDER
 from comparisons.execution.writing import readable
 from engines import ENGINES, get_engine, guard, installed_engines
 
@@ -284,7 +284,7 @@ def test_what_little_of_the_motion_changes_is_said_last_and_once_and_only_where_
 
 def test_the_version_is_that_of_the_installation(rocking):
     status, out, err = rocking("--version")
-    project = tomllib.loads((Path(cli.__file__).parents[2] / "pyproject.toml").read_text())["project"]
+    project = tomllib.loads((PROJECT_FOLDER / "pyproject.toml").read_text())["project"]
     assert (status, out.strip(), err) == (0, project["version"], "")
     assert rocking("--version", "run")[0] == 0
 
